@@ -1,0 +1,132 @@
+"""The ROS graph as plain data: what the observer hands over, with nothing of rclpy in it.
+
+Times are seconds on the monotonic clock unless a name says otherwise, sizes are bytes of the
+serialized message (CDR), rates are messages a second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TypeAlias, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+Value: TypeAlias = Union[
+    bool, int, float, str, bytes, "NDArray[np.generic]", Sequence["Value"], Mapping[str, "Value"]
+]
+"""A message as a tree: messages are mappings in field order, `byte[]` and `uint8[]` are bytes,
+other arrays of numbers are numpy arrays of shape (n,), arrays of anything else are lists."""
+
+
+class Trouble(str, Enum):
+    """Why a topic shows nothing. Four different things, four different messages."""
+
+    NO_PUBLISHER = "no publisher"
+    QOS_MISMATCH = "qos mismatch"
+    UNKNOWN_TYPE = "unknown type"
+    QUIET = "quiet"
+    """Publishers are there, nothing has come for longer than is usual."""
+
+
+@dataclass(frozen=True)
+class EndpointInfo:
+    """One publisher or subscription."""
+
+    node: str
+    """Full name of the node, with its namespace: `/sonar_front`."""
+    type_name: str
+    reliability: str
+    """`reliable` or `best_effort`."""
+    durability: str
+    """`volatile` or `transient_local`."""
+    depth: int = 0
+
+
+@dataclass(frozen=True)
+class TopicRow:
+    """One topic with its rates over the last seconds."""
+
+    name: str
+    type_names: tuple[str, ...]
+    """`std_msgs/msg/Float32`; more than one where peers disagree."""
+    publishers: int
+    subscribers: int
+    """Deck's own subscription is not counted."""
+    hz: float | None = None
+    """None while it is not measured or fewer than two messages came."""
+    bytes_per_s: float | None = None
+    age_s: float | None = None
+    """Since the newest message; None if none came yet."""
+    count: int = 0
+    """Messages taken since the subscription was made."""
+    measured: bool = False
+    """Whether Deck is subscribed now."""
+    trouble: Trouble | None = None
+    detail: str = ""
+    """The trouble in words: which endpoints do not fit, which type is missing."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One decoded message."""
+
+    topic: str
+    type_name: str
+    received_s: float
+    """When it was taken, unix time."""
+    age_s: float
+    """Between its arrival at the middleware and being taken, as far as is known, else 0."""
+    size_bytes: int
+    value: Mapping[str, Value]
+
+
+@dataclass(frozen=True)
+class NodeRow:
+    """One node of the graph."""
+
+    name: str
+    """Full name: `/sonar_front`."""
+    publishes: tuple[str, ...] = ()
+    subscribes: tuple[str, ...] = ()
+    services: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ServiceRow:
+    """One service of the graph."""
+
+    name: str
+    type_names: tuple[str, ...]
+    nodes: tuple[str, ...] = ()
+    """Full names of the nodes that serve it."""
+
+
+@dataclass(frozen=True)
+class CallResult:
+    """The end of a service call."""
+
+    service: str
+    ok: bool
+    response: Mapping[str, Value] | None
+    error: str
+    """Why there is no response: no such service, time-out, unknown type, bad request."""
+    elapsed_s: float
+
+
+@dataclass(frozen=True)
+class GraphUpdate:
+    """All that changed since the update before, handed over at the observer's rate."""
+
+    time_s: float
+    """Unix time of this update."""
+    topics: tuple[TopicRow, ...] = ()
+    """Every topic there is, sorted by name."""
+    samples: Mapping[str, tuple[Sample, ...]] = field(default_factory=dict)
+    """Topic to its new samples in order: one for a watched topic, all for a followed one."""
+    nodes: tuple[NodeRow, ...] = ()
+    services: tuple[ServiceRow, ...] = ()
+    error: str = ""
+    """Set when the observer cannot work at all: rclpy is missing, the domain is refused."""

@@ -1,0 +1,134 @@
+"""What the supervisor tells its clients: plain data, the same on both ends of the socket.
+
+Every duration is in seconds on the monotonic clock, every memory figure in bytes,
+every CPU figure in percent of one core.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+
+class NodeState(str, Enum):
+    """Where a node is in its life."""
+
+    WAITING = "waiting"
+    """Not started yet: a node it needs is not ready."""
+    STARTING = "starting"
+    """Its process runs, its readiness condition does not hold yet."""
+    READY = "ready"
+    """Its readiness condition holds."""
+    RUNNING = "running"
+    """Its process runs and it has no readiness condition to check."""
+    STOPPING = "stopping"
+    EXITED = "exited"
+    """Ended: by itself with code 0, or because somebody stopped it."""
+    BACKOFF = "backoff"
+    """Ended and will be started again; `NodeStatus.detail` says when."""
+    FAILED = "failed"
+    """Ended and will not be started again; `NodeStatus.detail` says why."""
+
+    @property
+    def alive(self) -> bool:
+        """Whether a process of this node exists."""
+        return self in _ALIVE
+
+
+_ALIVE = frozenset(
+    {NodeState.STARTING, NodeState.READY, NodeState.RUNNING, NodeState.STOPPING}
+)
+
+
+class Severity(str, Enum):
+    """Severity of a log line, rcutils' five levels."""
+
+    DEBUG = "debug"
+    INFO = "info"
+    WARN = "warn"
+    ERROR = "error"
+    FATAL = "fatal"
+
+    @property
+    def rank(self) -> int:
+        """Position in the order of gravity, 0 for debug."""
+        return _RANKS[self]
+
+
+_RANKS = {severity: rank for rank, severity in enumerate(Severity)}
+
+
+@dataclass(frozen=True)
+class NodeStatus:
+    """One node of the running profile, as of now."""
+
+    name: str
+    """The key of the node in the profile, which is also its name in the ROS graph."""
+    command: str
+    """What is run, for people: `nodes.mock_sonar`, or the command line of an `exec:`."""
+    state: NodeState
+    detail: str = ""
+    """Why it is in this state, in words: what it waits for, how it ended."""
+    pid: int | None = None
+    uptime_s: float | None = None
+    restarts: int = 0
+    """Starts by the restart policy since the profile was started."""
+    exit_code: int | None = None
+    signal: str | None = None
+    """Name of the signal that ended it: `SIGKILL`."""
+    cpu_percent: float | None = None
+    memory_bytes: int | None = None
+    """Proportional set size of the node's whole process group."""
+    needs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class LogLine:
+    """One line that a node, or the supervisor about a node, has written."""
+
+    node: str
+    seq: int
+    """Counts the lines of this node from 1 without a gap, so that a reader sees what it missed."""
+    time_s: float
+    """Unix time: the node's own stamp where the line has one, else the time of reading."""
+    severity: Severity
+    text: str
+    """Text without escape sequences, control characters shown as their pictures (U+2400)."""
+    logger: str = ""
+    """Name of the ROS logger, empty for a plain line."""
+    source: str = "stderr"
+    """`stdout`, `stderr`, or `deck` for the supervisor's own words about the node."""
+
+
+@dataclass(frozen=True)
+class SessionInfo:
+    """The running profile as a whole."""
+
+    run_id: str
+    profile: str
+    """Path of the profile's file."""
+    name: str
+    """File name without its ending: `09-brain`."""
+    title: dict[str, str] = field(default_factory=dict)
+    """Language code to title."""
+    lesson: str = ""
+    domain: int = 0
+    discovery: str | tuple[str, ...] = "localhost"
+    hardware: str = "mock"
+    panels: tuple[str, ...] = ()
+    supervisor_pid: int = 0
+    log_dir: str = ""
+    foreground: bool = True
+    """Whether the nodes end with the screen that started them."""
+
+
+@dataclass(frozen=True)
+class Stray:
+    """A process that an earlier run left behind."""
+
+    pid: int
+    started_s: float
+    """Start time of the process (unix time): a pid alone may have been reused."""
+    node: str
+    command: str
+    run_id: str

@@ -1,0 +1,83 @@
+"""What every test gets: an environment of its own, and a ROS domain nobody else uses."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+T = TypeVar("T")
+
+DOMAINS = range(1, 102)
+"""Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
+
+
+@pytest.fixture(autouse=True)
+def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Keep a developer's own settings, run directory and logs out of the tests."""
+    for name in ("NO_COLOR", "LANGUAGE", "LC_ALL", "LC_MESSAGES", "COLORTERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name in [name for name in os.environ if name.startswith("DECK_")]:
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("LANG", "C.UTF-8")
+    monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "run"))
+    monkeypatch.setenv("DECK_LOG_DIR", str(tmp_path / "logs"))
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros-logs"))
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+
+
+@pytest.fixture(scope="session")
+def domain_pool() -> Iterator[Callable[[], int]]:
+    """Hand out ROS domains that no other test run on this machine holds, by file locks."""
+    folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"  # noqa: S108 - shared on purpose
+    folder.mkdir(exist_ok=True)
+    held: list[int] = []
+
+    def take() -> int:
+        for domain in DOMAINS:
+            lock = os.open(folder / str(domain), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                os.close(lock)
+                continue
+            held.append(lock)
+            return domain
+        raise RuntimeError("every ROS domain from 1 to 101 is held by a test")
+
+    yield take
+    for lock in held:
+        os.close(lock)
+
+
+@pytest.fixture
+def ros_domain(domain_pool: Callable[[], int], monkeypatch: pytest.MonkeyPatch) -> int:
+    """A ROS domain of this test's own, set in the environment."""
+    domain = domain_pool()
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    return domain
+
+
+@pytest.fixture(scope="module")
+def module_domain(domain_pool: Callable[[], int]) -> int:
+    """A ROS domain for fixtures that live as long as a test module."""
+    return domain_pool()
+
+
+def wait_until(
+    condition: Callable[[], T], what: str, within_s: float = 30.0, every_s: float = 0.02
+) -> T:
+    """Return the first truthy result of `condition`; fail naming `what` after `within_s`."""
+    deadline = time.monotonic() + within_s
+    while True:
+        result = condition()
+        if result:
+            return result
+        if time.monotonic() > deadline:
+            pytest.fail(f"not within {within_s:g} s: {what}")
+        time.sleep(every_s)
