@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import fcntl
 import os
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TypeVar
 
 import pytest
-
-T = TypeVar("T")
 
 DOMAINS = range(1, 102)
 """Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
@@ -67,17 +63,3 @@ def ros_domain(domain_pool: Callable[[], int], monkeypatch: pytest.MonkeyPatch) 
 def module_domain(domain_pool: Callable[[], int]) -> int:
     """A ROS domain for fixtures that live as long as a test module."""
     return domain_pool()
-
-
-def wait_until(
-    condition: Callable[[], T], what: str, within_s: float = 30.0, every_s: float = 0.02
-) -> T:
-    """Return the first truthy result of `condition`; fail naming `what` after `within_s`."""
-    deadline = time.monotonic() + within_s
-    while True:
-        result = condition()
-        if result:
-            return result
-        if time.monotonic() > deadline:
-            pytest.fail(f"not within {within_s:g} s: {what}")
-        time.sleep(every_s)

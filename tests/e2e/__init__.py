@@ -1,0 +1,1 @@
+"""Tests that drive deck in a real terminal."""

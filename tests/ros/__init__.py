@@ -1,0 +1,1 @@
+"""Tests over real rclpy and real processes."""

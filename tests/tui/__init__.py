@@ -1,0 +1,1 @@
+"""Tests of screens: pilot and snapshots."""
