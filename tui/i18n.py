@@ -1,0 +1,81 @@
+"""The language of the screen: English in the code, Russian by a gettext catalogue.
+
+Strings are looked up where they are drawn, so that the language can change under a running
+screen; a string that must stand in a constant is marked with `N_` and translated when drawn.
+"""
+
+from __future__ import annotations
+
+import gettext as _gettext
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+LOCALE = Path(__file__).parent / "locale"
+DOMAIN = "deck"
+LANGUAGES = ("en", "ru")
+NAMES = {"en": "English", "ru": "Русский"}
+
+_language = "en"
+_catalogue: _gettext.NullTranslations = _gettext.NullTranslations()
+
+
+def detect(option: str | None = None, environ: Mapping[str, str] | None = None) -> str:
+    """Return the language asked for: `--lang`, then `DECK_LANG`, then the locale, then English."""
+    env = os.environ if environ is None else environ
+    wishes = (option, env.get("DECK_LANG"))
+    locale = env.get("LC_ALL") or env.get("LC_MESSAGES") or env.get("LANG")
+    for wish in (*wishes, locale):
+        code = (wish or "").replace("-", "_").split("_")[0].split(".")[0].lower()
+        if code in LANGUAGES:
+            return code
+    return "en"
+
+
+def set_language(code: str) -> None:
+    """Speak `code` from now on.
+
+    Raises:
+        ValueError: if there is no such language; the message names those there are.
+    """
+    global _language, _catalogue  # noqa: PLW0603 - one screen, one language
+    if code not in LANGUAGES:
+        raise ValueError(f"no language {code!r}: choose {' or '.join(LANGUAGES)}")
+    _language = code
+    _catalogue = (
+        _gettext.NullTranslations()
+        if code == "en"
+        else _gettext.translation(DOMAIN, LOCALE, [code], fallback=True)
+    )
+
+
+def language() -> str:
+    """Return the code of the language spoken now."""
+    return _language
+
+
+def _(message: str) -> str:
+    """Return `message` in the language spoken now."""
+    return _catalogue.gettext(message) if message else ""
+
+
+def ngettext(singular: str, plural: str, number: int) -> str:
+    """Return the form of the message that goes with `number`."""
+    return _catalogue.ngettext(singular, plural, number)
+
+
+def N_(message: str) -> str:  # noqa: N802 - gettext's own name
+    """Mark `message` for the catalogue; whoever draws it calls `_`."""
+    return message
+
+
+def pick(texts: Mapping[str, str]) -> str:
+    """Return the text in the language spoken now out of {code: text}, else English, else any."""
+    return texts.get(_language) or texts.get("en") or next(iter(texts.values()), "")
+
+
+if __name__ == "__main__":
+    from tui.catalogue import main
+
+    sys.exit(main(sys.argv[1:]))
