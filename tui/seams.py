@@ -1,0 +1,133 @@
+"""The two seams of the screen: what it needs of the supervisor and of the ROS graph.
+
+`launcher.client.SupervisorClient` and `graph.observer.Observer` fit them, and so do the recorded
+ones of the tests. A `Launchpad` lists what can be opened and opens it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from graph.data import CallResult, GraphUpdate, Value
+    from launcher.client import Event
+    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+
+
+class SessionLink(Protocol):
+    """A running profile: its nodes as they are now, and what can be asked of them."""
+
+    @property
+    def session(self) -> SessionInfo:
+        """What runs: profile, domain, panels."""
+
+    @property
+    def nodes(self) -> Mapping[str, NodeStatus]:
+        """Every node by its name in the profile's order, kept current."""
+
+    @property
+    def strays(self) -> tuple[Stray, ...]:
+        """Processes that an earlier run left behind."""
+
+    def events(self) -> AsyncIterator[Event]:
+        """Yield what happens until the session has ended."""
+
+    async def start(self, *names: str) -> None:
+        """Start these nodes, all if none is named."""
+
+    async def stop(self, *names: str) -> None:
+        """Stop these nodes, all if none is named."""
+
+    async def restart(self, *names: str) -> None:
+        """Stop and start these nodes, all if none is named."""
+
+    async def history(self, node: str | None, limit: int) -> list[LogLine]:
+        """Return the newest lines, oldest first, of one node or of all."""
+
+    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+        """End what an earlier run left behind."""
+
+    async def shutdown(self, now: bool = False) -> None:
+        """Stop all nodes, dependants first, and the supervisor; `now` skips the waiting."""
+
+    async def aclose(self) -> None:
+        """Let go of the session and leave it as it is."""
+
+
+class GraphLink(Protocol):
+    """The ROS graph of one domain; no method blocks, all may be called from any thread."""
+
+    period_s: float
+    """Seconds between two updates."""
+
+    def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
+        """Begin to observe; `on_update` is called on the observer's own thread."""
+
+    def stop(self) -> None:
+        """End observing, within bounds."""
+
+    def watch(self, topics: Iterable[str]) -> None:
+        """Decode the newest message of exactly these topics each period."""
+
+    def follow(self, topics: Iterable[str]) -> None:
+        """Decode every message of exactly these topics."""
+
+    def measure(self, all_topics: bool) -> None:
+        """Measure the rates of all topics, or only of those watched and followed."""
+
+    def publish(
+        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
+    ) -> Future[None]:
+        """Publish one message; the future fails with a clear word if that is impossible."""
+
+    def call(
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[CallResult]:
+        """Call a service."""
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """One profile as the picker shows it."""
+
+    name: str
+    """File name without its ending: `09-brain`."""
+    path: Path
+    title: Mapping[str, str]
+    """Language code to title."""
+    lesson: str = ""
+    nodes: tuple[str, ...] = ()
+    panels: tuple[str, ...] = ()
+    error: str = ""
+    """Why it cannot be started: `file:line:column: field: message`; empty if it can."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be opened: a profile to be started, or a session that runs already."""
+
+    profile: Path | None = None
+    attach: str | None = None
+    hardware: str = "mock"
+    overrides: tuple[str, ...] = ()
+    domain: int | None = None
+
+
+class Launchpad(Protocol):
+    """What can be opened, and the opening of it."""
+
+    async def lessons(self) -> list[Lesson]:
+        """Return every profile there is, broken ones with their error."""
+
+    async def running(self) -> list[SessionInfo]:
+        """Return the sessions that run in the background."""
+
+    async def open(self, order: Order) -> SessionLink:
+        """Start the profile or attach to the session; raises a `LauncherError` with the reason."""
+
+    def observe(self, session: SessionInfo) -> GraphLink:
+        """Return the ROS graph that this session's nodes live in, not yet observed."""
