@@ -1,0 +1,1 @@
+"""Widgets: plain data in by methods, Textual messages out."""
