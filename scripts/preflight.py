@@ -1,0 +1,88 @@
+"""Say in one line what this machine lacks for `make`, before anything is begun.
+
+Runs on any Python, also one far too old for Deck, because it must say so.
+"""
+
+import os
+import platform
+import sys
+import sysconfig
+
+OLDEST, NEWEST = (3, 10), (3, 13)
+PIXI = "install pixi (https://pixi.sh) and use `pixi run deck`"
+
+
+class Machine(object):
+    """The facts that decide, gathered once so that a test can make them up."""
+
+    def __init__(self, **facts):
+        self.system = facts.get("system", platform.system())
+        self.arch = facts.get("arch", platform.machine())
+        self.bits = facts.get("bits", 64 if sys.maxsize > 2**32 else 32)
+        self.libc = facts.get("libc", platform.libc_ver())
+        self.python = facts.get("python", sys.version_info[:2])
+        self.path = facts.get("path", os.environ.get("PATH", os.defpath))
+        self.modules = facts.get("modules", installed("venv", "ensurepip"))
+        self.include = facts.get("include", sysconfig.get_paths()["include"])
+
+
+def installed(*names):
+    """Tell which of the named modules this Python can import."""
+    found = []
+    for name in names:
+        try:
+            __import__(name)
+        except ImportError:
+            continue
+        found.append(name)
+    return found
+
+
+def has_program(path, names):
+    """Tell whether one of the programs is on the search path."""
+    return any(
+        os.access(os.path.join(folder or ".", name), os.X_OK)
+        for folder in path.split(os.pathsep)
+        for name in names
+    )
+
+
+def compilers(variable, *names):
+    """Put the compiler that the environment asks for in place of the usual ones."""
+    asked = os.environ.get(variable, "").split()
+    return asked[:1] or names
+
+
+def release(text):
+    """Turn a version such as 2.36 into numbers that compare."""
+    return tuple(int(part) for part in text.split(".")[:2])
+
+
+def complaint(machine):
+    """Return what is wrong and how to mend it, or nothing if all is well."""
+    version = "%d.%d" % machine.python
+    if machine.system != "Linux" or machine.arch != "x86_64" or machine.bits != 64:
+        return "ROS 2 is on PyPI for Linux x86-64 only and this is %s %s: %s." % (
+            machine.system,
+            machine.arch if machine.bits == 64 else machine.arch + " (32-bit Python)",
+            PIXI,
+        )
+    if machine.libc[0] != "glibc" or release(machine.libc[1]) < (2, 28):
+        return "The ROS 2 of PyPI needs glibc 2.28 or newer, which this Linux lacks: %s." % PIXI
+    if not OLDEST <= machine.python <= NEWEST:
+        return "Python %s is not one of 3.10 to 3.13: install one, or name it: make PYTHON=python3.12." % version
+    if "venv" not in machine.modules or "ensurepip" not in machine.modules:
+        return "Python %s cannot make virtual environments: sudo apt install python%s-venv." % (version, version)
+    if not has_program(machine.path, compilers("CC", "cc", "gcc", "clang")):
+        return "There is no C compiler: sudo apt install build-essential."
+    if not has_program(machine.path, compilers("CXX", "c++", "g++", "clang++")):
+        return "There is no C++ compiler: sudo apt install build-essential."
+    if not os.path.exists(os.path.join(machine.include, "Python.h")):
+        return "Python %s lacks its headers: sudo apt install python%s-dev." % (version, version)
+    return ""
+
+
+if __name__ == "__main__":
+    found = complaint(Machine())
+    if found:
+        sys.exit("deck: " + found)
