@@ -1,0 +1,1 @@
+"""The ROS graph as plain data: topics, rates, samples and calls, with no widget in sight."""

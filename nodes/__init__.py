@@ -1,0 +1,1 @@
+"""The lesson nodes and the hardware drivers, one file each, each runnable alone."""
