@@ -1,0 +1,177 @@
+"""What can go wrong in the launcher, as exceptions with sentences for people.
+
+::
+
+    LauncherError                   anything below; its text is fit to be shown as it is
+    ├── UsageError                  what was asked for cannot be right, nothing was started (exit 2)
+    │   ├── ProfileError            a profile that cannot be used; `.problems`, all of them
+    │   ├── ProfileNotFoundError    no profile of that name; `.near` has the likely ones
+    │   ├── DomainError             no ROS domain: not a number from 0 to 232
+    │   └── UnknownNodeError        the running profile has no node of that name
+    ├── RunDirError                 the run or log directory cannot be made, or is not ours
+    └── SessionError                about a running supervisor (exit 1)
+        ├── NotRunningError         none runs, or none of that name
+        ├── SeveralRunningError     more than one runs, choose by name; `.names` (exit 2)
+        ├── AlreadyRunningError     the same profile runs already in that domain; `.session`
+        ├── StartError              the supervisor ended before it answered; its last words
+        ├── ConnectionLostError     the supervisor has gone, or does not answer
+        └── ProtocolError           the other end speaks another version of the protocol
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from launcher.status import SessionInfo
+
+
+class LauncherError(Exception):
+    """Anything that the launcher refuses or fails at."""
+
+    exit_code = 1
+    """What a command that ends by this error exits with."""
+
+
+class UsageError(LauncherError):
+    """What was asked for cannot be right, nothing was started."""
+
+    exit_code = 2
+
+
+@dataclass(frozen=True)
+class ProfileProblem:
+    """One thing that is wrong in a profile.
+
+    `line` and `column` count from 1; 0 where there is no place to point at. `message` and `hint`
+    are `launcher.words.Words` wherever they come from this project.
+    """
+
+    file: str
+    line: int
+    column: int
+    field: str
+    """Path of the field: `nodes.sonar_front.params.rate`; empty for the file as a whole."""
+    message: str
+    hint: str = ""
+    """The mend: what was probably meant, what to write."""
+
+    @property
+    def where(self) -> str:
+        """`file:line:column`, as editors and terminals make it clickable."""
+        return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
+
+    def __str__(self) -> str:
+        """One line: where, which field, what is wrong, how to mend it."""
+        field = f"{self.field}: " if self.field else ""
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{self.where}: {field}{self.message}{hint}"
+
+
+class ProfileError(UsageError):
+    """A profile that cannot be used; every problem that was found, in order of place."""
+
+    def __init__(self, problems: Iterable[ProfileProblem]) -> None:
+        """Keep `problems`, of which there is at least one."""
+        self.problems: tuple[ProfileProblem, ...] = tuple(problems)
+        super().__init__("\n".join(map(str, self.problems)))
+
+
+class ProfileNotFoundError(UsageError):
+    """No profile of that name."""
+
+    def __init__(self, name: str, near: Sequence[str] = ()) -> None:
+        """`near`: names that were probably meant."""
+        self.name = name
+        self.near = tuple(near)
+        if near:
+            words = say("no profile {name!r}; near it: {near}", name=name, near=", ".join(near))
+        else:
+            words = say("no profile {name!r}; `deck list` shows them all", name=name)
+        super().__init__(words)
+
+
+class DomainError(UsageError):
+    """No ROS domain."""
+
+
+class UnknownNodeError(UsageError):
+    """The running profile has no node of that name."""
+
+    def __init__(self, name: str, known: Iterable[str]) -> None:
+        """`known`: the nodes that there are."""
+        self.name = name
+        self.known = tuple(known)
+        nodes = ", ".join(self.known)
+        super().__init__(say("no node {name!r}; there are: {nodes}", name=name, nodes=nodes))
+
+
+class RunDirError(LauncherError):
+    """The run or log directory cannot be made, or is somebody else's."""
+
+
+class SessionError(LauncherError):
+    """About a running supervisor."""
+
+
+class NotRunningError(SessionError):
+    """None runs, or none of that name."""
+
+    def __init__(self, name: str | None = None, running: Sequence[str] = ()) -> None:
+        """`name`: what was asked for; `running`: what there is."""
+        self.name = name
+        if name is None:
+            words = say("nothing runs in the background; `deck up PROFILE` starts a profile")
+        elif running:
+            names = ", ".join(running)
+            words = say("{name!r} does not run; running: {names}", name=name, names=names)
+        else:
+            words = say("{name!r} does not run, nor does anything else", name=name)
+        super().__init__(words)
+
+
+class SeveralRunningError(SessionError):
+    """More than one runs: choose by name."""
+
+    exit_code = 2
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """`names`: what runs."""
+        self.names = tuple(names)
+        super().__init__(
+            say("several profiles run, choose one by name: {names}", names=", ".join(names))
+        )
+
+
+class AlreadyRunningError(SessionError):
+    """The same profile runs already in that domain."""
+
+    def __init__(self, session: SessionInfo) -> None:
+        """`session`: the one that runs."""
+        self.session = session
+        super().__init__(
+            say(
+                "{name} runs already in domain {domain} (pid {pid}); `deck attach` shows it,"
+                " `deck down` stops it",
+                name=session.name,
+                domain=session.domain,
+                pid=session.supervisor_pid,
+            )
+        )
+
+
+class StartError(SessionError):
+    """The supervisor ended before it answered."""
+
+
+class ConnectionLostError(SessionError):
+    """The supervisor has gone, or does not answer."""
+
+
+class ProtocolError(SessionError):
+    """The other end speaks another version of the protocol."""

@@ -1,0 +1,38 @@
+"""Sentences that can still be translated after they were made.
+
+The launcher knows nothing of languages; the screen and the command line do. A sentence made by
+`say` is its English text, a plain `str` for everyone, and remembers the template and the values
+that it was made of, so that who shows it can look the template up in a catalogue.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+class Words(str):
+    """An English sentence that remembers what it was made of."""
+
+    __slots__ = ("template", "values")
+
+    template: str
+    values: dict[str, object]
+
+    def __new__(cls, template: str, values: dict[str, object]) -> Self:
+        """Fill `template`, in the manner of `str.format`, with `values`."""
+        words = super().__new__(cls, template.format(**values) if values else template)
+        words.template = template
+        words.values = values
+        return words
+
+    def __getnewargs__(self) -> tuple[str, dict[str, object]]:  # type: ignore[override]
+        """Make copying and pickling keep the template."""
+        return self.template, self.values
+
+
+def say(template: str, **values: object) -> Words:
+    """Make a sentence: `say("no such node: {node}", node=name)`."""
+    return Words(template, values)
