@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, Value
-    from launcher.client import Event
+    from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
 
 

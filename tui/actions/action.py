@@ -1,0 +1,95 @@
+"""What a person can do: one class each, from which all else about it derives.
+
+Key bindings, the footer, the palette, the help page and a user's keymap are made of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, ClassVar, Generic, TypeVar
+
+from textual.binding import Binding
+from textual.dom import DOMNode
+
+Target = TypeVar("Target", bound=DOMNode)
+
+REGISTRY: dict[str, type[Action[Any]]] = {}
+"""Binding id to action, in the order in which the modules were imported."""
+
+
+class Action(Generic[Target]):
+    """Something a person can do to the app, or to a screen: `Target` is which."""
+
+    id: ClassVar[str]
+    """Binding id, what a keymap names: `node.restart`."""
+    key: ClassVar[str]
+    """Keys as Textual writes them, comma-separated; the first is the one that is shown."""
+    title: ClassVar[str]
+    """Two or three words, marked by `N_`."""
+    tooltip: ClassVar[str]
+    """A sentence, marked by `N_`."""
+    scope: ClassVar[str] = "screen"
+    """`screen` or `app`: whose `act` runs it."""
+    footer: ClassVar[bool] = False
+    """Whether the footer shows it."""
+    priority: ClassVar[bool] = False
+    """Whether it comes before the focused widget; a text field keeps what it can type."""
+    palette: ClassVar[bool] = True
+    """Whether the palette offers it."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if "id" in cls.__dict__:
+            if cls.id in REGISTRY:
+                raise TypeError(f"two actions are called {cls.id!r}")
+            REGISTRY[cls.id] = cls
+
+    @classmethod
+    def possible(cls, target: Target) -> bool | None:
+        """Return whether it can be done now; None shows it dimmed, False hides it."""
+        del target
+        return True
+
+    @classmethod
+    async def run(cls, target: Target) -> None:
+        """Do it."""
+        raise NotImplementedError
+
+
+def bindings(*actions: type[Action[Any]]) -> list[Binding]:
+    """Return the key bindings of these actions, for a `BINDINGS`."""
+    return [
+        Binding(
+            action.key,
+            f"{action.scope}.act({action.id!r})",
+            action.title,
+            show=action.footer,
+            tooltip=action.tooltip,
+            priority=action.priority,
+            id=action.id,
+        )
+        for action in actions
+    ]
+
+
+def bound(target: DOMNode) -> Iterable[type[Action[Any]]]:
+    """Yield the actions that `target` binds, in their order."""
+    seen: set[str] = set()
+    for _key, binding in target._bindings:  # noqa: SLF001 - the public view merges the screen's
+        if binding.id in REGISTRY and binding.id not in seen:
+            seen.add(binding.id)
+            yield REGISTRY[binding.id]
+
+
+class Acting(DOMNode):
+    """Mixed into the app and the screens: runs the actions that they bind."""
+
+    async def action_act(self, action_id: str) -> None:
+        """Do what the action called `action_id` does."""
+        await REGISTRY[action_id].run(self)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Ask the action itself whether it is possible now."""
+        if action == "act":
+            return REGISTRY[str(parameters[0])].possible(self)
+        return super().check_action(action, parameters)
