@@ -1,0 +1,126 @@
+"""From pydantic's errors to problems that name one field, one place and the mend.
+
+A command is one of several models; pydantic tells what is wrong with it as every one of them.
+Here the `action` decides which model was meant, and only that one is asked.
+"""
+
+from __future__ import annotations
+
+import difflib
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ValidationError
+
+from robot.json_places import Path, PlacedJson, line_column
+from robot.limits import HEAD_ANGLE, MAX_COMMANDS, SPEED, STEERING
+from robot.problems import Problem
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from pydantic_core import ErrorDetails
+
+MAX_PROBLEMS = 20
+
+_RANGES = {"speed": SPEED, "steering": STEERING, "pan": HEAD_ANGLE, "tilt": HEAD_ANGLE}
+_CODES = {
+    "missing": "missing",
+    "extra_forbidden": "unknown",
+    "greater_than_equal": "range",
+    "less_than_equal": "range",
+    "finite_number": "range",
+    "float_type": "number",
+    "int_type": "whole",
+    "int_from_float": "whole",
+    "string_type": "text",
+    "list_type": "list",
+    "model_type": "object",
+    "model_attributes_type": "object",
+    "too_long": "too_many",
+}
+"""Pydantic's error types to codes of `problems.TEMPLATES`."""
+
+
+class Explainer:
+    """Asks the models again, one by one, about a JSON that was refused."""
+
+    def __init__(
+        self,
+        text: str,
+        found: PlacedJson,
+        envelope: type[BaseModel],
+        commands: Mapping[str, type[BaseModel]],
+    ) -> None:
+        self._text = text
+        self._found = found
+        self._envelope = envelope
+        self._commands = commands
+        """Value of `action` to the model of that command."""
+
+    def problems(self) -> tuple[Problem, ...]:
+        """At most `MAX_PROBLEMS`, in the order of the text."""
+        everything = [*self._of_envelope(), *self._of_commands()]
+        everything.sort(key=lambda problem: (problem.line, problem.column))
+        return tuple(everything[:MAX_PROBLEMS])
+
+    def _of_envelope(self) -> Iterator[Problem]:
+        for error in _errors(self._envelope, self._found.value):
+            if len(error["loc"]) <= 1:
+                yield self._problem(error, error["loc"], self._envelope)
+
+    def _of_commands(self) -> Iterator[Problem]:
+        value = self._found.value
+        commands = value.get("commands") if isinstance(value, dict) else None
+        if not isinstance(commands, list) or len(commands) > MAX_COMMANDS:
+            return
+        for index, command in enumerate(commands):
+            path: Path = ("commands", index)
+            if not isinstance(command, dict):
+                yield Problem.of("object", path, self._place(path))
+            elif "action" not in command:
+                yield Problem.of("missing", (*path, "action"), self._place(path), name="action")
+            else:
+                yield from self._of_command(command, path)
+
+    def _of_command(self, command: dict[str, Any], path: Path) -> Iterator[Problem]:
+        action = command["action"]
+        model = self._commands.get(action) if isinstance(action, str) else None
+        if model is None:
+            place = self._place((*path, "action"))
+            yield Problem.of("action", (*path, "action"), place, choices=", ".join(self._commands))
+            return
+        for error in _errors(model, command):
+            yield self._problem(error, (*path, *error["loc"]), model)
+
+    def _problem(self, error: ErrorDetails, path: Path, model: type[BaseModel]) -> Problem:
+        code = _CODES.get(error["type"], "invalid")
+        name, value = str(path[-1]) if path else "", error["input"]
+        if code == "missing":
+            return Problem.of(code, path, self._place(path[:-1]), name=name)
+        if code == "unknown":
+            return self._unknown(path, name, model)
+        if code == "range" and name in _RANGES:
+            limits = _RANGES[name]
+            args = {"low": limits.low, "high": limits.high, "value": float(value)}
+            return Problem.of(code, path, self._place(path), unit=limits.unit, **args)
+        if code == "too_many":
+            return Problem.of(code, path, self._place(path), count=len(value), limit=MAX_COMMANDS)
+        return Problem.of(code, path, self._place(path))
+
+    def _unknown(self, path: Path, name: str, model: type[BaseModel]) -> Problem:
+        place = line_column(self._text, self._found.keys[path])
+        near = difflib.get_close_matches(name[:40], model.model_fields, n=1)
+        if near:
+            return Problem.of("unknown_near", path, place, name=name, near=near[0])
+        return Problem.of("unknown", path, place, name=name)
+
+    def _place(self, path: Path) -> tuple[int, int]:
+        return line_column(self._text, self._found.values.get(path, 0))
+
+
+def _errors(model: type[BaseModel], value: object) -> list[ErrorDetails]:
+    try:
+        model.model_validate(value)
+    except ValidationError as error:
+        return error.errors(include_url=False, include_context=False)
+    return []

@@ -1,0 +1,157 @@
+"""JSON with the place of every value in the text, so that an error can point at it.
+
+The standard parser tells where a syntax error is, but not where a value stood; it also lets nan,
+infinities and duplicate keys pass, and text nested deeply enough exhausts its stack. RFC 8259.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from json import JSONDecodeError, JSONDecoder
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+Path: TypeAlias = "tuple[str | int, ...]"
+"""Keys and indices from the root to a value."""
+
+MAX_DEPTH = 32
+
+_STRINGS = JSONDecoder()
+_BLANK = re.compile(r"[ \t\n\r]*")
+_NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\b", re.IGNORECASE)
+_HALF_CHARACTER = re.compile("[\ud800-\udfff]")
+_CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
+_LONGEST_INT = 18
+"""Digits of the longest number that is kept as an integer."""
+
+
+class JsonError(ValueError):
+    """The text is not the JSON of RFC 8259 that this module takes."""
+
+    def __init__(self, code: str, offset: int, path: Path = (), **details: str | int) -> None:
+        super().__init__(code)
+        self.code = code
+        self.offset = offset
+        """Position in the text, in characters from 0."""
+        self.path = path
+        self.details = details
+
+
+@dataclass(frozen=True)
+class PlacedJson:
+    """A JSON text as plain values, with the offset of each."""
+
+    value: Any
+    values: dict[Path, int] = field(default_factory=dict)
+    """Path to the offset where the value begins."""
+    keys: dict[Path, int] = field(default_factory=dict)
+    """Path to the offset where the key of the value begins, for members of objects."""
+
+
+def read(text: str) -> PlacedJson:
+    """Parse a whole JSON text; raises `JsonError`."""
+    reader = _Reader(text)
+    value, end = reader.value(reader.blank(0), ())
+    end = reader.blank(end)
+    if end != len(text):
+        raise JsonError("text_after", end)
+    return PlacedJson(value, reader.values, reader.keys)
+
+
+def line_column(text: str, offset: int) -> tuple[int, int]:
+    """Line and column, both from 1, of an offset in the text."""
+    before = text[:offset]
+    return before.count("\n") + 1, offset - (before.rfind("\n") + 1) + 1
+
+
+class _Reader:
+    """Recursive descent: each method takes an offset and returns what it read and where it ends."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.values: dict[Path, int] = {}
+        self.keys: dict[Path, int] = {}
+
+    def blank(self, at: int) -> int:
+        match = _BLANK.match(self.text, at)
+        return match.end() if match else at
+
+    def value(self, at: int, path: Path) -> tuple[Any, int]:
+        self.values[path] = at
+        if len(path) > MAX_DEPTH:
+            raise JsonError("too_deep", at, path[:1], limit=MAX_DEPTH)
+        first = self.text[at : at + 1]
+        if first == "{":
+            return self.object(at, path)
+        if first == "[":
+            return self.array(at, path)
+        if first == '"':
+            return self.string(at, path)
+        for word, constant in _CONSTANTS.items():
+            if self.text.startswith(word, at):
+                return constant, at + len(word)
+        return self.number(at, path)
+
+    def object(self, at: int, path: Path) -> tuple[dict[str, Any], int]:
+        members: dict[str, Any] = {}
+        at = self.blank(at + 1)
+        if self.text.startswith("}", at):
+            return members, at + 1
+        while True:
+            if not self.text.startswith('"', at):
+                raise JsonError("key_expected", at, path)
+            key, end = self.string(at, path)
+            if key in members:
+                raise JsonError("duplicate", at, (*path, key), name=key)
+            self.keys[(*path, key)] = at
+            end = self.blank(end)
+            if not self.text.startswith(":", end):
+                raise JsonError("colon_expected", end, (*path, key))
+            members[key], end = self.value(self.blank(end + 1), (*path, key))
+            at, done = self.separator(end, path, "}")
+            if done:
+                return members, at
+
+    def array(self, at: int, path: Path) -> tuple[list[Any], int]:
+        items: list[Any] = []
+        at = self.blank(at + 1)
+        if self.text.startswith("]", at):
+            return items, at + 1
+        while True:
+            item, end = self.value(at, (*path, len(items)))
+            items.append(item)
+            at, done = self.separator(end, path, "]")
+            if done:
+                return items, at
+
+    def separator(self, at: int, path: Path, closing: str) -> tuple[int, bool]:
+        """Step over a comma, or over the closing bracket (then True comes back)."""
+        at = self.blank(at)
+        if self.text.startswith(closing, at):
+            return at + 1, True
+        if not self.text.startswith(",", at):
+            raise JsonError("comma_expected", at, path, closing=closing)
+        return self.blank(at + 1), False
+
+    def string(self, at: int, path: Path) -> tuple[str, int]:
+        try:
+            text, end = _STRINGS.raw_decode(self.text, at)
+        except JSONDecodeError as error:
+            raise JsonError("string_bad", min(error.pos, len(self.text)), path) from None
+        if _HALF_CHARACTER.search(text):
+            raise JsonError("half_character", at, path)
+        return text, end
+
+    def number(self, at: int, path: Path) -> tuple[int | float, int]:
+        match = _NUMBER.match(self.text, at)
+        if match is None or _NOT_FINITE.match(self.text, at):
+            code = "not_finite" if _NOT_FINITE.match(self.text, at) else "value_expected"
+            raise JsonError(code, at, path)
+        digits = match.group()
+        if match.group(1) or match.group(2) or len(digits) > _LONGEST_INT:
+            return float(digits), match.end()
+        return int(digits), match.end()
