@@ -1,0 +1,72 @@
+"""JSON with places: the same values as the standard parser, and the place of each."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot.json_places import JsonError, line_column, read
+
+documents = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-(10**17), 10**17)
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(st.characters(exclude_categories=("Cs",))),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=5), inner),
+    max_leaves=12,
+)
+
+
+@given(documents, st.sampled_from([None, 1]), st.booleans())
+def test_reads_what_the_standard_parser_reads(
+    document: object, indent: int | None, ascii_only: bool
+) -> None:
+    text = json.dumps(document, indent=indent, ensure_ascii=ascii_only)
+    assert read(text).value == json.loads(text)
+
+
+@given(st.text(max_size=40) | st.text('[]{}",:1e.-+ntrufalsx\\ \n', max_size=40))
+def test_whatever_the_standard_parser_refuses_is_refused(text: str) -> None:
+    try:
+        read(text)
+    except JsonError as error:
+        assert 0 <= error.offset <= len(text)  # noqa: PT017 - both outcomes are right
+    else:
+        json.loads(text)
+
+
+def test_the_place_of_a_value_is_where_it_begins() -> None:
+    text = '{\n  "a": [1, {"б": "x"}]\n}'
+    found = read(text)
+    assert text[found.values[("a", 1, "б")] :].startswith('"x"')
+    assert text[found.keys[("a", 1, "б")] :].startswith('"б"')
+    assert line_column(text, found.values[("a", 1, "б")]) == (2, 18)
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "offset"),
+    [
+        ("", "value_expected", 0),
+        ("{", "key_expected", 1),
+        ('{"a" 1}', "colon_expected", 5),
+        ("[1 2]", "comma_expected", 3),
+        ("[1,]", "value_expected", 3),
+        ('{"a":1,}', "key_expected", 7),
+        ('"abc', "string_bad", 0),
+        ('"a\nb"', "string_bad", 2),
+        ("NaN", "not_finite", 0),
+        ("[-Infinity]", "not_finite", 1),
+        ("01", "text_after", 1),
+        ('{"a":1,"a":2}', "duplicate", 7),
+        ('"\\ud800"', "half_character", 0),
+        ("[" * 60_000, "too_deep", 33),
+    ],
+)
+def test_each_fault_has_its_code_and_place(text: str, code: str, offset: int) -> None:
+    with pytest.raises(JsonError) as caught:
+        read(text)
+    assert (caught.value.code, caught.value.offset) == (code, offset)
