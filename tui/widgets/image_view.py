@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
-from rich.text import Text
 from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
@@ -20,6 +20,7 @@ from tui.widgets.half_blocks import (
     row_segments,
 )
 from tui.widgets.plain import plain
+from tui.widgets.words import cut, in_row, word_strips
 
 if TYPE_CHECKING:
     from textual.events import Resize
@@ -96,14 +97,14 @@ class ImageView(Widget):
         """One line: of the picture, the caption, or words."""
         width, height = self.size
         if self._shown is None:
-            return self._words_line(y, width, height)
+            return self._words_strip(y, width, height)
         if y == height - 1 and self._caption_rows(height):
-            return self._text_strip(self._caption, width, self._muted())
+            return self._caption_strip(width)
         top, left = self._margins(self._shown, width, height)
         if not 0 <= y - top < self._shown.shape[0] // 2:
             return Strip.blank(width, self.rich_style)
         strip = Strip(row_segments(self._shown, y - top), self._shown.shape[1])
-        return _in_the_middle(strip, left, width, self.rich_style)
+        return in_row(strip, left, width, self.rich_style)
 
     def _on_resize(self, _event: Resize) -> None:
         self._shown = None
@@ -145,33 +146,17 @@ class ImageView(Widget):
         rows = height - self._caption_rows(height)
         return (rows - picture.shape[0] // 2) // 2, (width - picture.shape[1]) // 2
 
-    def _muted(self) -> Style:
-        return self.rich_style + Style(dim=True)
+    def _caption_strip(self, width: int) -> Strip:
+        style = self.rich_style + Style(dim=True)
+        strip = cut([Segment(plain(self._caption), style)], width, style)
+        text = strip.text.strip()
+        left = (width - cell_len(text)) // 2
+        return in_row(Strip([Segment(text, style)]), left, width, style)
 
-    def _words_line(self, y: int, width: int, height: int) -> Strip:
-        lines = self._word_lines(width)
-        line = y - max(0, (height - len(lines)) // 2)
-        if not 0 <= line < len(lines):
-            return Strip.blank(width, self.rich_style)
-        text, is_headline = lines[line]
-        style = self.rich_style + Style(bold=True) if is_headline else self._muted()
-        return self._text_strip(text, width, style)
-
-    def _word_lines(self, width: int) -> list[tuple[str, bool]]:
-        lines: list[tuple[str, bool]] = []
-        for words, is_headline in ((self._headline, True), (self._detail, False)):
-            if words:
-                wrapped = Text(plain(words)).wrap(self.app.console, max(1, width))
-                lines.extend((line.plain, is_headline) for line in wrapped)
-        return lines
-
-    def _text_strip(self, text: str, width: int, style: Style) -> Strip:
-        shown = Text(plain(text))
-        shown.truncate(width, overflow="ellipsis")
-        strip = Strip([Segment(shown.plain, style)])
-        return _in_the_middle(strip, (width - strip.cell_length) // 2, width, style)
-
-
-def _in_the_middle(strip: Strip, left: int, width: int, style: Style) -> Strip:
-    margin = [Segment(" " * left, style)] if left else []
-    return Strip([*margin, *strip]).adjust_cell_length(width, style)
+    def _words_strip(self, y: int, width: int, height: int) -> Strip:
+        words = (self._headline, self._detail)
+        strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)
+        line = y - max(0, (height - len(strips)) // 2)
+        if 0 <= line < len(strips):
+            return strips[line]
+        return Strip.blank(width, self.rich_style)

@@ -10,6 +10,8 @@ _PICTURES.update(dict.fromkeys(range(0x80, 0xA0), _REPLACEMENT))
 _PICTURES.update(dict.fromkeys((0x200E, 0x200F, 0x2028, 0x2029, 0xFEFF), _REPLACEMENT))
 _PICTURES.update(dict.fromkeys(range(0x202A, 0x202F), _REPLACEMENT))
 _PICTURES.update(dict.fromkeys(range(0x2066, 0x206A), _REPLACEMENT))
+# Lone surrogates cannot be written to a terminal at all.
+_PICTURES.update(dict.fromkeys(range(0xD800, 0xE000), _REPLACEMENT))
 
 
 def plain(text: str, limit: int | None = None) -> str:
@@ -20,11 +22,6 @@ def plain(text: str, limit: int | None = None) -> str:
     """
     if limit is not None:
         text = text[:limit]
-    if text.isascii() and text.isprintable():
+    if text.isprintable():
         return text
-    text = text.translate(_PICTURES)
-    return text.encode("utf-8", "replace").decode("utf-8") if _has_surrogate(text) else text
-
-
-def _has_surrogate(text: str) -> bool:
-    return any("\ud800" <= char <= "\udfff" for char in text)
+    return text.translate(_PICTURES)

@@ -1,0 +1,257 @@
+"""A message as a folding tree: what is cut is told, and nothing moves but what changed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import yaml
+from textual.app import App, ComposeResult
+from textual.geometry import Region
+
+from tui.widgets.echo_lines import MAX_LINES, EchoLine, echo_lines
+from tui.widgets.echo_tree import EchoTree
+from tui.widgets.echo_yaml import yaml_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graph.data import Value
+
+STAMP: dict[str, Value] = {"sec": 17, "nanosec": 250_000_000}
+JOINTS: dict[str, Value] = {
+    "header": {"stamp": STAMP, "frame_id": "base_link"},
+    "name": ["rear_left_wheel_joint", "rear_right_wheel_joint"],
+    "velocity": np.array([7.5, -11.25]),
+}
+SCAN: dict[str, Value] = {"angle_min": -1.5, "ranges": np.arange(360, dtype=np.float32)}
+
+
+def as_is(_path: tuple[str | int, ...], default: bool) -> bool:
+    return default
+
+
+def all_open(_path: tuple[str | int, ...], _default: bool) -> bool:
+    return True
+
+
+def texts(lines: list[EchoLine]) -> list[str]:
+    return [f"{'  ' * line.depth}{line.label} {line.text}".rstrip() for line in lines]
+
+
+class EchoApp(App[None]):
+    """A bare app with nothing but the tree."""
+
+    def compose(self) -> ComposeResult:
+        """The tree fills the screen."""
+        yield EchoTree()
+
+    @property
+    def tree(self) -> EchoTree:
+        """The tree."""
+        return self.query_one(EchoTree)
+
+    def screen_text(self) -> str:
+        """What stands in the tree now."""
+        tree = self.tree
+        return "\n".join(tree.render_line(y).text.rstrip() for y in range(tree.size.height))
+
+
+def test_nested_messages_are_open_and_arrays_stand_on_one_line() -> None:
+    assert texts(echo_lines(JOINTS, as_is)) == [
+        "header:",
+        "  stamp:",
+        "    sec:             17",
+        "    nanosec:  250000000",
+        '  frame_id: "base_link"',
+        'name:     (2 items)  "rear_left_wheel_joint" "rear_right_wheel_joint"',
+        "velocity: (2 items)  7.5 -11.25",
+    ]
+
+
+def test_decimal_points_stand_under_each_other() -> None:
+    message: dict[str, Value] = {"x": 0.15, "y": -12.5, "level": 3, "z": float("nan")}
+    assert [line.text for line in echo_lines(message, as_is)] == [
+        "   0.15",
+        " -12.5",
+        "   3",
+        " nan",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (0.20000000298023224, "0.2"),
+        (1e-9, "1.000000e-09"),
+        (-2.5e12, "-2.500000e+12"),
+        (float("inf"), "inf"),
+        (True, "true"),
+        (np.float32(0.1), "0.1"),
+        (0.0, "0.0"),
+    ],
+)
+def test_numbers_are_short_and_true(value: Value, shown: str) -> None:
+    assert echo_lines({"data": value}, as_is)[0].text.strip() == shown
+
+
+def test_a_long_array_tells_its_length_and_opens_item_by_item() -> None:
+    closed = echo_lines(SCAN, as_is)[1]
+    assert closed.text.startswith("(360 items)  0.0 1.0 2.0")
+    assert closed.text.endswith(" …")
+    opened = echo_lines(SCAN, all_open)
+    assert texts(opened)[2:4] == ["  [0]:      0.0", "  [1]:      1.0"]
+    assert texts(opened)[-1].strip() == "… 160 more items"
+
+
+def test_a_long_text_tells_its_length() -> None:
+    lines = echo_lines({"data": "x" * 1_000_000}, as_is)
+    assert len(lines) == 1
+    assert lines[0].text.startswith('(1000000 characters) "xxx')
+    assert len(lines[0].text) < 500
+    assert "more characters" in echo_lines({"data": "x" * 1_000_000}, all_open)[-1].text
+
+
+def test_bytes_are_shown_in_hex_and_as_text() -> None:
+    lines = echo_lines({"data": b"RIFF\x00\x01" * 1000}, all_open)
+    assert lines[0].text.startswith("(6000 bytes)  52 49 46 46 00 01 52")
+    assert lines[0].text.endswith("RIFF··RIFF··RIFF··RIFF··")
+    assert lines[1].text.startswith("000000  52 49 46 46")
+    assert "… 2800 more bytes" in lines[-1].text
+
+
+def test_hostile_text_is_harmless() -> None:
+    lines = echo_lines({"\x1b[2J": "[red]\x1b]52;c;QQ==\x07\x00\u202e\ud800\n"}, as_is)
+    assert lines[0].label == "␛[2J:"
+    assert lines[0].text == '"[red]␛]52;c;QQ==␇␀��␊"'
+
+
+def test_a_message_of_any_size_makes_a_bounded_tree() -> None:
+    points: list[Value] = [{"x": 1.0, "y": 2.0, "z": [{"deep": 1}] * 300} for _ in range(500)]
+    assert len(echo_lines({"points": points}, all_open)) == MAX_LINES + 1
+
+
+def test_a_message_without_fields_says_so() -> None:
+    assert echo_lines({}, as_is)[0].text == "(a message without fields)"
+
+
+def test_yaml_is_what_ros2_topic_pub_takes() -> None:
+    text, cut = yaml_text({**JOINTS, "data": b"\x01\x02", "word": "вперёд"})
+    assert not cut
+    assert yaml.safe_load(text) == {
+        "header": {"stamp": STAMP, "frame_id": "base_link"},
+        "name": ["rear_left_wheel_joint", "rear_right_wheel_joint"],
+        "velocity": [7.5, -11.25],
+        "data": [1, 2],
+        "word": "вперёд",
+    }
+    assert "вперёд" in text
+
+
+def test_yaml_of_a_picture_is_cut_to_fit_a_clipboard() -> None:
+    text, cut = yaml_text({"data": bytes(921_600)})
+    assert cut
+    assert len(text) < 20_000
+
+
+async def test_a_fold_outlives_the_next_message_and_a_visit_to_another_topic() -> None:
+    app = EchoApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        app.tree.show("/joint_states", JOINTS)
+        app.tree.focus()
+        await pilot.press("left")
+        assert "stamp" not in app.screen_text()
+        app.tree.show("/joint_states", dict(JOINTS))
+        assert "(2 fields)" in app.screen_text()
+        app.tree.show("/scan", SCAN)
+        assert "angle_min" in app.screen_text()
+        app.tree.show("/joint_states", JOINTS)
+        assert "stamp" not in app.screen_text()
+
+
+async def test_keys_walk_the_tree_and_open_what_is_folded() -> None:
+    app = EchoApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        app.tree.show("/scan", SCAN)
+        app.tree.focus()
+        await pilot.press("down", "right")
+        assert "[0]:" in app.screen_text()
+        await pilot.press("down", "down", "left")
+        await pilot.press("left")
+        assert "[0]:" not in app.screen_text()
+        await pilot.press("enter")
+        assert "[0]:" in app.screen_text()
+        await pilot.press("end")
+        assert "… 160 more items" in app.screen_text()
+
+
+async def test_a_click_folds_and_unfolds() -> None:
+    app = EchoApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        app.tree.show("/joint_states", JOINTS)
+        await pilot.pause()
+        await pilot.click(EchoTree, offset=(2, 1))
+        assert "nanosec" not in app.screen_text()
+        await pilot.click(EchoTree, offset=(2, 1))
+        assert "nanosec" in app.screen_text()
+
+
+async def test_only_the_value_that_changed_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = EchoApp()
+    async with app.run_test(size=(40, 12)) as pilot:
+        app.tree.show("/joint_states", JOINTS)
+        await pilot.pause()
+        asked: list[tuple[Region, ...]] = []
+
+        def refresh(*regions: Region, **_options: bool) -> EchoTree:
+            asked.append(regions)
+            return app.tree
+
+        monkeypatch.setattr(app.tree, "refresh", refresh)
+        app.tree.show("/joint_states", dict(JOINTS))
+        assert asked == []
+        app.tree.show("/joint_states", {**JOINTS, "velocity": np.array([7.5, -11.3])})
+        assert asked == [(Region(31, 6, 9, 1),)]
+
+
+async def test_a_pause_keeps_the_message_and_its_end_shows_the_newest() -> None:
+    app = EchoApp()
+    async with app.run_test(size=(40, 6)):
+        app.tree.show("/sonar", {"data": 1.0})
+        app.tree.pause(True)
+        for distance in (2.0, 3.0):
+            app.tree.show("/sonar", {"data": distance})
+        assert "1.0" in app.screen_text()
+        app.tree.pause(False)
+        assert "3.0" in app.screen_text()
+
+
+async def test_another_topic_ends_the_pause() -> None:
+    app = EchoApp()
+    async with app.run_test(size=(40, 6)):
+        app.tree.show("/sonar", {"data": 1.0})
+        app.tree.pause(True)
+        app.tree.show("/other", {"data": 2.0})
+        assert not app.tree.paused
+        assert "2.0" in app.screen_text()
+
+
+async def test_words_stand_where_there_is_no_message() -> None:
+    app = EchoApp()
+    async with app.run_test(size=(30, 6)) as pilot:
+        app.tree.show_words("/drive", "nobody publishes this topic", "start [b]ai_driver[/b]")
+        await pilot.pause()
+        words = " ".join(app.screen_text().split())
+        assert words == "nobody publishes this topic start [b]ai_driver[/b]"
+
+
+@pytest.mark.parametrize("size", [(1, 1), (3, 2), (12, 4), (200, 60)])
+async def test_every_line_fills_its_width_at_any_size(size: tuple[int, int]) -> None:
+    wide: Mapping[str, Value] = {**JOINTS, "text": "日本語のテキスト" * 9, "robot": "🤖" * 50}
+    app = EchoApp()
+    async with app.run_test(size=size) as pilot:
+        app.tree.show("/wide", wide)
+        await pilot.pause()
+        tree = app.tree
+        assert {tree.render_line(y).cell_length for y in range(size[1])} == {tree.size.width}

@@ -1,0 +1,44 @@
+"""Words in place of what cannot be shown: a headline and a detail, wrapped to the room there is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.segment import Segment
+from rich.style import Style
+from rich.text import Text
+from textual.strip import Strip
+
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def word_strips(
+    words: tuple[str, str], width: int, base: Style, console: Console, *, centred: bool = False
+) -> list[Strip]:
+    """Headline and detail as lines of exactly `width` cells, the headline bold, the detail dim."""
+    strips: list[Strip] = []
+    for text, style in zip(words, (base + Style(bold=True), base + Style(dim=True)), strict=True):
+        for line in Text(plain(text)).wrap(console, max(1, width)) if text else ():
+            strip = Strip([Segment(line.plain, style)])
+            left = max(0, width - strip.cell_length) // 2 if centred else 0
+            strips.append(in_row(strip, left, width, base))
+    return strips
+
+
+def in_row(strip: Strip, left: int, width: int, base: Style) -> Strip:
+    """The strip so many cells from the left of a row of `width` cells."""
+    margin = [Segment(" " * left, base)] if left else []
+    return Strip([*margin, *strip]).adjust_cell_length(width, base)
+
+
+def cut(segments: list[Segment], width: int, base: Style) -> Strip:
+    """A strip of exactly `width` cells; what does not fit is told by an ellipsis."""
+    strip = Strip(segments)
+    if strip.cell_length <= width:
+        return strip.adjust_cell_length(width, base)
+    shown = strip.crop(0, max(0, width - 1))
+    last = next((segment.style for segment in reversed(list(shown)) if segment.text), base)
+    return Strip([*shown, Segment("…", last)]).adjust_cell_length(width, base)
