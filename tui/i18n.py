@@ -70,6 +70,15 @@ def N_(message: str) -> str:  # noqa: N802 - gettext's own name
     return message
 
 
+def said(words: str) -> str:
+    """Return a sentence of the launcher (`launcher.words.say`) in the language spoken now."""
+    template = getattr(words, "template", None)
+    if template is None:
+        return words
+    values: dict[str, object] = getattr(words, "values", {})
+    return _(template).format(**values) if values else _(template)
+
+
 def pick(texts: Mapping[str, str]) -> str:
     """Return the text in the language spoken now out of {code: text}, else English, else any."""
     return texts.get(_language) or texts.get("en") or next(iter(texts.values()), "")

@@ -13,7 +13,7 @@ from textual.message import Message
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
-    from launcher.status import LogLine, NodeStatus
+    from launcher.status import LogLine, NodeStatus, Stray
     from tui.emergency import Emergency
 
 
@@ -25,6 +25,15 @@ class StatusChanged(Message, bubble=False):
         super().__init__()
         self.nodes = nodes
         self.changed = changed
+
+
+class StraysChanged(Message, bubble=False):
+    """What an earlier run left behind is not what it was."""
+
+    def __init__(self, strays: tuple[Stray, ...]) -> None:
+        """Carry all of them."""
+        super().__init__()
+        self.strays = strays
 
 
 class LogArrived(Message, bubble=False):
@@ -59,7 +68,7 @@ class EmergencyChanged(Message, bubble=False):
 
 
 class SessionChanged(Message, bubble=False):
-    """A session was opened, or it has ended; the app's `session` tells which."""
+    """A session was opened, or it has ended; the feed's `session` tells which."""
 
     def __init__(self, ended: str = "") -> None:
         """Carry the reason if it has `ended`."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, ClassVar, Generic, TypeVar
 
-from textual.binding import Binding
+from textual.binding import Binding, BindingType
 from textual.dom import DOMNode
 
 Target = TypeVar("Target", bound=DOMNode)
@@ -56,7 +56,7 @@ class Action(Generic[Target]):
         raise NotImplementedError
 
 
-def bindings(*actions: type[Action[Any]]) -> list[Binding]:
+def bindings(*actions: type[Action[Any]]) -> list[BindingType]:
     """Return the key bindings of these actions, for a `BINDINGS`."""
     return [
         Binding(

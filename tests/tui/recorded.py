@@ -1,0 +1,419 @@
+"""A session and a graph that were written down: lesson 9 at work, with nothing running.
+
+`RecordedSession` and `RecordedGraph` fit the seams of the screen. Tests make them say more
+(`session.say`, `graph.show`) and look at what was asked of them (`session.asked`,
+`graph.published`).
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from graph.data import CallResult, GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow, Trouble
+from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
+from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray
+from tests.tui.recorded_image import colour_bars
+from tui.seams import GraphLink, Lesson, Order, SessionLink
+
+NOW_S = 1_767_225_600.0
+"""Unix time of the recording: 2026-01-01 00:00:00 UTC."""
+
+SESSION = SessionInfo(
+    run_id="20260101-000000-1",
+    profile="profiles/09-brain.yaml",
+    name="09-brain",
+    title={
+        "en": "One screen instead of five terminals",
+        "ru": "Один экран вместо пяти терминалов",
+    },
+    lesson="9",
+    domain=42,
+    panels=("sonar", "wheels", "camera", "head", "voice", "composer"),
+    supervisor_pid=4100,
+    log_dir="/var/log/deck/20260101-000000-1",
+)
+
+_COMMANDS = {
+    "sonar_front": "nodes.mock_sonar",
+    "camera": "nodes.mock_camera",
+    "audio": "nodes.mock_audio",
+    "head_controller": "nodes.head_controller",
+    "ai_driver": "nodes.ai_driver",
+    "safety_stop": "nodes.safety_stop",
+    "electronic_differential": "nodes.electronic_differential",
+    "ai_brain": "nodes.ai_brain",
+}
+
+NODES: dict[str, NodeStatus] = {
+    name: NodeStatus(
+        name=name,
+        command=command,
+        state=NodeState.READY,
+        pid=4200 + index,
+        uptime_s=83.0 + index / 10,
+        restarts=0,
+        cpu_percent=0.4 + 0.3 * index,
+        memory_bytes=(17 + index) * 1_000_000,
+        needs=tuple(_COMMANDS)[:-1] if name == "ai_brain" else (),
+    )
+    for index, (name, command) in enumerate(_COMMANDS.items())
+}
+
+
+def line(
+    node: str,
+    seq: int,
+    text: str,
+    severity: Severity = Severity.INFO,
+    at_s: float = 0.0,
+    source: str = "stderr",
+) -> LogLine:
+    """One line of `node`, `at_s` seconds into the recording."""
+    return LogLine(node, seq, NOW_S + at_s, severity, text, logger=node, source=source)
+
+
+LINES: tuple[LogLine, ...] = (
+    line("sonar_front", 1, "Front sonar publishes /sensor/sonar_front once a second", at_s=0.2),
+    line("camera", 1, "Camera publishes 640x480 at 10 Hz", at_s=0.4),
+    line("ai_brain", 1, "Brain is awake and waits for a voice", at_s=0.9),
+    line("sonar_front", 2, "Distance: 1.84 m", at_s=1.2),
+    line("safety_stop", 1, "Way is free (1.84 m)", at_s=1.21),
+    line("audio", 1, "Человек сказал: «Осмотрись и расскажи, что видишь»", at_s=10.0),
+    line("ai_brain", 2, "Услышал голос, думаю над ответом", at_s=10.01),
+    line("head_controller", 1, "Поворачиваю голову: pan 45°, tilt 0°", at_s=10.03),
+    line("ai_driver", 1, "Команда «вперед»: 0.3 м/с, руль 0.0 рад", at_s=10.04),
+    line("electronic_differential", 1, "Left 0.30 m/s, right 0.30 m/s", at_s=10.05),
+    line("head_controller", 2, "Голова на месте", at_s=11.04),
+    line("safety_stop", 2, "Obstacle at 0.38 m: wheels are held", Severity.WARN, at_s=12.2),
+    line("camera", 2, "Frame 120 came 84 ms late", Severity.WARN, at_s=12.4),
+    line("ai_driver", 2, "Unknown command: «прыжок»", Severity.ERROR, at_s=14.0),
+    line("camera", 3, "exited with code 1, starts again in 1 s", at_s=15.0, source="deck"),
+    line("safety_stop", 3, "Way is free (2.31 m)", at_s=16.2),
+)
+
+_FLOAT, _STRING = "std_msgs/msg/Float32", "std_msgs/msg/String"
+_DRIVE, _JOINTS = "ackermann_msgs/msg/AckermannDriveStamped", "sensor_msgs/msg/JointState"
+_BYTES, _IMAGE = "std_msgs/msg/ByteMultiArray", "sensor_msgs/msg/Image"
+
+
+def topic(name: str, type_name: str, hz: float | None, size: int = 12, **more: Any) -> TopicRow:
+    """One healthy topic with one publisher and one subscription."""
+    row = TopicRow(
+        name,
+        (type_name,),
+        publishers=1,
+        subscribers=1,
+        hz=hz,
+        bytes_per_s=None if hz is None else hz * size,
+        age_s=0.1 if hz is not None else None,
+        count=0 if hz is None else int(hz * 80),
+        measured=True,
+    )
+    return replace(row, **more)
+
+
+TOPICS: tuple[TopicRow, ...] = (
+    topic("/ai_command", _STRING, 0.1, age_s=6.0),
+    topic("/audio/mic_raw", _BYTES, 0.1, 80, age_s=6.1),
+    topic("/audio/speaker_raw", _BYTES, 0.1, 64, age_s=6.0),
+    topic("/camera/color/image_raw", _IMAGE, 10.0, 921_664, subscribers=1),
+    topic("/drive", _DRIVE, 0.1, 60, age_s=6.0),
+    topic("/drive_safe", _DRIVE, 10.0, 60),
+    topic(
+        "/emergency_stop",
+        "std_msgs/msg/Bool",
+        None,
+        publishers=0,
+        subscribers=2,
+        trouble=Trouble.NO_PUBLISHER,
+    ),
+    topic("/head_state", _JOINTS, 10.0, 120),
+    topic("/parameter_events", "rcl_interfaces/msg/ParameterEvent", None, publishers=9),
+    topic("/rosout", "rcl_interfaces/msg/Log", 2.4, 180, publishers=9),
+    topic("/safety_state", "diagnostic_msgs/msg/DiagnosticArray", 1.0, 120),
+    topic("/sensor/sonar_front", _FLOAT, 1.0, 8, subscribers=2),
+    topic("/wheel_commands", _JOINTS, 10.0, 160),
+)
+
+
+def sample(name: str, type_name: str, value: Mapping[str, Any], size: int = 12) -> Sample:
+    """One message that has just come."""
+    return Sample(name, type_name, NOW_S, 0.0, size, value)
+
+
+def joints(name: str, **values: tuple[float, float]) -> Sample:
+    """A JointState: joint to (position, velocity)."""
+    return sample(
+        name,
+        _JOINTS,
+        {
+            "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": ""},
+            "name": list(values),
+            "position": [position for position, _velocity in values.values()],
+            "velocity": [velocity for _position, velocity in values.values()],
+            "effort": [],
+        },
+        160,
+    )
+
+
+def lesson_samples() -> dict[str, tuple[Sample, ...]]:
+    """The newest message of every topic of lesson 9: turning left at 0.3 m/s, head at 45°."""
+    radius = 0.033
+    drive = {
+        "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": "base_link"},
+        "drive": {
+            "steering_angle": 0.5,
+            "steering_angle_velocity": 0.0,
+            "speed": 0.3,
+            "acceleration": 0.0,
+            "jerk": 0.0,
+        },
+    }
+    image = {
+        "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": "camera_link"},
+        "height": 480,
+        "width": 640,
+        "encoding": "bgr8",
+        "is_bigendian": 0,
+        "step": 1920,
+        "data": colour_bars(),
+    }
+    voice = "Осмотрись и расскажи, что видишь".encode()
+    answer = "Еду вперёд и осматриваюсь".encode()
+    newest = (
+        sample("/sensor/sonar_front", _FLOAT, {"data": 1.84}, 8),
+        sample("/ai_command", _STRING, {"data": "налево"}),
+        sample("/drive", _DRIVE, drive, 60),
+        sample("/drive_safe", _DRIVE, drive, 60),
+        joints(
+            "/wheel_commands",
+            rear_left_wheel_joint=(0.0, 0.2508 / radius),
+            rear_right_wheel_joint=(0.0, 0.3492 / radius),
+            steering_joint=(0.5, 0.0),
+        ),
+        joints("/head_state", pan_joint=(0.7854, 0.0), tilt_joint=(0.1745, 0.0)),
+        sample("/audio/mic_raw", _BYTES, {"layout": {"dim": [], "data_offset": 0}, "data": voice}),
+        sample(
+            "/audio/speaker_raw", _BYTES, {"layout": {"dim": [], "data_offset": 0}, "data": answer}
+        ),
+        sample("/camera/color/image_raw", _IMAGE, image, 921_664),
+        sample(
+            "/safety_state",
+            "diagnostic_msgs/msg/DiagnosticArray",
+            {
+                "header": {"stamp": {"sec": int(NOW_S), "nanosec": 0}, "frame_id": ""},
+                "status": [{"level": b"\x00", "name": "safety_stop", "message": "", "values": []}],
+            },
+        ),
+    )
+    return {one.topic: (one,) for one in newest}
+
+
+def lesson_update(**more: Any) -> GraphUpdate:
+    """The graph of lesson 9 with a sample of every topic."""
+    update = GraphUpdate(
+        time_s=NOW_S,
+        topics=TOPICS,
+        samples=lesson_samples(),
+        nodes=tuple(NodeRow(f"/{name}") for name in sorted(NODES)),
+        services=(
+            ServiceRow(
+                "/set_head_position", ("example_interfaces/srv/AddTwoInts",), ("/head_controller",)
+            ),
+        ),
+    )
+    return replace(update, **more)
+
+
+class RecordedSession:
+    """A session that says what it is told to, and notes what is asked of it."""
+
+    def __init__(
+        self,
+        session: SessionInfo = SESSION,
+        nodes: Mapping[str, NodeStatus] = NODES,
+        lines: Iterable[LogLine] = LINES,
+    ) -> None:
+        """Begin with `lines` in the queue."""
+        self.session = session
+        self.nodes: dict[str, NodeStatus] = dict(nodes)
+        self.strays: tuple[Stray, ...] = ()
+        self.asked: list[tuple[str, ...]] = []
+        """What was asked: ("stop", "camera"), ("shutdown", "now"), ("aclose",)."""
+        self._lines = list(lines)
+        self._queue: asyncio.Queue[Event] = asyncio.Queue()
+        if self._lines:
+            self._queue.put_nowait(LogEvent(tuple(self._lines)))
+
+    def say(self, event: Event) -> None:
+        """Let the session say this."""
+        if isinstance(event, StatusEvent):
+            self.nodes.update({node.name: node for node in event.nodes})
+        if isinstance(event, StraysEvent):
+            self.strays = event.strays
+        if isinstance(event, LogEvent):
+            self._lines += event.lines
+        self._queue.put_nowait(event)
+
+    def set_state(self, name: str, state: NodeState, **more: Any) -> None:
+        """Change one node."""
+        self.say(StatusEvent((replace(self.nodes[name], state=state, **more),)))
+
+    async def events(self) -> AsyncIterator[Event]:
+        """Yield what was said until it is closed."""
+        while True:
+            event = await self._queue.get()
+            yield event
+            if isinstance(event, ClosedEvent):
+                return
+
+    async def start(self, *names: str) -> None:
+        self.asked.append(("start", *names))
+
+    async def stop(self, *names: str) -> None:
+        self.asked.append(("stop", *names))
+
+    async def restart(self, *names: str) -> None:
+        self.asked.append(("restart", *names))
+
+    async def history(self, node: str | None, limit: int) -> list[LogLine]:
+        return [one for one in self._lines if node in {None, one.node}][-limit:]
+
+    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+        self.asked.append(("stop_strays", *(stray.node for stray in strays)))
+
+    async def shutdown(self, now: bool = False) -> None:
+        self.asked.append(("shutdown", "now") if now else ("shutdown",))
+
+    async def aclose(self) -> None:
+        self.asked.append(("aclose",))
+
+
+@dataclass
+class RecordedGraph:
+    """A graph that shows what it is told to, and notes what is asked of it."""
+
+    update: GraphUpdate | None = field(default_factory=lesson_update)
+    """Shown at the start; None: nothing yet."""
+    period_s: float = 0.25
+    watched: set[str] = field(default_factory=set)
+    followed: set[str] = field(default_factory=set)
+    measured: bool = False
+    stopped: bool = False
+    published: list[tuple[str, str, Mapping[str, Any], bool]] = field(default_factory=list)
+    """(topic, type, value, latched)."""
+    called: list[tuple[str, str, Mapping[str, Any]]] = field(default_factory=list)
+    publish_error: Exception | None = None
+    """Set: every publishing fails by this."""
+    _on_update: Callable[[GraphUpdate], None] | None = None
+
+    def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
+        self._on_update = on_update
+        if self.update is not None:
+            on_update(self.update)
+
+    def show(self, update: GraphUpdate) -> None:
+        """Let the graph be this from now on."""
+        self.update = update
+        if self._on_update is not None:
+            self._on_update(update)
+
+    def stop(self) -> None:
+        self.stopped = True
+
+    def watch(self, topics: Iterable[str]) -> None:
+        self.watched = set(topics)
+
+    def follow(self, topics: Iterable[str]) -> None:
+        self.followed = set(topics)
+
+    def measure(self, all_topics: bool) -> None:
+        self.measured = all_topics
+
+    def publish(
+        self, topic: str, type_name: str, value: Mapping[str, Any], *, latched: bool = False
+    ) -> Future[None]:
+        self.published.append((topic, type_name, value, latched))
+        future: Future[None] = Future()
+        if self.publish_error is None:
+            future.set_result(None)
+        else:
+            future.set_exception(self.publish_error)
+        return future
+
+    def call(
+        self, service: str, type_name: str, request: Mapping[str, Any], timeout_s: float = 5.0
+    ) -> Future[CallResult]:
+        del timeout_s
+        self.called.append((service, type_name, request))
+        future: Future[CallResult] = Future()
+        future.set_result(CallResult(service, True, {"sum": 1}, "", 0.012))
+        return future
+
+
+LESSONS = [
+    Lesson(
+        "01-hello",
+        Path("profiles/01-hello.yaml"),
+        {"en": "The first node", "ru": "Первый узел"},
+        "1",
+        ("hello",),
+    ),
+    Lesson(
+        "02-sonar-safety",
+        Path("profiles/02-sonar-safety.yaml"),
+        {"en": "Topics: sonar and safety stop", "ru": "Топики: сонар и узел безопасности"},
+        "2",
+        ("sonar_front", "safety_stop"),
+        ("sonar",),
+    ),
+    Lesson(
+        "09-brain",
+        Path("profiles/09-brain.yaml"),
+        SESSION.title,
+        "9",
+        tuple(NODES),
+        SESSION.panels,
+    ),
+    Lesson(
+        "my-robot",
+        Path("profiles/my-robot.yaml"),
+        {},
+        error="profiles/my-robot.yaml:7:5: nodes.sonar.rum: unknown key (did you mean `run`?)",
+    ),
+]
+
+
+@dataclass
+class RecordedPad:
+    """Opens the recorded session, whatever is ordered."""
+
+    link: SessionLink = field(default_factory=RecordedSession)
+    graph: GraphLink = field(default_factory=RecordedGraph)
+    sessions: list[SessionInfo] = field(default_factory=list)
+    """What runs in the background already."""
+    refusal: Exception | None = None
+    """Set: opening fails by this."""
+    orders: list[Order] = field(default_factory=list)
+
+    async def lessons(self) -> list[Lesson]:
+        return LESSONS
+
+    async def running(self) -> list[SessionInfo]:
+        return self.sessions
+
+    async def open(self, order: Order) -> SessionLink:
+        self.orders.append(order)
+        if self.refusal is not None:
+            raise self.refusal
+        return self.link
+
+    def observe(self, session: SessionInfo) -> GraphLink:
+        del session
+        return self.graph

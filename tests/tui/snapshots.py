@@ -1,0 +1,72 @@
+"""Snapshots of a screen at three terminal sizes and in both languages.
+
+::
+
+    @every_look
+    def test_logs(look: Look, snap_compare: SnapCompare) -> None:
+        '''Newest lines at the bottom, warnings marked by a word and a colour.'''
+        assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=look.settle)
+
+The recorded session and graph are those of `tests.tui.recorded`; the clock stands still
+(`frozen_clock` in conftest), nothing blinks, nothing is animated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.tui.recorded import RecordedPad
+from tui.app import DeckApp
+from tui.i18n import set_language
+from tui.seams import Order
+
+SnapCompare = Callable[..., bool]
+SIZES = ((80, 24), (120, 40), (200, 60))
+LANGUAGES = ("en", "ru")
+
+
+@dataclass(frozen=True)
+class Look:
+    """One size and one language."""
+
+    size: tuple[int, int]
+    language: str
+
+    def app(self, screen: str = "deck", pad: RecordedPad | None = None) -> DeckApp:
+        """Return an app with the recorded lesson 9 opened, that will show `screen`."""
+        set_language(self.language)
+        app = DeckApp(pad or RecordedPad(), Order(Path("profiles/09-brain.yaml")))
+        app.first_screen = screen
+        return app
+
+    @staticmethod
+    async def settle(pilot: Pilot[Any]) -> None:
+        """Wait until what was recorded is on the screen."""
+        await settle(pilot)
+
+
+async def settle(pilot: Pilot[Any]) -> None:
+    """Wait until the recorded session is open and every message of it is handled."""
+    app = pilot.app
+    for _round in range(200):
+        await pilot.pause(0.01)
+        if isinstance(app, DeckApp) and app.feed.link is not None and app.feed.update is not None:
+            break
+    for _round in range(3):
+        await pilot.pause()
+
+
+every_look = pytest.mark.parametrize(
+    "look",
+    [
+        pytest.param(Look(size, language), id=f"{size[0]}x{size[1]}-{language}")
+        for size in SIZES
+        for language in LANGUAGES
+    ],
+)

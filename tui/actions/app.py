@@ -1,0 +1,202 @@
+"""What can be done on every screen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tui.actions.action import Action
+from tui.i18n import N_
+
+if TYPE_CHECKING:
+    from tui.app import DeckApp
+
+
+class AppAction(Action["DeckApp"]):
+    """Something that the app does, whichever screen is in front."""
+
+    scope = "app"
+
+
+class SessionAction(AppAction):
+    """Something that needs a session."""
+
+    @classmethod
+    def possible(cls, target: DeckApp) -> bool | None:
+        """Only while a session is shown."""
+        return target.feed.link is not None
+
+
+class EmergencyStop(SessionAction):
+    """Stop the wheels at once."""
+
+    id = "emergency.stop"
+    key = "space,ctrl+x"
+    title = N_("STOP")
+    tooltip = N_("Emergency stop: hold the wheels at once, until it is released.")
+    footer = True
+    priority = True
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Engage it; an engaged one is told again."""
+        target.brake.engage()
+
+
+class EmergencyRelease(SessionAction):
+    """Let the wheels turn again."""
+
+    id = "emergency.release"
+    key = "ctrl+r"
+    title = N_("Release")
+    tooltip = N_("Release the emergency stop: nodes may move the robot again.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def possible(cls, target: DeckApp) -> bool | None:
+        """Only while it is engaged."""
+        return target.feed.link is not None and target.brake.state.engaged
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Release it."""
+        target.brake.release()
+
+
+class ShowScreen(SessionAction):
+    """Bring a screen of the session to the front."""
+
+    screen = ""
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Show it."""
+        await target.show_screen(cls.screen)
+
+
+class ShowDeck(ShowScreen):
+    """The lesson at work."""
+
+    id = "screen.deck"
+    key = "1,f2"
+    title = N_("Deck")
+    tooltip = N_("The lesson at work: nodes, sensors, wheels, head and voice.")
+    screen = "deck"
+
+
+class ShowTopics(ShowScreen):
+    """Every topic."""
+
+    id = "screen.topics"
+    key = "2,f3"
+    title = N_("Topics")
+    tooltip = N_("Every topic with its rates; the chosen one live.")
+    screen = "topics"
+
+
+class ShowComposer(ShowScreen):
+    """The LLM's JSON."""
+
+    id = "screen.composer"
+    key = "3,f4"
+    title = N_("Composer")
+    tooltip = N_("Write the JSON that an LLM would send, and see what comes of it.")
+    screen = "composer"
+
+
+class ShowLogs(ShowScreen):
+    """All logs."""
+
+    id = "screen.logs"
+    key = "4,f5"
+    title = N_("Logs")
+    tooltip = N_("What all nodes say: filter, search, save.")
+    screen = "logs"
+
+
+class ShowHelp(AppAction):
+    """The keys and what the screen shows."""
+
+    id = "app.help"
+    key = "f1,question_mark"
+    title = N_("Help")
+    tooltip = N_("Every key of this screen, and what it shows.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Open the help page of the screen in front."""
+        target.show_help()
+
+
+class SwitchLanguage(AppAction):
+    """English to Russian and back."""
+
+    id = "app.language"
+    key = "f9"
+    title = N_("English / Русский")
+    tooltip = N_("Switch the language of the screen.")
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Speak the other language."""
+        target.switch_language()
+
+
+class SwitchTheme(AppAction):
+    """The next theme."""
+
+    id = "app.theme"
+    key = "f10"
+    title = N_("Theme")
+    tooltip = N_("Dark, light, high contrast.")
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Take the next theme."""
+        target.next_theme()
+
+
+class CloseSession(SessionAction):
+    """Back to the list of lessons."""
+
+    id = "session.close"
+    key = "f8"
+    title = N_("Lessons")
+    tooltip = N_("Stop this lesson's nodes and go back to the list of lessons.")
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Stop, or let go of, the session and show the picker."""
+        await target.close_session()
+
+
+class Quit(AppAction):
+    """Leave."""
+
+    id = "app.quit"
+    key = "q,ctrl+q"
+    title = N_("Quit")
+    tooltip = N_("Stop the nodes that this screen has started, and leave.")
+    footer = True
+    priority = True
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Stop orderly; asked again, stop at once."""
+        target.leave()
+
+
+APP_ACTIONS = (
+    EmergencyStop,
+    EmergencyRelease,
+    ShowHelp,
+    ShowDeck,
+    ShowTopics,
+    ShowComposer,
+    ShowLogs,
+    CloseSession,
+    SwitchLanguage,
+    SwitchTheme,
+    Quit,
+)

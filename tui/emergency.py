@@ -1,0 +1,87 @@
+"""The state of the emergency stop as this screen knows it: plain data and its transitions.
+
+It is latched: only a release clears it, ours or somebody else's seen on the topic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from tui.i18n import N_
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate, Sample
+
+TOPIC = "/emergency_stop"
+TOPIC_TYPE = "std_msgs/msg/Bool"
+SAFETY_TOPIC = "/safety_state"
+FOLLOWED = frozenset({TOPIC, SAFETY_TOPIC})
+
+NO_LISTENER = N_("nobody listens to /emergency_stop: all nodes are being stopped")
+NO_GRAPH = N_("ROS cannot be reached: all nodes are being stopped")
+NO_SESSION = N_("nothing runs here that could be stopped")
+
+
+@dataclass(frozen=True)
+class Emergency:
+    """What is known of the emergency stop."""
+
+    engaged: bool = False
+    ours: bool = True
+    """Whether this screen engaged it; False if it was seen on the topic."""
+    since_s: float = 0.0
+    """Unix time of this screen's own last word on it; older samples do not contradict it."""
+    fallback: str = ""
+    """Why the nodes are stopped in its place (a message id), empty if it reached somebody."""
+    blocked: str = ""
+    """Why the safety node holds the wheels, in its own words; empty if it does not."""
+
+    def pressed(self, now_s: float) -> Emergency:
+        """Engage it from here."""
+        return replace(self, engaged=True, ours=True, since_s=now_s, fallback="")
+
+    def released(self, now_s: float) -> Emergency:
+        """Release it from here."""
+        return replace(self, engaged=False, ours=True, since_s=now_s, fallback="")
+
+    def fallen_back(self, reason: str) -> Emergency:
+        """Remember why the nodes are stopped in its place."""
+        return replace(self, fallback=reason)
+
+    def seen(self, update: GraphUpdate) -> Emergency:
+        """Take in what others said on the topics."""
+        state = self
+        for sample in update.samples.get(TOPIC, ()):
+            engaged = bool(sample.value.get("data"))
+            if engaged != state.engaged and sample.received_s > state.since_s:
+                state = replace(state, engaged=engaged, ours=False, fallback="")
+        for sample in update.samples.get(SAFETY_TOPIC, ()):
+            state = replace(state, blocked=blocked_reason(sample))
+        return state
+
+
+def listeners(update: GraphUpdate | None) -> int:
+    """Return how many subscriptions to the stop there are, Deck's own not counted."""
+    rows = () if update is None else update.topics
+    return next((row.subscribers for row in rows if row.name == TOPIC), 0)
+
+
+def blocked_reason(sample: Sample) -> str:
+    """Return the words of the gravest status of a diagnostic_msgs/DiagnosticArray, OK is ''."""
+    statuses: Any = sample.value.get("status", ())
+    worst, words = 0, ""
+    for status in statuses if isinstance(statuses, (list, tuple)) else ():
+        level = _level(status)
+        if level > worst:
+            worst, words = level, str(status.get("message") or status.get("name") or "")
+    return words
+
+
+def _level(status: object) -> int:
+    """Return the level of one DiagnosticStatus, a byte: 0 ok, 1 warn, 2 error, 3 stale."""
+    level = status.get("level", 0) if isinstance(status, Mapping) else 0
+    if isinstance(level, (bytes, bytearray)):
+        return level[0] if level else 0
+    return int(level) if isinstance(level, (int, float)) else 0

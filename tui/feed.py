@@ -1,0 +1,155 @@
+"""The session and its graph as they are now, told to every screen that has been opened.
+
+Events of the session arrive on the app's own loop, updates of the graph from the observer's
+thread by way of an inbox.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from textual.message import Message
+
+from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
+from tui.emergency import FOLLOWED
+from tui.history import LogHistory
+from tui.inbox import GraphInbox
+from tui.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged, StraysChanged
+from tui.screens.base import DeckScreen
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+    from launcher.status import NodeStatus, SessionInfo
+    from tui.app import DeckApp
+    from tui.seams import GraphLink, SessionLink
+
+
+class GraphReady(Message, bubble=False):
+    """An update of the graph waits in the inbox."""
+
+
+class Feed:
+    """What is known of the session; the only one who tells screens of it."""
+
+    def __init__(self, app: DeckApp) -> None:
+        """Post to the screens of `app`."""
+        self._app = app
+        self._inbox = GraphInbox(lambda: app.post_message(GraphReady()))
+        self._screens: list[DeckScreen] = []
+        self.link: SessionLink | None = None
+        """None while nothing runs."""
+        self.graph: GraphLink | None = None
+        self.update: GraphUpdate | None = None
+        """The newest of the graph; None until the first."""
+        self.history = LogHistory()
+        self.ended = ""
+        """Why the session before has ended."""
+
+    @property
+    def session(self) -> SessionInfo | None:
+        """What runs, None while nothing does."""
+        return None if self.link is None else self.link.session
+
+    @property
+    def nodes(self) -> Mapping[str, NodeStatus]:
+        """Every node of the session, in the profile's order."""
+        return {} if self.link is None else self.link.nodes
+
+    @property
+    def front(self) -> DeckScreen | None:
+        """The screen of the session that is in front, below any dialog."""
+        stack = reversed(self._app.screen_stack)
+        return next((screen for screen in stack if isinstance(screen, DeckScreen)), None)
+
+    def connect(self, link: SessionLink, graph: GraphLink) -> None:
+        """Show this session from now on."""
+        self.link, self.graph = link, graph
+        self.update, self.ended = None, ""
+        self.history.clear()
+        self.tell(SessionChanged)
+        self._tell_status(frozenset(link.nodes))
+        self.ask_for_topics()
+        graph.start(self._inbox.put)
+
+    async def disconnect(self, ended: str = "") -> None:
+        """Let go of the session; stopping it is not done here."""
+        link, graph = self.link, self.graph
+        self.link = self.graph = None
+        self.ended = ended
+        if graph is not None:
+            graph.stop()
+        if link is not None:
+            await link.aclose()
+        self.tell(lambda: SessionChanged(ended))
+
+    async def listen(self) -> None:
+        """Hand over what the session says until it ends."""
+        link = self.link
+        if link is None:
+            return
+        async for event in link.events():
+            if link is not self.link:
+                return
+            await self._on_event(event)
+
+    async def _on_event(self, event: Event) -> None:
+        if isinstance(event, StatusEvent):
+            self._tell_status(frozenset(node.name for node in event.nodes))
+        elif isinstance(event, LogEvent):
+            self.history.add(event.lines)
+            self.tell(lambda: LogArrived(event.lines, event.skipped))
+        elif isinstance(event, StraysEvent):
+            self.tell(lambda: StraysChanged(event.strays))
+        elif isinstance(event, ClosedEvent):
+            await self.disconnect(event.reason)
+
+    def take_update(self) -> GraphUpdate | None:
+        """Hand over the update that waits to the screens that want it, and return it."""
+        update = self._inbox.take()
+        if update is None or self.graph is None:
+            return None
+        self.update = update
+        front = self.front
+        for screen in self._screens:
+            if screen is front or not update.samples.keys().isdisjoint(screen.follow_topics()):
+                screen.post_message(GraphChanged(update))
+        return update
+
+    def catch_up(self, screen: DeckScreen) -> None:
+        """Tell a screen that has just been opened how things stand, and keep telling it."""
+        if screen not in self._screens:
+            self._screens.append(screen)
+        if self.link is None:
+            return
+        screen.post_message(SessionChanged())
+        screen.post_message(StatusChanged(dict(self.nodes), frozenset(self.nodes)))
+        if self.history:
+            screen.post_message(LogArrived(self.history.all(), {}))
+        if self.update is not None:
+            screen.post_message(GraphChanged(self.update))
+
+    def forget(self, screen: DeckScreen) -> None:
+        """Tell this screen nothing any more."""
+        if screen in self._screens:
+            self._screens.remove(screen)
+
+    def ask_for_topics(self) -> None:
+        """Ask the graph for what the screen in front shows, and for what any screen follows."""
+        graph, front = self.graph, self.front
+        if graph is None:
+            return
+        followed = set(FOLLOWED).union(*(screen.follow_topics() for screen in self._screens))
+        graph.watch(set() if front is None else front.watch_topics())
+        graph.follow(followed)
+        graph.measure(front is not None and front.measure_all)
+        graph.period_s = 0.25 if front is None else front.period_s
+
+    def _tell_status(self, changed: frozenset[str]) -> None:
+        nodes = dict(self.nodes)
+        self.tell(lambda: StatusChanged(nodes, changed))
+
+    def tell(self, make: Callable[[], Message]) -> None:
+        """Post to every screen a message of its own: Textual marks those that are handled."""
+        for screen in self._screens:
+            screen.post_message(make())

@@ -1,0 +1,43 @@
+"""The newest log lines of a session, for a screen that is opened late."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from launcher.status import LogLine
+
+KEPT_LINES = 10_000
+KEPT_CHARACTERS = 8_000_000
+
+
+class LogHistory:
+    """Lines in the order they came in, bounded in number and in characters."""
+
+    def __init__(self, lines: int = KEPT_LINES, characters: int = KEPT_CHARACTERS) -> None:
+        self._lines: deque[LogLine] = deque()
+        self._most_lines = lines
+        self._most_characters = characters
+        self._characters = 0
+
+    def add(self, lines: Iterable[LogLine]) -> None:
+        """Append lines, and forget the oldest ones beyond the bounds."""
+        for line in lines:
+            self._lines.append(line)
+            self._characters += len(line.text)
+        while len(self._lines) > self._most_lines or self._characters > self._most_characters:
+            self._characters -= len(self._lines.popleft().text)
+
+    def __len__(self) -> int:
+        return len(self._lines)
+
+    def all(self) -> tuple[LogLine, ...]:
+        """Return what is remembered, oldest first."""
+        return tuple(self._lines)
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._lines.clear()
+        self._characters = 0

@@ -1,0 +1,126 @@
+"""What every screen of a session has: title, emergency banner, keys, and the data it asks for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, cast
+
+from textual.screen import Screen
+
+from tui.actions import Acting
+from tui.actions.app import EmergencyRelease
+from tui.messages import EmergencyChanged, LanguageChanged, SessionChanged, StatusChanged
+from tui.widgets.emergency import EmergencyBanner
+from tui.widgets.key_bar import KeyBar
+from tui.widgets.title_bar import TitleBar
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from tui.app import DeckApp
+    from tui.feed import Feed
+
+BREAKPOINTS = [(0, "-tiny"), (60, "-compact"), (100, "-home"), (160, "-wide")]
+"""Widths at which a screen changes its class: 80x24 is -compact, 120x40 -home, 200x60 -wide."""
+HEIGHTS = [(0, "-flat"), (20, "-low"), (34, "-tall"), (50, "-high")]
+"""Heights: 80x24 is -low, 120x40 -tall, 200x60 -high."""
+
+
+class DeckScreen(Acting, Screen[None]):
+    """Base of the screens that show a session.
+
+    A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
+    `follow_topics`, and handles what it wants of `tui.messages`. When the topics it wants have
+    changed it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P, Ctrl+Q, q, F1 to F5
+    and 1 to 4 belong to the app.
+    """
+
+    HORIZONTAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = BREAKPOINTS
+    VERTICAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = HEIGHTS
+    DEFAULT_CSS = """
+    DeckScreen { layers: base overlay; layout: vertical; }
+    """
+
+    tab: ClassVar[str] = ""
+    """Which tab of the title bar is in front while this screen is."""
+    period_s: ClassVar[float] = 0.25
+    """Seconds between two updates of the graph while this screen is in front."""
+    measure_all: bool = False
+    """Whether the rates of every topic are wanted while this screen is in front."""
+
+    @property
+    def deck(self) -> DeckApp:
+        """The app."""
+        return cast("DeckApp", self.app)
+
+    @property
+    def feed(self) -> Feed:
+        """The session and its graph: `link`, `graph`, `nodes`, `session`, `update`."""
+        return self.deck.feed
+
+    def compose(self) -> ComposeResult:
+        """Put the frame around the body."""
+        yield TitleBar()
+        yield EmergencyBanner()
+        yield from self.compose_body()
+        yield KeyBar()
+
+    def compose_body(self) -> ComposeResult:
+        """Yield what stands between the title and the keys."""
+        yield from ()
+
+    def watch_topics(self) -> set[str]:
+        """Return the topics whose newest message is wanted while this screen is in front."""
+        return set()
+
+    def follow_topics(self) -> set[str]:
+        """Return the topics of which every message is wanted, also while another is in front."""
+        return set()
+
+    def topics_changed(self) -> None:
+        """Tell the app that `watch_topics`, `follow_topics` or `measure_all` answer otherwise."""
+        if self.is_current:
+            self.feed.ask_for_topics()
+
+    def on_mount(self) -> None:
+        """Show the frame as things stand, and ask for what came before."""
+        self.show_frame()
+        self.feed.catch_up(self)
+
+    def on_unmount(self) -> None:
+        """Hear no more."""
+        self.feed.forget(self)
+
+    def on_screen_resume(self) -> None:
+        """Ask for this screen's topics."""
+        self.show_frame()
+        self.topics_changed()
+
+    def on_status_changed(self, message: StatusChanged) -> None:
+        """Keep the title true."""
+        del message
+        self.show_frame()
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Keep the title true."""
+        del message
+        self.show_frame()
+
+    def on_emergency_changed(self, message: EmergencyChanged) -> None:
+        """Show or hide the banner."""
+        del message
+        self.show_frame()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw every widget anew; one that keeps its words must be told by its screen."""
+        del message
+        self.show_frame()
+        for widget in self.query("*"):
+            widget.refresh(layout=True)
+
+    def show_frame(self) -> None:
+        """Show title, session and emergency stop as they are."""
+        if not self.is_mounted:
+            return
+        deck = self.deck
+        self.query_one(TitleBar).show(deck.tabs(self.tab), deck.state_words())
+        self.query_one(EmergencyBanner).show(deck.brake.state, deck.key_of(EmergencyRelease))
