@@ -12,11 +12,7 @@ ifneq ($(AMENT_PREFIX_PATH)$(_ROS_WHEELS_BOOTSTRAP_COMPLETE),)
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH
 endif
 
-# The words that scripts/setup.py wrote stop being true when the tree is moved
-# or the Python underneath is gone.
-sound := $(shell [ -x .venv/bin/python ] && [ "$$(cat .venv/.ready)" = \
-	"$$(readlink -f .venv) $$(readlink -f .venv/bin/python)" ] 2>&- && echo yes)
-ifneq ($(sound),yes)
+ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 

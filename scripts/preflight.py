@@ -58,31 +58,32 @@ def release(text):
     return tuple(int(part) for part in text.split(".")[:2])
 
 
-def complaint(machine):
-    """Return what is wrong and how to mend it, or nothing if all is well."""
+def complaints(machine):
+    """Yield what is wrong and how to mend it, the most hopeless first."""
     version = "%d.%d" % machine.python
     if machine.system != "Linux" or machine.arch != "x86_64" or machine.bits != 64:
-        return "ROS 2 is on PyPI for Linux x86-64 only and this is %s %s: %s." % (
+        yield "ROS 2 is on PyPI for 64-bit Linux on x86-64 only, this is %s on %s, %d-bit: %s." % (
             machine.system,
-            machine.arch if machine.bits == 64 else machine.arch + " (32-bit Python)",
+            machine.arch,
+            machine.bits,
             PIXI,
         )
     if machine.libc[0] != "glibc" or release(machine.libc[1]) < (2, 28):
-        return "The ROS 2 of PyPI needs glibc 2.28 or newer, which this Linux lacks: %s." % PIXI
+        yield "the ROS 2 of PyPI needs glibc 2.28 or newer, which this Linux lacks: %s." % PIXI
     if not OLDEST <= machine.python <= NEWEST:
-        return "Python %s is not one of 3.10 to 3.13: install one, or name it: make PYTHON=python3.12." % version
+        yield "this is Python %s and Deck runs on 3.10 to 3.13: install one of them." % version
     if "venv" not in machine.modules or "ensurepip" not in machine.modules:
-        return "Python %s cannot make virtual environments: sudo apt install python%s-venv." % (version, version)
+        yield (
+            "Python {0} cannot make virtual environments: sudo apt install python{0}-venv."
+        ).format(version)
     if not has_program(machine.path, compilers("CC", "cc", "gcc", "clang")):
-        return "There is no C compiler: sudo apt install build-essential."
+        yield "there is no C compiler: sudo apt install build-essential."
     if not has_program(machine.path, compilers("CXX", "c++", "g++", "clang++")):
-        return "There is no C++ compiler: sudo apt install build-essential."
+        yield "there is no C++ compiler: sudo apt install build-essential."
     if not os.path.exists(os.path.join(machine.include, "Python.h")):
-        return "Python %s lacks its headers: sudo apt install python%s-dev." % (version, version)
-    return ""
+        yield "Python {0} lacks its headers: sudo apt install python{0}-dev.".format(version)
 
 
 if __name__ == "__main__":
-    found = complaint(Machine())
-    if found:
+    for found in complaints(Machine()):
         sys.exit("deck: " + found)
