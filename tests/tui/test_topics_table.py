@@ -1,0 +1,277 @@
+"""The table of topics: its figures in words, its order, its choice, and what an update draws."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from textual.app import App, ComposeResult
+from textual.geometry import Region
+
+from graph.data import TopicRow, Trouble
+from tests.tui.recorded import TOPICS, topic
+from tui.i18n import set_language
+from tui.widgets.topics_table import TopicsTable
+from tui.widgets.topics_table_columns import (
+    COLUMNS,
+    age_text,
+    bandwidth_text,
+    hz_text,
+    placed,
+    state_text,
+)
+from tui.widgets.topics_table_order import Order
+
+FLOAT = "std_msgs/msg/Float32"
+
+
+class TableApp(App[None]):
+    """A bare app with nothing but the table."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.chosen: list[str | None] = []
+
+    def compose(self) -> ComposeResult:
+        """The table fills the screen."""
+        yield TopicsTable()
+
+    def on_topics_table_chosen(self, message: TopicsTable.Chosen) -> None:
+        """Note what was chosen."""
+        self.chosen.append(message.topic)
+
+    @property
+    def table(self) -> TopicsTable:
+        """The table."""
+        return self.query_one(TopicsTable)
+
+    def lines(self) -> list[str]:
+        """What stands in the table now."""
+        return [self.table.render_line(y).text.rstrip() for y in range(self.table.size.height)]
+
+
+def names(app: TableApp) -> list[str]:
+    return [row.name for row in app.table.shown]
+
+
+@pytest.mark.parametrize(
+    ("hz", "shown"),
+    [(None, "–"), (0.0, "0.0"), (0.1, "0.10"), (9.96, "10.0"), (29.97, "30.0"), (1234.5, "1234")],
+)
+def test_rates_have_three_figures(hz: float | None, shown: str) -> None:
+    assert hz_text(hz) == shown
+
+
+@pytest.mark.parametrize(
+    ("rate", "shown"),
+    [
+        (None, "–"),
+        (0.0, "0 B/s"),
+        (999.6, "1.0 kB/s"),
+        (27_648_000.0, "27.6 MB/s"),
+        (480_000.0, "480 kB/s"),
+        (5e12, "5000 GB/s"),
+    ],
+)
+def test_bandwidths_have_their_unit(rate: float | None, shown: str) -> None:
+    assert bandwidth_text(rate) == shown
+
+
+@pytest.mark.parametrize(
+    ("age", "shown"),
+    [(None, "–"), (0.02, "<1 s"), (1.0, "1 s"), (59.9, "59 s"), (60.0, "1 min"), (7200.0, "2 h")],
+)
+def test_ages_are_whole(age: float | None, shown: str) -> None:
+    assert age_text(age) == shown
+
+
+@pytest.mark.parametrize(
+    ("more", "shown"),
+    [
+        ({"trouble": Trouble.NO_PUBLISHER}, "○ no publisher"),
+        ({"trouble": Trouble.QOS_MISMATCH}, "✗ QoS mismatch"),
+        ({"trouble": Trouble.UNKNOWN_TYPE}, "? unknown type"),
+        ({"trouble": Trouble.QUIET}, "… quiet"),
+        ({"measured": False, "hz": None}, "– not measured"),
+        ({"age_s": None, "hz": None}, "· waiting"),
+        ({"detail": "peers disagree"}, "! peers disagree"),
+        ({}, ""),
+    ],
+)
+def test_the_last_column_says_why_figures_are_missing(more: dict[str, Any], shown: str) -> None:
+    assert state_text(replace(topic("/a", FLOAT, 1.0), **more)) == shown
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_titles_and_states_fit_their_columns_in_every_language(language: str) -> None:
+    set_language(language)
+    by_id = {column.id: column for column in COLUMNS}
+    from tui.i18n import _
+
+    for column in COLUMNS:
+        assert not column.width or len(_(column.title)) < column.width + (column.width > 5)
+    for trouble in Trouble:
+        assert len(state_text(topic("/a", FLOAT, 1.0, trouble=trouble))) <= by_id["state"].width
+    assert len(state_text(topic("/a", FLOAT, 1.0, measured=False))) <= by_id["state"].width
+    assert len(age_text(3599.0)) <= by_id["age"].width
+    assert len(bandwidth_text(999_499.0)) <= by_id["bandwidth"].width
+
+
+@pytest.mark.parametrize("width", range(1, 220, 7))
+def test_columns_never_overlap_and_the_name_is_always_there(width: int) -> None:
+    places = placed(width)
+    assert places[0].column.id == "name"
+    ends = [(place.x, place.x + place.width) for place in places]
+    assert all(end < start for (_x, end), (start, _y) in pairwise(ends))
+    assert ends[-1][1] <= width
+
+
+def test_a_narrow_table_gives_up_the_type_first_and_the_rate_last() -> None:
+    assert {place.column.id for place in placed(78)} == {
+        "name", "publishers", "subscribers", "hz", "bandwidth", "age", "state",
+    }  # fmt: skip
+    assert [place.column.id for place in placed(30)] == ["name", "hz"]
+    assert len(placed(118)) == len(COLUMNS)
+
+
+def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
+    rows = [
+        topic("/c", FLOAT, 5.0),
+        topic("/b", FLOAT, None, age_s=None),
+        topic("/a", FLOAT, 5.01),
+    ]
+    assert [row.name for row in Order().arranged(rows)] == ["/a", "/b", "/c"]
+    assert [row.name for row in Order().by("hz").arranged(rows)] == ["/a", "/c", "/b"]
+    assert [row.name for row in Order().by("hz").by("hz").arranged(rows)] == ["/b", "/a", "/c"]
+    assert [row.name for row in Order().by("age").arranged(rows)] == ["/a", "/c", "/b"]
+
+
+def test_troubles_come_first_when_sorted_by_state() -> None:
+    first = Order().by("state").arranged(TOPICS)[0]
+    assert first.trouble is Trouble.NO_PUBLISHER
+
+
+def test_the_filter_wants_every_word_in_name_or_type() -> None:
+    found = Order(words="SENSOR float").arranged(TOPICS)
+    assert [row.name for row in found] == ["/sensor/sonar_front"]
+    assert Order(words="float zzz").arranged(TOPICS) == []
+
+
+def test_topics_of_ros_itself_are_shown_on_demand() -> None:
+    shown = {row.name for row in Order().arranged(TOPICS)}
+    assert "/rosout" not in shown
+    assert "/emergency_stop" in shown
+    assert {row.name for row in Order(housekeeping=True).arranged(TOPICS)} - shown == {
+        "/rosout",
+        "/parameter_events",
+    }
+
+
+async def test_the_first_topic_is_chosen_and_keys_choose_another() -> None:
+    app = TableApp()
+    async with app.run_test(size=(80, 12)) as pilot:
+        app.table.show(TOPICS)
+        app.table.focus()
+        await pilot.press("down", "down", "up", "end", "home", "pagedown")
+        await pilot.pause()
+        assert app.chosen[0] == "/ai_command"
+        assert app.table.chosen == "/wheel_commands"
+        assert any(line.startswith("▶ /wheel_commands") for line in app.lines())
+
+
+async def test_the_chosen_topic_stays_chosen_when_rows_come_and_the_order_changes() -> None:
+    app = TableApp()
+    async with app.run_test(size=(80, 12)) as pilot:
+        app.table.show(TOPICS)
+        app.table.choose("/drive")
+        app.table.show([topic("/aaa", FLOAT, 1.0), *TOPICS])
+        app.table.reorder(Order().by("hz"))
+        await pilot.pause()
+        assert app.table.chosen == "/drive"
+        assert app.chosen == ["/ai_command", "/drive"]
+        assert any(line.startswith("▶ /drive ") for line in app.lines())
+
+
+async def test_when_the_chosen_topic_goes_its_place_is_taken() -> None:
+    app = TableApp()
+    async with app.run_test(size=(80, 20)) as pilot:
+        app.table.show(TOPICS)
+        app.table.choose("/drive")
+        app.table.show([row for row in TOPICS if row.name != "/drive"])
+        assert app.table.chosen == "/drive_safe"
+        app.table.show([])
+        await pilot.pause()
+        assert app.chosen[-1] is None
+
+
+async def test_a_click_on_a_title_sorts_and_a_click_on_a_row_chooses() -> None:
+    app = TableApp()
+    async with app.run_test(size=(120, 20)) as pilot:
+        app.table.show(TOPICS)
+        await pilot.pause()
+        header = app.lines()[0]
+        await pilot.click(TopicsTable, offset=(header.index("Hz"), 0))
+        assert app.table.order.column_id == "hz"
+        assert "Hz▼" in app.lines()[0]
+        await pilot.click(TopicsTable, offset=(10, 3))
+        assert app.table.chosen == names(app)[2]
+
+
+async def test_an_update_draws_only_the_cells_whose_text_changed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    app = TableApp()
+    async with app.run_test(size=(80, 20)) as pilot:
+        app.table.show(TOPICS)
+        await pilot.pause()
+        asked: list[Region] = []
+
+        def refresh(*regions: Region, **_options: bool) -> TopicsTable:
+            asked.extend(regions)
+            return app.table
+
+        monkeypatch.setattr(app.table, "refresh", refresh)
+        app.table.show([replace(row, count=row.count + 1) for row in TOPICS])
+        assert asked == []
+        faster = [replace(row, hz=11.0) if row.name == "/drive" else row for row in TOPICS]
+        app.table.show(faster)
+        hz = next(place for place in app.table._places if place.column.id == "hz")
+        assert asked == [Region(2 + hz.x, 1 + names(app).index("/drive"), hz.width, 1)]
+
+
+async def test_a_row_that_takes_another_place_takes_its_mark_along() -> None:
+    app = TableApp()
+    async with app.run_test(size=(80, 20)) as pilot:
+        app.table.show([topic("/a", FLOAT, 1.0), topic("/b", FLOAT, 2.0)])
+        app.table.reorder(Order().by("hz"))
+        await pilot.pause()
+        assert [line[:4] for line in app.lines()[1:3]] == ["  /b", "▶ /a"]
+        app.table.show([topic("/a", FLOAT, 3.0), topic("/b", FLOAT, 2.0)])
+        await pilot.pause()
+        assert [line[:4] for line in app.lines()[1:3]] == ["▶ /a", "  /b"]
+
+
+async def test_no_rows_are_told_in_words() -> None:
+    app = TableApp()
+    async with app.run_test(size=(80, 20)) as pilot:
+        app.table.show_words("no topics yet", "nodes are starting")
+        await pilot.pause()
+        assert app.lines()[1:3] == ["no topics yet", "nodes are starting"]
+        app.table.show(TOPICS)
+        app.table.filter("zzz")
+        await pilot.pause()
+        assert app.lines()[1] == "no topic matches “zzz”"
+
+
+@pytest.mark.parametrize("size", [(1, 1), (4, 2), (20, 5), (80, 24), (200, 60)])
+async def test_every_line_fills_its_width_at_any_size(size: tuple[int, int]) -> None:
+    hostile = TopicRow("/\x1b[2J[red]日本", ("a/msg/\x07",), 9, 9, detail="\x1b]52;c;QQ\x07" * 99)
+    app = TableApp()
+    async with app.run_test(size=size) as pilot:
+        app.table.show([hostile, *TOPICS])
+        await pilot.pause()
+        strips = [app.table.render_line(y) for y in range(size[1])]
+        assert {strip.cell_length for strip in strips} == {app.table.size.width}
+        assert not any(char in strip.text for strip in strips for char in "\x1b\x07")
