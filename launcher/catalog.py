@@ -1,0 +1,128 @@
+"""Which profiles there are: the course's, those in `./profiles`, and any file by its path."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.errors import LauncherError, ProfileNotFoundError, UsageError
+from launcher.profile_extends import SHIPPED
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+ENDINGS = (".yaml", ".yml")
+LESSON = re.compile(r"0*([0-9]+[a-z]?)(?![0-9a-z])")
+"""The number that a profile's name begins with: 4b of `04b-electronic-differential`."""
+
+
+@dataclass(frozen=True)
+class ProfileEntry:
+    """One profile as a list shows it."""
+
+    name: str
+    """File name without its ending: `09-brain`."""
+    path: Path
+    """Absolute."""
+    title: Mapping[str, str] = field(default_factory=dict)
+    about: Mapping[str, str] = field(default_factory=dict)
+    lesson: str = ""
+    nodes: tuple[str, ...] = ()
+    panels: tuple[str, ...] = ()
+    error: str = ""
+    """Why it cannot be started, one problem a line; empty if it can."""
+
+
+def list_profiles(
+    paths: Iterable[Path | str] = (), *, hardware: str = "mock"
+) -> list[ProfileEntry]:
+    """Return every profile there is, the lessons in their order; broken ones with their error.
+
+    `paths`: files and folders besides the course's profiles and `./profiles`.
+    """
+    files = [*_files_of(SHIPPED), *_files_of(Path("profiles"))]
+    for path in map(Path, paths):
+        files += _files_of(path) if path.is_dir() else [path]
+    different = {path.resolve(): path for path in reversed(files)}
+    return [_entry(path, hardware) for path in sorted(different.values(), key=_order)]
+
+
+def find_profile(name: str | Path) -> Path:
+    """Return the file of a profile given by path, by name, by lesson number or by a name's beginning.
+
+    What is in `./profiles` goes before the course.
+
+    Raises:
+        ProfileNotFoundError: with the names that were probably meant.
+        UsageError: if the beginning fits several.
+    """
+    text = str(name)
+    path = Path(text)
+    if os.sep in text or text.endswith(ENDINGS) or path.is_file():
+        return path
+    known = {
+        file.stem: file for folder in (SHIPPED, Path("profiles")) for file in _files_of(folder)
+    }
+    if text in known:
+        return known[text]
+    fits = [stem for stem in known if _number(stem) == _number(text) != ""]
+    fits = fits or [stem for stem in known if text and stem.startswith(text)]
+    if len(fits) == 1:
+        return known[fits[0]]
+    if fits:
+        raise UsageError(
+            say("{name!r} may be any of: {names}", name=text, names=", ".join(sorted(fits)))
+        )
+    raise ProfileNotFoundError(text, _near(text, known))
+
+
+def _files_of(folder: Path) -> list[Path]:
+    try:
+        return sorted(path for path in folder.iterdir() if path.suffix in ENDINGS)
+    except OSError:
+        return []
+
+
+def _near(text: str, known: Iterable[str]) -> list[str]:
+    """Return likely names, by the whole name and by the words that it is made of."""
+    names = list(known)
+    near = get_close_matches(text, names, n=3, cutoff=0.5)
+    for stem in names:
+        if get_close_matches(text, stem.split("-"), n=1, cutoff=0.7) and stem not in near:
+            near.append(stem)
+    return near
+
+
+def _number(text: str) -> str:
+    match = LESSON.match(text)
+    return match.group(1) if match else ""
+
+
+def _order(path: Path) -> tuple[int, int, str, str]:
+    digits = re.match(r"[0-9]+", path.stem)
+    number = int(digits.group()) if digits else 0
+    return (0 if digits else 1, number, path.stem, str(path))
+
+
+def _entry(path: Path, hardware: str) -> ProfileEntry:
+    # Validation takes pydantic along: whoever only looks for a file does without it.
+    from launcher.profile import load_profile
+
+    try:
+        profile = load_profile(path, hardware=hardware)
+    except LauncherError as error:
+        return ProfileEntry(path.stem, path.absolute(), lesson=_number(path.stem), error=str(error))
+    return ProfileEntry(
+        name=profile.name,
+        path=profile.path,
+        title=profile.title,
+        about=profile.about,
+        lesson=profile.lesson,
+        nodes=tuple(profile.nodes),
+        panels=profile.panels,
+    )

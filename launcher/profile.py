@@ -1,0 +1,265 @@
+"""A profile, ready to be started: read, joined, overridden, validated.
+
+`load_profile` is the only way to one; whatever is wrong is told at once, each problem with its
+place in the file, and nothing is started by reading.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from launcher.domain import LAST_SAFE_DOMAIN, Discovery, choose_domain
+from launcher.errors import ProfileError, ProfileProblem
+from launcher.profile_check import applies, check_module, check_needs, check_node
+from launcher.profile_devices import with_devices
+from launcher.profile_extends import read_profile
+from launcher.profile_params import as_arguments, flatten
+from launcher.profile_sets import read_sets
+from launcher.profile_text import shown
+from launcher.profile_tree import Branch, Place, Problems, find, place_of
+from launcher.profile_validate import validate
+from launcher.profile_when import HARDWARE
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from launcher.profile_model import NodeDocument, ProfileDocument, Restart
+    from launcher.profile_params import Param
+
+__all__ = ["NodeSpec", "Profile", "ProfileError", "ProfileProblem", "Ready", "load_profile"]
+
+DEFAULT_WITHIN_S = 10.0
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The condition under which a node counts as ready."""
+
+    kind: str
+    """`topic`, `service` or `node`."""
+    name: str
+    """As in the profile: a ROS name, absolute or not."""
+    within_s: float = DEFAULT_WITHIN_S
+
+
+@dataclass(frozen=True)
+class NodeSpec:
+    """One node: what to run, how, and after which others."""
+
+    name: str
+    """Its key in the profile; of a `run` node also its name in the ROS graph."""
+    run: str | None = None
+    """A Python module. Either this or `exec` is set."""
+    exec: tuple[str, ...] | None = None
+    params: Mapping[str, Param] = field(default_factory=dict)
+    """Flat: `{"limits.front": 0.5}`."""
+    remap: Mapping[str, str] = field(default_factory=dict)
+    env: Mapping[str, str] = field(default_factory=dict)
+    needs: tuple[str, ...] = ()
+    """Only nodes that run: those that `when` leaves out are not waited for."""
+    ready: Ready | None = None
+    restart: Restart = "never"
+    when: str | None = None
+    """The condition as written; it holds."""
+    optional: bool = False
+    """If it cannot be started, or ends, that is told and is no failure."""
+    warm: bool = True
+    cwd: Path | None = None
+    """Absolute; None: where the launcher was started."""
+    source_root: Path | None = None
+    """Folder to put first on Python's path so that `run` is found; None if Python finds it."""
+
+    @property
+    def command(self) -> str:
+        """What is run, for people."""
+        return self.run if self.run is not None else " ".join(self.exec or ())
+
+    def ros_args(self) -> list[str]:
+        """Return `--ros-args` and all that follows; empty for a command without parameters."""
+        named = ["-r", f"__node:={self.name}"] if self.run is not None else []
+        remaps = [part for old, new in self.remap.items() for part in ("-r", f"{old}:={new}")]
+        arguments = [*named, *remaps, *as_arguments(self.params)]
+        return ["--ros-args", *arguments] if arguments else []
+
+    def argv(self) -> list[str]:
+        """Return the full command line, as it is started without the spawn server."""
+        if self.run is not None:
+            return [sys.executable, "-u", "-m", self.run, *self.ros_args()]
+        return [*(self.exec or ()), *self.ros_args()]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A profile as it is about to be started."""
+
+    path: Path
+    """Absolute."""
+    name: str
+    """File name without its ending: `09-brain`."""
+    nodes: Mapping[str, NodeSpec]
+    """In the order of the file; only those that run on this hardware."""
+    title: Mapping[str, str] = field(default_factory=dict)
+    """Language code to title."""
+    about: Mapping[str, str] = field(default_factory=dict)
+    """Language code to what it starts and shows."""
+    lesson: str = ""
+    domain: int = 0
+    """The one that counts, whoever chose it."""
+    discovery: Discovery = "localhost"
+    hardware: str = "mock"
+    devices: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    panels: tuple[str, ...] = ()
+    steps: tuple[Mapping[str, Any], ...] = ()
+    warnings: tuple[ProfileProblem, ...] = ()
+    """What is allowed, and probably not meant."""
+
+
+def load_profile(
+    path: Path | str,
+    *,
+    hardware: str = "mock",
+    overrides: Iterable[str] = (),
+    domain: int | None = None,
+    environ: Mapping[str, str] | None = None,
+) -> Profile:
+    """Read a profile and everything that it extends.
+
+    Args:
+        path: its file
+        hardware: `mock` or `real`, what `when` asks for
+        overrides: `node.param=value`, the value read as YAML
+        domain: the ROS domain, over what the profile and the environment say
+        environ: where DECK_* and ROS_DOMAIN_ID are read; by default the process's own
+
+    Raises:
+        ProfileError: with all that is wrong.
+        DomainError: if the domain that counts is none.
+    """
+    path = Path(path)
+    env = os.environ if environ is None else environ
+    problems = Problems()
+    if hardware not in HARDWARE:
+        message = say("expected mock or real, found {found!r}", found=hardware)
+        problems.add(Place("--hardware"), (), message)
+    tree = read_profile(path, problems)
+    if tree is None or problems.found:
+        raise ProfileError(problems.in_order())
+    tree = with_devices(tree, env, problems)
+    document, valid = validate(tree, problems)
+    reader = _Reader(path.absolute(), tree, problems)
+    nodes = reader.nodes(valid, hardware)
+    nodes = read_sets(overrides, nodes, set(valid) - set(nodes), problems)
+    if problems.found or document is None:
+        raise ProfileError(problems.in_order())
+    chosen = choose_domain(domain, document.domain, env)
+    return reader.profile(document, nodes, hardware, chosen)
+
+
+@dataclass
+class _Reader:
+    """Turns validated documents into what is started."""
+
+    path: Path
+    tree: Branch
+    problems: Problems
+
+    def nodes(self, valid: Mapping[str, NodeDocument], hardware: str) -> dict[str, NodeSpec]:
+        """Return the nodes that run, those with problems too."""
+        tree, problems = self.tree, self.problems
+        every = find(tree, ("nodes",))
+        everybody = list(every.entries) if isinstance(every, Branch) else []
+        for name, node in valid.items():
+            check_node(name, node, tree, problems)
+        running = {
+            name: node
+            for name, node in valid.items()
+            if applies(name, node, hardware, tree, problems)
+        }
+        if not running and not problems.found:
+            self._nothing_runs(bool(valid), hardware)
+        optional = {name for name, node in running.items() if node.optional}
+        needs = {name: node.needs for name, node in running.items()}
+        check_needs(needs, everybody, optional, tree, problems)
+        return {name: self._node(name, node, running) for name, node in running.items()}
+
+    def _nothing_runs(self, left_out: bool, hardware: str) -> None:
+        message = say("there is no node to start")
+        if left_out:
+            message = say("no node is left with --hardware {hardware}", hardware=hardware)
+        self.problems.add(place_of(self.tree, ("nodes",), key=True), ("nodes",), message)
+
+    def _node(self, name: str, node: NodeDocument, running: Mapping[str, Any]) -> NodeSpec:
+        where = ("nodes", name, "params")
+        params = find(self.tree, where)
+        cwd = None if node.cwd is None else (self.path.parent / node.cwd).resolve()
+        if cwd is not None and not cwd.is_dir():
+            here = ("nodes", name, "cwd")
+            message = say("there is no directory {path}", path=shown(cwd))
+            self.problems.add(place_of(self.tree, here), here, message)
+        root = None
+        if node.run is not None:
+            folders = [cwd or Path.cwd(), self.path.parent]
+            root = check_module(name, node.run, folders, self.tree, self.problems)
+        return NodeSpec(
+            name=name,
+            run=node.run,
+            exec=node.exec,
+            params={} if params is None else flatten(params, where, self.problems),
+            remap=node.remap,
+            env=node.env,
+            needs=tuple(other for other in node.needs if other in running),
+            ready=_ready(name, node),
+            restart=node.restart,
+            when=node.when,
+            optional=node.optional,
+            warm=node.warm,
+            cwd=cwd,
+            source_root=root,
+        )
+
+    def profile(
+        self, document: ProfileDocument, nodes: dict[str, NodeSpec], hardware: str, domain: int
+    ) -> Profile:
+        """Put everything together."""
+        return Profile(
+            path=self.path,
+            name=self.path.stem,
+            nodes=nodes,
+            title=document.title,
+            about=document.about,
+            lesson=document.lesson,
+            domain=domain,
+            discovery=document.discovery,
+            hardware=hardware,
+            devices=document.devices,
+            panels=document.panels,
+            steps=document.steps,
+            warnings=self._warnings(document),
+        )
+
+    def _warnings(self, document: ProfileDocument) -> tuple[ProfileProblem, ...]:
+        found = Problems()
+        if document.domain is not None and document.domain > LAST_SAFE_DOMAIN:
+            found.add(
+                place_of(self.tree, ("domain",)),
+                ("domain",),
+                say("the ports of domains above {safe} may be taken", safe=LAST_SAFE_DOMAIN),
+                say("choose one from 1 to {safe}", safe=LAST_SAFE_DOMAIN),
+            )
+        return found.in_order()
+
+
+def _ready(name: str, node: NodeDocument) -> Ready | None:
+    """Return the condition as written, else for `run` that the node is in the graph."""
+    if node.ready is None:
+        return None if node.run is None else Ready("node", name)
+    for kind in ("topic", "service", "node"):
+        found = getattr(node.ready, kind)
+        if found is not None:
+            return Ready(kind, found, node.ready.within)
+    return None

@@ -1,0 +1,123 @@
+"""What the parts of a profile mean together: names, commands, needs, modules."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.profile_model import LONGEST_NODE_NAME, NODE_NAME
+from launcher.profile_modules import find_folder, likely_names
+from launcher.profile_tree import did_you_mean, empty, find, place_of
+from launcher.profile_when import WhenError, holds
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from launcher.profile_model import NodeDocument
+    from launcher.profile_tree import Branch, Problems, Where
+
+
+def applies(name: str, node: NodeDocument, hardware: str, tree: Branch, problems: Problems) -> bool:
+    """Whether a node's `when` lets it run on this hardware."""
+    if node.when is None:
+        return True
+    try:
+        return holds(node.when, {"hardware": hardware})
+    except WhenError as error:
+        where = ("nodes", name, "when")
+        problems.add(place_of(tree, where), where, error.message, error.hint)
+        return True
+
+
+def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) -> None:
+    """Check one node by itself: its name, and that there is exactly one thing to run."""
+    where = ("nodes", name)
+    place = place_of(tree, where, key=True)
+    if not NODE_NAME.fullmatch(name) or len(name) > LONGEST_NODE_NAME:
+        problems.add(
+            place,
+            where,
+            say("{name!r} is no name of a ROS node", name=name),
+            say("letters, digits and _, not beginning with a digit"),
+        )
+    given = {key for key in ("run", "exec") if not empty(find(tree, (*where, key)))}
+    if not given:
+        problems.add(place, where, say("needs `run` or `exec`"), say("write run: nodes.hello"))
+    elif len(given) > 1:
+        message = say("has both `run` and `exec`")
+        problems.add(place_of(tree, (*where, "exec"), key=True), where, message, say("keep one"))
+    if node.ready is not None:
+        conditions = [node.ready.topic, node.ready.service, node.ready.node]
+        if sum(value is not None for value in conditions) != 1:
+            problems.add(
+                place_of(tree, (*where, "ready")),
+                (*where, "ready"),
+                say("expected exactly one of topic, service, node"),
+                say("write ready: {topic: /chatter, within: 10}"),
+            )
+
+
+def check_module(
+    name: str, module: str, folders: Sequence[Path], tree: Branch, problems: Problems
+) -> Path | None:
+    """Return the folder to put on Python's path for a module, if any; a problem if nowhere."""
+    folder = find_folder(module, folders)
+    if folder is None:
+        where = ("nodes", name, "run")
+        hint = did_you_mean(module, likely_names(module, folders))
+        problems.add(
+            place_of(tree, where), where, say("there is no module {module!r}", module=module), hint
+        )
+    return folder if folder is not None and folder.parts else None
+
+
+def check_needs(
+    needs: Mapping[str, tuple[str, ...]],
+    everybody: Sequence[str],
+    optional: set[str],
+    tree: Branch,
+    problems: Problems,
+) -> None:
+    """Check that what nodes need exists, must run, and does not need them in turn.
+
+    `needs`: of the nodes that run; `everybody`: all names in the file.
+    """
+    for name, needed in needs.items():
+        for index, other in enumerate(needed):
+            where: Where = ("nodes", name, "needs", index)
+            if other not in everybody:
+                message = say("there is no node {name!r}", name=other)
+                problems.add(place_of(tree, where), where, message, did_you_mean(other, everybody))
+            elif other in optional:
+                message = say("{name} is optional, so nothing can need it", name=other)
+                problems.add(place_of(tree, where), where, message)
+    for cycle in _cycles(needs):
+        where = ("nodes", cycle[0], "needs")
+        path = " -> ".join([*cycle, cycle[0]])
+        message = say("nodes need each other in a cycle: {cycle}", cycle=path)
+        problems.add(place_of(tree, where), where, message, say("take one of the needs out"))
+
+
+def _cycles(needs: Mapping[str, tuple[str, ...]]) -> list[list[str]]:
+    """Return cycles, each once and from its first node in the file; not every one of a knot."""
+    order = {name: position for position, name in enumerate(needs)}
+    done: set[str] = set()
+    cycles: list[list[str]] = []
+    for start in needs:
+        path: list[str] = []
+        branches = [iter([start])]
+        while branches:
+            name = next(branches[-1], None)
+            if name is None:
+                branches.pop()
+                if path:
+                    done.add(path.pop())
+            elif name in path:
+                cycle = path[path.index(name) :]
+                first = cycle.index(min(cycle, key=order.__getitem__))
+                cycles.append(cycle[first:] + cycle[:first])
+            elif name in needs and name not in done:
+                path.append(name)
+                branches.append(iter(needs[name]))
+    return cycles

@@ -1,0 +1,99 @@
+"""`extends:` - a profile that says only what is different about another one.
+
+Mappings are joined key by key, down to single parameters; everything else replaces what the
+other profile says. A node set to nothing is taken out, and `run` replaces `exec` or the reverse.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from launcher.profile_text import read_text, shown
+from launcher.profile_tree import Branch, Entry, did_you_mean, empty, plain
+from launcher.profile_yaml import read_yaml
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from launcher.profile_tree import Problems
+
+SHIPPED = Path(__file__).resolve().parent.parent / "profiles"
+"""The profiles of the course."""
+ALL: Any = {}
+ALL["*"] = ALL
+JOINED: Any = {
+    "nodes": {"*": {"params": ALL, "remap": ALL, "env": ALL}},
+    "devices": ALL,
+}
+"""Which mappings are joined, by their keys; `*` stands for any."""
+RIVALS = {"run": "exec", "exec": "run"}
+
+
+def read_profile(path: Path, problems: Problems) -> Branch | None:
+    """Return the profile joined with those it extends; None and problems if one is unreadable."""
+    return _read(path, problems, ())
+
+
+def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | None:
+    text = read_text(path, problems)
+    tree = None if text is None else read_yaml(text, shown(path), problems)
+    if tree is None or "extends" not in tree.entries:
+        return tree
+    entry = tree.entries["extends"]
+    own = Branch(
+        {key: value for key, value in tree.entries.items() if key != "extends"}, tree.place
+    )
+    wanted = plain(entry.value)
+    if not isinstance(wanted, str):
+        problems.add(entry.value.place, ("extends",), say("expected the name of a profile"))
+        return own
+    base_path = _base_path(wanted, path)
+    seen = (*chain, path.resolve())
+    if base_path is None:
+        known = [other.stem for folder in (path.parent, SHIPPED) for other in folder.glob("*.yaml")]
+        message = say("there is no profile {name!r} to extend", name=wanted)
+        problems.add(entry.value.place, ("extends",), message, did_you_mean(wanted, known))
+        return own
+    if base_path.resolve() in seen:
+        names = [each.stem for each in seen[seen.index(base_path.resolve()) :]]
+        cycle = " -> ".join([*names, base_path.stem])
+        message = say("profiles extend each other in a cycle: {cycle}", cycle=cycle)
+        problems.add(entry.value.place, ("extends",), message)
+        return own
+    base = _read(base_path, problems, seen)
+    return own if base is None else _without_removed(_joined(base, own))
+
+
+def _base_path(wanted: str, path: Path) -> Path | None:
+    """Find the profile: a path beside this file, else a name beside it or in the course."""
+    beside = path.parent / wanted
+    candidates = [beside, beside.with_name(beside.name + ".yaml"), SHIPPED / f"{wanted}.yaml"]
+    try:
+        return next((candidate for candidate in candidates if candidate.is_file()), None)
+    except (OSError, ValueError):
+        return None
+
+
+def _joined(base: Branch, own: Branch, joined: Any = JOINED) -> Branch:  # noqa: ANN401 - nested
+    entries = dict(base.entries)
+    for key, entry in own.entries.items():
+        below = entries[key].value if key in entries else None
+        inner = joined.get(key, joined.get("*"))
+        if inner is not None and isinstance(below, Branch) and isinstance(entry.value, Branch):
+            entries[key] = Entry(entry.key_place, _joined(below, entry.value, inner))
+        else:
+            entries.pop(RIVALS.get(key, ""), None)
+            entries[key] = entry
+    return Branch(entries, own.place)
+
+
+def _without_removed(tree: Branch) -> Branch:
+    nodes = tree.entries.get("nodes")
+    if nodes is None or not isinstance(nodes.value, Branch):
+        return tree
+    kept: dict[str, Entry] = {
+        name: entry for name, entry in nodes.value.entries.items() if not empty(entry.value)
+    }
+    entries = dict(tree.entries)
+    entries["nodes"] = Entry(nodes.key_place, Branch(kept, nodes.value.place))
+    return Branch(entries, tree.place)
