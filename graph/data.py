@@ -9,16 +9,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TypeAlias, Union
+from typing import TYPE_CHECKING, TypeAlias, Union
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    # numpy takes a tenth of a second, and the screen's first frame needs none of it.
+    import numpy as np
+    from numpy.typing import NDArray
 
 Value: TypeAlias = Union[
     bool, int, float, str, bytes, "NDArray[np.generic]", Sequence["Value"], Mapping[str, "Value"]
 ]
 """A message as a tree: messages are mappings in field order, `byte[]` and `uint8[]` are bytes,
-other arrays of numbers are numpy arrays of shape (n,), arrays of anything else are lists."""
+other arrays of numbers are numpy arrays of shape (n,), arrays of anything else are lists.
+A single `byte` is an int, 0..255."""
 
 
 class Trouble(str, Enum):
@@ -66,7 +69,18 @@ class TopicRow:
     """Whether Deck is subscribed now."""
     trouble: Trouble | None = None
     detail: str = ""
-    """The trouble in words: which endpoints do not fit, which type is missing."""
+    """The trouble in English words: which endpoints do not fit, which type is missing. May also be
+    set without a trouble, as a remark: peers that disagree about the type."""
+    facts: Mapping[str, str] = field(default_factory=dict)
+    """What `detail` is made of, to say it in another language.
+
+    QOS_MISMATCH: `policy` (reliability, durability), `publisher`, `subscriber` (nodes), `offered`,
+    `requested`. UNKNOWN_TYPE: `type`, `package`, `reason`. QUIET: `seconds`. NO_PUBLISHER: none.
+    A remark: `types`, with the one that is shown in `shown`.
+    """
+    published_by: tuple[EndpointInfo, ...] = ()
+    subscribed_by: tuple[EndpointInfo, ...] = ()
+    """Both without Deck's own endpoints."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +137,8 @@ class GraphUpdate:
     time_s: float
     """Unix time of this update."""
     topics: tuple[TopicRow, ...] = ()
-    """Every topic there is, sorted by name."""
+    """Every topic there is and every one that is watched or followed, sorted by name. A row that
+    is the same object as in the update before has not changed."""
     samples: Mapping[str, tuple[Sample, ...]] = field(default_factory=dict)
     """Topic to its new samples in order: one for a watched topic, all for a followed one."""
     nodes: tuple[NodeRow, ...] = ()

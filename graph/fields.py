@@ -1,0 +1,76 @@
+"""The types of a message's fields, as its class names them: `sequence<uint8, 16>`, `string<10>`."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+INTEGERS = {
+    "int8": (-(2**7), 2**7 - 1),
+    "uint8": (0, 2**8 - 1),
+    "int16": (-(2**15), 2**15 - 1),
+    "uint16": (0, 2**16 - 1),
+    "int32": (-(2**31), 2**31 - 1),
+    "uint32": (0, 2**32 - 1),
+    "int64": (-(2**63), 2**63 - 1),
+    "uint64": (0, 2**64 - 1),
+    "octet": (0, 2**8 - 1),
+    "char": (0, 2**8 - 1),
+}
+"""Least and greatest value; `octet` is ROS's `byte`."""
+FLOATS = {"float": 3.4028234663852886e38, "double": 1.7976931348623157e308, "long double": 0.0}
+"""Greatest finite value; 0 where there is none to know."""
+STRINGS = frozenset({"string", "wstring"})
+BYTES = frozenset({"octet", "uint8", "char"})
+"""Elements whose arrays are shown as bytes."""
+
+_SEQUENCE = re.compile(r"^sequence<(?P<element>.+?)(?:, (?P<limit>\d+))?>$")
+_ARRAY = re.compile(r"^(?P<element>.+)\[(?P<size>\d+)\]$")
+_STRING = re.compile(r"^(?P<kind>w?string)(?:<(?P<limit>\d+)>)?$")
+
+
+@dataclass(frozen=True)
+class FieldType:
+    """What one field may hold."""
+
+    element: str
+    """`double`, `string`, `std_msgs/Header`: of the field itself or of its elements."""
+    is_many: bool = False
+    size: int | None = None
+    """Of an array with a fixed number of elements."""
+    limit: int | None = None
+    """Greatest number of elements of a bounded sequence."""
+    text_limit: int | None = None
+    """Greatest number of characters of a bounded string."""
+
+    @property
+    def is_message(self) -> bool:
+        """Whether it holds messages."""
+        return "/" in self.element
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it holds integers or floats."""
+        return self.element in INTEGERS or self.element in FLOATS
+
+
+@lru_cache(maxsize=1024)
+def parse(text: str) -> FieldType:
+    """Return what `get_fields_and_field_types()` of a message says of one field."""
+    if array := _ARRAY.match(text):
+        element, limit = _text(array["element"])
+        return FieldType(element, is_many=True, size=int(array["size"]), text_limit=limit)
+    if sequence := _SEQUENCE.match(text):
+        element, limit = _text(sequence["element"])
+        most = int(sequence["limit"]) if sequence["limit"] else None
+        return FieldType(element, is_many=True, limit=most, text_limit=limit)
+    element, limit = _text(text)
+    return FieldType(element, text_limit=limit)
+
+
+def _text(element: str) -> tuple[str, int | None]:
+    found = _STRING.match(element)
+    if not found:
+        return element, None
+    return found["kind"], int(found["limit"]) if found["limit"] else None

@@ -1,0 +1,29 @@
+"""Which names of the ROS graph are ROS's own business, for lists that show the robot's."""
+
+from __future__ import annotations
+
+TOPICS = frozenset({"/rosout", "/parameter_events", "/clock"})
+SERVICES = frozenset(
+    {
+        "describe_parameters",
+        "get_parameter_types",
+        "get_parameters",
+        "get_type_description",
+        "list_parameters",
+        "set_parameters",
+        "set_parameters_atomically",
+        "get_logger_levels",
+        "set_logger_levels",
+    }
+)
+"""Last part of the name of what rclpy and rclcpp give every node."""
+
+
+def is_housekeeping(name: str) -> bool:
+    """Tell whether a topic, service or node of this full name is there without anybody's asking.
+
+    Hidden names, those with a part that begins with an underscore, count as such: the inner topics
+    of actions, the nodes of command line tools.
+    """
+    parts = name.split("/")
+    return name in TOPICS or parts[-1] in SERVICES or any(part.startswith("_") for part in parts)

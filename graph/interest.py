@@ -1,0 +1,24 @@
+"""What the screens want to see of the graph."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Interest:
+    """What somebody looks at."""
+
+    watched: frozenset[str] = frozenset()
+    followed: frozenset[str] = frozenset()
+    all_topics: bool = False
+
+    @property
+    def named(self) -> frozenset[str]:
+        """Topics that are wanted whether they exist or not."""
+        return self.watched | self.followed
+
+    @property
+    def is_nothing(self) -> bool:
+        """Whether nobody looks."""
+        return not (self.named or self.all_topics)

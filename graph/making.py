@@ -1,0 +1,174 @@
+"""Trees of plain values, as a person types them, into messages; what does not fit is named."""
+
+from __future__ import annotations
+
+import array
+import math
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from graph.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
+from graph.types import load_message
+from graph.values import DUMMY
+
+if TYPE_CHECKING:
+    from graph.data import Value
+
+SHOWN = 40
+"""Characters of a wrong value that an error repeats."""
+
+
+class FieldError(ValueError):
+    """A value does not fit its field; str() is `field: what was expected, and what was got`."""
+
+    def __init__(self, field: str, message: str) -> None:
+        """Say what is wrong with the field of this path: `header.stamp.sec`, `points[2].x`."""
+        super().__init__(f"{field}: {message}" if field else message)
+        self.field = field
+        self.message = message
+
+
+def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> Any:  # noqa: ANN401
+    """Return a message of the class with these fields, the others at their defaults.
+
+    Takes what `to_tree` returns, and what YAML or JSON give: lists for arrays, integers for
+    floats. Raises FieldError.
+    """
+    if not isinstance(tree, Mapping):
+        raise FieldError(field, f"expected fields by name, got {_shown(tree)}")
+    fields = {k: v for k, v in cls.get_fields_and_field_types().items() if k != DUMMY}
+    message = cls()
+    for name, value in tree.items():
+        path = f"{field}.{name}" if field else str(name)
+        if name not in fields:
+            raise FieldError(path, _unknown(str(name), list(fields)))
+        setattr(message, name, _made(parse(fields[name]), value, path))
+    return message
+
+
+def _unknown(name: str, names: list[str]) -> str:
+    near = get_close_matches(name, names, n=1)
+    if near:
+        return f"no such field; did you mean {near[0]}?"
+    return f"no such field; there is {', '.join(names)}" if names else "it has no fields at all"
+
+
+def _made(kind: FieldType, value: Value, path: str) -> object:
+    if kind.is_many:
+        return _many(kind, value, path)
+    if kind.element == "octet":
+        return bytes([_octet(value, path)])
+    return _one(kind, value, path)
+
+
+def _one(kind: FieldType, value: Value, path: str) -> object:
+    if kind.is_message:
+        package, _, name = kind.element.partition("/")
+        return to_message(load_message(f"{package}/msg/{name}"), value, path)  # type: ignore[arg-type]
+    if kind.element in STRINGS:
+        return _text(kind, value, path)
+    if kind.element == "boolean":
+        return _boolean(value, path)
+    if kind.element in FLOATS:
+        return _float(kind.element, value, path)
+    return _integer(kind.element, value, path)
+
+
+def _many(kind: FieldType, value: Value, path: str) -> object:
+    if isinstance(value, (bytes, bytearray, memoryview)) and kind.element in BYTES:
+        _check_length(kind, len(value), path)
+        return _packed(kind, value)
+    if not hasattr(value, "__len__") or isinstance(value, (str, bytes, Mapping)):
+        raise FieldError(path, f"expected a list, got {_shown(value)}")
+    elements: Sequence[Value] = value  # type: ignore[assignment]
+    _check_length(kind, len(elements), path)
+    if kind.is_number and _fits_as_it_is(kind, elements):
+        return elements
+    made = [_one(kind, _plain(each), f"{path}[{i}]") for i, each in enumerate(elements)]
+    return _packed(kind, bytes(made)) if kind.element == "octet" else made  # type: ignore[arg-type]
+
+
+def _fits_as_it_is(kind: FieldType, elements: object) -> bool:
+    """Tell whether this is the very array that rclpy itself would hold, so no look is needed."""
+    dtype = getattr(elements, "dtype", None)
+    return kind.size is not None and dtype is not None and dtype.name == _DTYPES.get(kind.element)
+
+
+_DTYPES = {"float": "float32", "double": "float64"} | {
+    name: name for name in INTEGERS if name not in {"octet", "char"}
+}
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401 - a number of numpy's, or a value
+    return value.item() if hasattr(value, "item") else value
+
+
+def _packed(kind: FieldType, value: bytes | bytearray | memoryview) -> object:
+    if kind.element == "octet":
+        return [bytes([each]) for each in value]
+    return array.array("B", value) if kind.size is None else list(value)
+
+
+def _check_length(kind: FieldType, length: int, path: str) -> None:
+    if kind.size is not None and length != kind.size:
+        raise FieldError(path, f"expected {kind.size} elements, got {length}")
+    if kind.limit is not None and length > kind.limit:
+        raise FieldError(path, f"expected at most {kind.limit} elements, got {length}")
+
+
+def _text(kind: FieldType, value: Value, path: str) -> str:
+    if not isinstance(value, str):
+        raise FieldError(path, f"expected a text, got {_shown(value)}")
+    if kind.text_limit is not None and len(value) > kind.text_limit:
+        raise FieldError(path, f"expected at most {kind.text_limit} characters, got {len(value)}")
+    if "\0" in value:
+        raise FieldError(path, "a text of ROS cannot hold the character NUL")
+    try:
+        value.encode()
+    except UnicodeEncodeError as error:
+        raise FieldError(path, f"{_shown(value)} is no valid Unicode") from error
+    return value
+
+
+def _boolean(value: Value, path: str) -> bool:
+    if not isinstance(value, bool):
+        raise FieldError(path, f"expected true or false, got {_shown(value)}")
+    return value
+
+
+def _float(element: str, value: Value, path: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise FieldError(path, f"expected a number, got {_shown(value)}")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    greatest = FLOATS[element]
+    if (isinstance(value, int) and math.isinf(number)) or (
+        math.isfinite(number) and 0 < greatest < abs(number)
+    ):
+        raise FieldError(path, f"{_shown(value)} is too great for a {element}")
+    return number
+
+
+def _integer(element: str, value: Value, path: str) -> int:
+    least, greatest = INTEGERS[element]
+    whole = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
+    if isinstance(value, bool) or not whole:
+        raise FieldError(path, f"expected a whole number, got {_shown(value)}")
+    number = int(value)  # type: ignore[arg-type]
+    if not least <= number <= greatest:
+        raise FieldError(path, f"expected {least} to {greatest}, got {_shown(value)}")
+    return number
+
+
+def _octet(value: Value, path: str) -> int:
+    if isinstance(value, bytes) and len(value) == 1:
+        return value[0]
+    return _integer("octet", value, path)
+
+
+def _shown(value: object) -> str:
+    text = "nothing" if value is None else repr(value)
+    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"

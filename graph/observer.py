@@ -1,0 +1,202 @@
+"""The observer: one ROS node on a thread of its own, in the screen's process.
+
+It looks at the graph and at its queues a few times a second and hands over plain data. Nothing
+here is woken by a message, and no method of the observer waits for anything.
+"""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import threading
+import time
+from collections import deque
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from graph.data import GraphUpdate
+from graph.interest import Interest
+from graph.orders import Call, ObserverError, Order, Prepare, Publish
+from graph.ros import open_ros
+from graph.station import LOOK_AT_GRAPH_S, Station
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+    from concurrent.futures import Future
+
+    from graph.data import CallResult, Value
+
+logger = logging.getLogger(__name__)
+
+PENDING_S = 0.01
+"""How often a call or a message under way is looked at."""
+STOP_WITHIN_S = 5.0
+
+
+class Observer:
+    """The ROS graph of one domain as plain data. All methods may be called from any thread."""
+
+    def __init__(
+        self, domain: int, discovery: str | tuple[str, ...] = "localhost", period_s: float = 0.1
+    ) -> None:
+        """Prepare for a domain; `discovery` is localhost, subnet, or the addresses of peers."""
+        self._domain = domain
+        self._discovery = discovery
+        self._period_s = period_s
+        self._interest = Interest()
+        self._orders: deque[Order] = deque()
+        self._lock = threading.Lock()
+        self._wake = threading.Event()
+        self._stopping = False
+        self._failure: ObserverError | None = None
+        self._thread: threading.Thread | None = None
+
+    @property
+    def period_s(self) -> float:
+        """Seconds between two updates."""
+        return self._period_s
+
+    @period_s.setter
+    def period_s(self, period_s: float) -> None:
+        self._period_s = period_s
+        self._wake.set()
+
+    def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
+        """Begin to observe; `on_update` is called on the observer's own thread.
+
+        What was asked for before, and while rclpy is being imported, is done as soon as it is.
+        """
+        self._thread = threading.Thread(
+            target=self._run, args=(on_update,), name="deck-observer", daemon=True
+        )
+        # DDS threads must be gone before the interpreter is.
+        atexit.register(self.stop)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Leave the graph; what is under way fails. Returns within a few seconds, whatever."""
+        self._stopping = True
+        self._wake.set()
+        atexit.unregister(self.stop)
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join(STOP_WITHIN_S)
+
+    def watch(self, topics: Iterable[str]) -> None:
+        """Hand over the newest message of exactly these topics in each update."""
+        self._look_at(watched=frozenset(topics))
+
+    def follow(self, topics: Iterable[str]) -> None:
+        """Hand over every message of exactly these topics, up to 200 of each in one update."""
+        self._look_at(followed=frozenset(topics))
+
+    def measure(self, all_topics: bool) -> None:
+        """Measure the rates of all topics, or only of those watched and followed."""
+        self._look_at(all_topics=all_topics)
+
+    def prepare_publisher(
+        self, topic: str, type_name: str, *, latched: bool = False
+    ) -> Future[None]:
+        """Make a publisher now, so that its first message goes out at once."""
+        order = Prepare(topic, type_name, latched)
+        self._order(order)
+        return order.future
+
+    def publish(
+        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
+    ) -> Future[int]:
+        """Publish one message; the future tells how many subscribers it went to.
+
+        A new publisher waits up to a second for its subscribers. A latched message stays for
+        those who come later. The future raises PublishError, UnknownTypeError, FieldError or
+        ObserverError.
+        """
+        order = Publish(topic, type_name, value, latched)
+        self._order(order)
+        return order.future
+
+    def call(
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[CallResult]:
+        """Call a service; the result tells of an answer or why there is none, it never raises."""
+        order = Call(service, type_name, request, timeout_s)
+        self._order(order)
+        return order.future
+
+    def _look_at(self, **changes: frozenset[str] | bool) -> None:
+        with self._lock:
+            self._interest = replace(self._interest, **changes)  # type: ignore[arg-type]
+        self._wake.set()
+
+    def _order(self, order: Order) -> None:
+        with self._lock:
+            failure = self._failure
+            if failure is None:
+                self._orders.append(order)
+        if failure is not None:
+            order.fail(failure)
+        self._wake.set()
+
+    def _run(self, on_update: Callable[[GraphUpdate], None]) -> None:
+        end = ObserverError("the observer has been stopped")
+        try:
+            # This imports rclpy; the screen need not wait for it.
+            station = Station(open_ros(self._domain, self._discovery))
+        except Exception as error:  # noqa: BLE001 - told to the screen
+            end = ObserverError(f"ROS cannot be used: {error}")
+            self._tell(on_update, GraphUpdate(time.time(), error=str(end)))
+        else:
+            try:
+                self._observe(station, on_update)
+            finally:
+                station.close(end)
+        finally:
+            self._refuse_orders(end)
+
+    def _observe(self, station: Station, on_update: Callable[[GraphUpdate], None]) -> None:
+        next_look_s = 0.0
+        interest = self._interest
+        while not self._stopping:
+            self._carry_out_orders(station)
+            under_way = station.step()
+            now_s = time.monotonic()
+            if now_s >= next_look_s or self._interest is not interest:
+                interest = self._interest
+                self._look(station, interest, on_update)
+                period_s = LOOK_AT_GRAPH_S if station.is_idle else self._period_s
+                next_look_s = max(now_s, next_look_s + period_s)
+            wait_s = next_look_s - time.monotonic()
+            if self._wake.wait(max(0.0, min(wait_s, PENDING_S) if under_way else wait_s)):
+                self._wake.clear()
+
+    def _look(
+        self, station: Station, interest: Interest, on_update: Callable[[GraphUpdate], None]
+    ) -> None:
+        try:
+            update = station.look(interest)
+        except Exception as error:
+            # The graph is in motion while it is looked at; the next look has another chance.
+            logger.exception("a look at the graph failed")
+            update = GraphUpdate(time.time(), error=f"the ROS graph cannot be read: {error}")
+        if update is not None:
+            self._tell(on_update, update)
+
+    def _tell(self, on_update: Callable[[GraphUpdate], None], update: GraphUpdate) -> None:
+        try:
+            on_update(update)
+        except Exception:
+            # A screen that is being closed; the observer is stopped next.
+            logger.exception("an update was not taken")
+
+    def _carry_out_orders(self, station: Station) -> None:
+        while self._orders:
+            order = self._orders.popleft()
+            try:
+                order.carry_out(station)
+            except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+                order.fail(error)
+
+    def _refuse_orders(self, failure: ObserverError) -> None:
+        with self._lock:
+            self._failure = failure
+        while self._orders:
+            self._orders.popleft().fail(failure)

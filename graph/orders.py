@@ -1,0 +1,109 @@
+"""What the screen asks of the observer, on its way from one thread to the other."""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+from graph.data import CallResult
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graph.data import Value
+    from graph.station import Station
+
+
+class ObserverError(Exception):
+    """The observer cannot work, or has been stopped; str() says why."""
+
+
+class Order(Protocol):
+    """Something to be done on the observer's thread."""
+
+    def carry_out(self, station: Station) -> None:
+        """Do it; may raise anything."""
+
+    def fail(self, error: Exception) -> None:
+        """Say that it cannot be done."""
+
+
+@dataclass(frozen=True)
+class Prepare:
+    """Make a publisher."""
+
+    topic: str
+    type_name: str
+    latched: bool
+    future: Future[None] = field(default_factory=Future)
+
+    def carry_out(self, station: Station) -> None:
+        """Do it."""
+        ends = station.ends(self.topic)
+        station.outbox.prepare(self.topic, self.type_name, ends, latched=self.latched)
+        self.future.set_result(None)
+
+    def fail(self, error: Exception) -> None:
+        """Say that it cannot be done."""
+        self.future.set_exception(error)
+
+
+@dataclass(frozen=True)
+class Publish:
+    """Publish one message."""
+
+    topic: str
+    type_name: str
+    value: Mapping[str, Value]
+    latched: bool
+    future: Future[int] = field(default_factory=Future)
+
+    def carry_out(self, station: Station) -> None:
+        """Do it, unless it was cancelled meanwhile."""
+        if self.future.set_running_or_notify_cancel():
+            station.outbox.publish(
+                self.topic,
+                self.type_name,
+                self.value,
+                station.ends(self.topic),
+                self.future,
+                latched=self.latched,
+            )
+
+    def fail(self, error: Exception) -> None:
+        """Say that it cannot be done."""
+        if not self.future.cancelled():
+            self.future.set_exception(error)
+
+
+@dataclass(frozen=True)
+class Call:
+    """Call a service."""
+
+    service: str
+    type_name: str
+    request: Mapping[str, Value]
+    timeout_s: float
+    asked_s: float = field(default_factory=time.monotonic)
+    future: Future[CallResult] = field(default_factory=Future)
+
+    def carry_out(self, station: Station) -> None:
+        """Do it, unless it was cancelled meanwhile."""
+        if self.future.set_running_or_notify_cancel():
+            station.calls.begin(
+                self.service,
+                self.type_name,
+                self.request,
+                station.service(self.service),
+                self.future,
+                self.timeout_s,
+                self.asked_s,
+            )
+
+    def fail(self, error: Exception) -> None:
+        """Say that it cannot be done."""
+        if not self.future.cancelled():
+            elapsed_s = time.monotonic() - self.asked_s
+            self.future.set_result(CallResult(self.service, False, None, str(error), elapsed_s))

@@ -1,0 +1,138 @@
+"""Publishing once, without losing the message to a subscriber that is still being matched."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from graph.making import to_message
+from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
+from graph.types import load_message
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from concurrent.futures import Future
+
+    from rclpy.node import Node
+    from rclpy.publisher import Publisher
+
+    from graph.data import Value
+    from graph.scan import TopicEnds
+
+MATCH_WITHIN_S = 1.0
+"""How long a new publisher waits for its subscribers."""
+DEPTH = 10
+
+
+class PublishError(Exception):
+    """The message cannot be published; str() says why."""
+
+
+@dataclass
+class _Line:
+    """One publisher and the messages that wait for its subscribers."""
+
+    publisher: Publisher
+    cls: type[Any]
+    qos: Qos
+    expected: int
+    """Subscribers that the graph knew when it was made."""
+    patience_ends_s: float
+    waiting: deque[tuple[Any, Future[int]]] = field(default_factory=deque)
+
+
+class Outbox:
+    """Deck's publishers, one for each topic, type and latching; made once and kept."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._lines: dict[tuple[str, str, bool], _Line] = {}
+
+    def prepare(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> None:
+        """Make the publisher now, so that the first message need not wait for it.
+
+        Raises PublishError or UnknownTypeError.
+        """
+        self._line(topic, type_name, ends, latched=latched)
+
+    def publish(
+        self,
+        topic: str,
+        type_name: str,
+        value: Mapping[str, Value],
+        ends: TopicEnds | None,
+        future: Future[int],
+        *,
+        latched: bool,
+    ) -> None:
+        """Publish as soon as the subscribers that are there are matched, and then tell how many.
+
+        Raises PublishError, UnknownTypeError or FieldError.
+        """
+        line = self._line(topic, type_name, ends, latched=latched)
+        line.waiting.append((to_message(line.cls, value), future))
+        self._send(line)
+
+    def step(self) -> bool:
+        """Send what can be sent now; tell whether anything still waits."""
+        waiting = [line for line in self._lines.values() if line.waiting]
+        for line in waiting:
+            self._send(line)
+        return any(line.waiting for line in waiting)
+
+    def fail(self, error: Exception) -> None:
+        """Let everything that waits fail."""
+        for line in self._lines.values():
+            while line.waiting:
+                line.waiting.popleft()[1].set_exception(error)
+
+    def _line(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> _Line:
+        others = ends.type_names if ends and not ends.is_deserted else ()
+        if others and type_name not in others:
+            raise PublishError(f"{topic} carries {', '.join(others)}, not {type_name}")
+        subscribers = ends.subscribers if ends else ()
+        qos = Qos(RELIABLE, TRANSIENT_LOCAL) if latched else to_be_heard(subscribers)
+        key = (topic, type_name, latched)
+        line = self._lines.get(key)
+        if line and line.qos == qos:
+            return line
+        if line and line.waiting:
+            return line
+        if line:
+            self._node.destroy_publisher(line.publisher)
+        self._lines[key] = self._open(topic, type_name, qos, len(subscribers))
+        return self._lines[key]
+
+    def _open(self, topic: str, type_name: str, qos: Qos, expected: int) -> _Line:
+        from rclpy.event_handler import PublisherEventCallbacks
+
+        cls = load_message(type_name)
+        try:
+            publisher = self._node.create_publisher(
+                cls,
+                topic,
+                profile(qos, 1 if qos.durability == TRANSIENT_LOCAL else DEPTH),
+                event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+            )
+        except Exception as error:
+            raise PublishError(f"{topic} cannot be published: {error}") from error
+        return _Line(publisher, cls, qos, expected, time.monotonic() + MATCH_WITHIN_S)
+
+    def _send(self, line: _Line) -> None:
+        matched = line.publisher.get_subscription_count()
+        if matched < max(1, line.expected) and time.monotonic() < line.patience_ends_s:
+            return
+        # From now on whoever listens is matched; nobody has to wait for them again.
+        line.patience_ends_s = 0.0
+        while line.waiting:
+            message, future = line.waiting.popleft()
+            try:
+                line.publisher.publish(message)
+            except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+                failure = PublishError(f"{line.publisher.topic}: {error}")
+                failure.__cause__ = error
+                future.set_exception(failure)
+            else:
+                future.set_result(matched)

@@ -1,0 +1,84 @@
+"""Deck's own node: opened with as little as rclpy allows, closed without a trace."""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rclpy.context import Context
+    from rclpy.node import Node
+
+NAME_PREFIX = "_deck_observer_"
+"""The underscore keeps it out of `ros2 node list`."""
+RANGES = {"localhost": "LOCALHOST", "subnet": "SUBNET"}
+
+
+@dataclass(frozen=True)
+class Ros:
+    """An open node with a context of its own."""
+
+    context: Context
+    node: Node
+    name: str
+    """Full name of the node."""
+
+    def close(self) -> None:
+        """Destroy the node and leave the graph."""
+        self.node.destroy_node()
+        self.context.try_shutdown()
+        self.context.destroy()
+
+
+def open_ros(domain: int, discovery: str | tuple[str, ...]) -> Ros:
+    """Join the domain; takes a tenth of a second or more, most of it the import of rclpy.
+
+    `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found. Raises
+    ImportError without ROS, and what rclpy raises when the domain is refused.
+    """
+    from rclpy.context import Context
+    from rclpy.impl.logging_severity import LoggingSeverity
+    from rclpy.logging import set_logger_level
+    from rclpy.node import Node
+    from rclpy.parameter import Parameter
+
+    context = Context()
+    silent = Parameter("start_type_description_service", value=False)
+    with _environment(_discovery(discovery)):
+        # No arguments of the program's, no log file, and no word on the terminal: it is a screen.
+        context.init(args=[], initialize_logging=False, domain_id=domain)
+        set_logger_level("", LoggingSeverity.FATAL)
+        node = Node(
+            f"{NAME_PREFIX}{os.getpid()}",
+            context=context,
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+            parameter_overrides=[silent],
+        )
+    return Ros(context, node, node.get_fully_qualified_name())
+
+
+def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str]:
+    if isinstance(discovery, str):
+        return {"ROS_AUTOMATIC_DISCOVERY_RANGE": RANGES[discovery], "ROS_STATIC_PEERS": ""}
+    return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": ";".join(discovery)}
+
+
+@contextmanager
+def _environment(settings: dict[str, str]) -> Iterator[None]:
+    """Set variables for as long as rcl reads them: children of the screen get none of it."""
+    before = {name: os.environ.get(name) for name in settings}
+    os.environ.update(settings)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

@@ -1,0 +1,96 @@
+"""All that the observer's thread owns: the node, the graph as last seen, the subscriptions."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from graph.calls import Calls
+from graph.data import GraphUpdate
+from graph.interest import Interest
+from graph.outbox import Outbox
+from graph.scan import Scan, Signature, is_complete, scan, signature
+from graph.taps import Taps
+
+if TYPE_CHECKING:
+    from graph.data import Sample, ServiceRow
+    from graph.ros import Ros
+    from graph.scan import TopicEnds
+
+LOOK_AT_GRAPH_S = 0.25
+RESCAN_S = 3.0
+"""A node that was replaced by its like between two looks is noticed after this long."""
+
+
+class Station:
+    """One open node at work; every method returns at once."""
+
+    def __init__(self, ros: Ros) -> None:
+        self.calls = Calls(ros.node)
+        self.outbox = Outbox(ros.node)
+        self._ros = ros
+        self._taps = Taps(ros.node)
+        self._scan = Scan()
+        self._signature: Signature | None = None
+        self._looked_s = 0.0
+        self._scanned_s = 0.0
+        self._tuned = (self._scan, Interest())
+        self._told: tuple[object, ...] = ()
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether only the graph itself is to be looked at."""
+        return not self._taps.any_open
+
+    def ends(self, topic: str) -> TopicEnds | None:
+        """Return what is known of a topic now."""
+        self._look_at_graph()
+        return self._scan.topics.get(topic)
+
+    def service(self, name: str) -> ServiceRow | None:
+        """Return what is known of a service now."""
+        self._look_at_graph()
+        return next((row for row in self._scan.services if row.name == name), None)
+
+    def look(self, interest: Interest) -> GraphUpdate | None:
+        """Look at the graph and at the queues; return what is new, None if nothing is."""
+        if time.monotonic() - self._looked_s >= LOOK_AT_GRAPH_S:
+            self._look_at_graph()
+        tuned = (self._scan, interest)
+        if tuned != self._tuned or self._taps.need_tuning():
+            self._tuned = tuned
+            self._taps.tune(*tuned)
+        return self._update(self._taps.drain())
+
+    def step(self) -> bool:
+        """Go on with calls and messages under way; tell whether there are any."""
+        calling = self.calls.step()
+        publishing = self.outbox.step()
+        return calling or publishing
+
+    def close(self, error: Exception) -> None:
+        """Let everything under way fail, and leave the graph."""
+        self.calls.fail(error)
+        self.outbox.fail(error)
+        self._taps.close()
+        self._ros.close()
+
+    def _look_at_graph(self) -> None:
+        now_s = time.monotonic()
+        self._looked_s = now_s
+        found = signature(self._ros.node)
+        is_news = found != self._signature or not is_complete(self._scan)
+        if not is_news and now_s - self._scanned_s < RESCAN_S:
+            return
+        self._signature, self._scanned_s = found, now_s
+        seen = scan(self._ros.node, self._ros.name)
+        if seen != self._scan:
+            self._scan = seen
+
+    def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
+        rows = self._taps.rows()
+        told = (rows, self._scan.nodes, self._scan.services)
+        if not samples and told == self._told:
+            return None
+        self._told = told
+        return GraphUpdate(time.time(), rows, samples, self._scan.nodes, self._scan.services)

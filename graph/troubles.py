@@ -1,0 +1,59 @@
+"""Why a topic shows nothing, in words: four different troubles, never an empty panel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from graph.data import Trouble
+from graph.qos import mismatches
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graph.scan import TopicEnds
+    from graph.types import UnknownTypeError
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A trouble, or a remark where there is none, and what it is made of."""
+
+    trouble: Trouble | None = None
+    detail: str = ""
+    facts: Mapping[str, str] = field(default_factory=dict)
+
+
+def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> Finding:
+    """Return what is wrong with the topic however its messages come.
+
+    `shown_type` is the one that Deck decodes, `unknown` why it cannot.
+    """
+    if unknown is not None:
+        return Finding(
+            Trouble.UNKNOWN_TYPE,
+            unknown.reason,
+            {"type": unknown.type_name, "package": unknown.package, "reason": unknown.reason},
+        )
+    if not ends.everyone_publishing:
+        return Finding(Trouble.NO_PUBLISHER, "nobody publishes this topic")
+    found = mismatches(ends.everyone_publishing, ends.subscribers)
+    if found:
+        more = f" (and {len(found) - 1} more pairs)" if len(found) > 1 else ""
+        return Finding(Trouble.QOS_MISMATCH, found[0].in_words() + more, found[0].facts())
+    if len(ends.type_names) > 1:
+        types = ", ".join(ends.type_names)
+        return Finding(
+            None,
+            f"peers disagree about the type: {types}; shown is {shown_type}",
+            {"types": types, "shown": shown_type},
+        )
+    return Finding()
+
+
+def quiet(seconds: float, *, ever: bool) -> Finding:
+    """Return that nothing has come for `seconds`, and whether anything `ever` did."""
+    since = "" if ever else ", and never before"
+    return Finding(
+        Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"}
+    )

@@ -1,0 +1,90 @@
+"""Message and service types by their names, of whatever is installed."""
+
+from __future__ import annotations
+
+import importlib
+from difflib import get_close_matches
+from functools import lru_cache
+from typing import Any
+
+NAME_PARTS = 3
+"""`std_msgs/msg/Float32`."""
+
+
+class UnknownTypeError(Exception):
+    """No such type is installed here; str() says what to do about it."""
+
+    def __init__(self, type_name: str, package: str, reason: str) -> None:
+        """Say why `type_name` cannot be had; `package` is where it should have come from."""
+        super().__init__(reason)
+        self.type_name = type_name
+        self.package = package
+        self.reason = reason
+
+
+@lru_cache(maxsize=512)
+def load_message(type_name: str) -> type[Any]:
+    """Return the class of a message such as `std_msgs/msg/Float32`.
+
+    Raises UnknownTypeError, also when the package is there and its import fails.
+    """
+    return _load(type_name, "msg")
+
+
+@lru_cache(maxsize=128)
+def load_service(type_name: str) -> type[Any]:
+    """Return the class of a service such as `example_interfaces/srv/AddTwoInts`.
+
+    It has the classes Request and Response. Raises UnknownTypeError.
+    """
+    return _load(type_name, "srv")
+
+
+def _load(type_name: str, kind: str) -> type[Any]:
+    parts = type_name.split("/")
+    if len(parts) != NAME_PARTS or parts[1] != kind or not all(p.isidentifier() for p in parts):
+        raise UnknownTypeError(
+            type_name,
+            parts[0],
+            f"'{type_name}' is not the name of a type; write it as package/{kind}/Name",
+        )
+    package, _, name = parts
+    try:
+        module = importlib.import_module(f"{package}.{kind}")
+        found: type[Any] | None = getattr(module, name, None)
+        if found is not None:
+            _import_type_support(found)
+    except ModuleNotFoundError as error:
+        raise UnknownTypeError(type_name, package, _missing(error, package, kind)) from error
+    except Exception as error:
+        # A broken package may raise anything, and must not take the observer along.
+        reason = f"package {package} is installed and cannot be used: {error}"
+        raise UnknownTypeError(type_name, package, reason) from error
+    if found is None:
+        raise UnknownTypeError(type_name, package, _no_such_name(module, package, kind, name))
+    return found
+
+
+def _import_type_support(found: Any) -> None:  # noqa: ANN401 - generated, without a base class
+    """Load the C library behind a class now, where its failure can be named."""
+    if getattr(found, "_TYPE_SUPPORT", None) is None:
+        found.__import_type_support__()
+
+
+def _missing(error: ModuleNotFoundError, package: str, kind: str) -> str:
+    if error.name == package:
+        dashed = package.replace("_", "-")
+        return (
+            f"package {package} is not installed: 'apt install ros-jazzy-{dashed}' or "
+            f"'pip install ros-jazzy-{dashed}', or build it and source its workspace"
+        )
+    if error.name == f"{package}.{kind}":
+        what = {"msg": "messages", "srv": "services"}[kind]
+        return f"package {package} is installed and has no {what}"
+    return f"package {package} is installed and cannot be used: {error}"
+
+
+def _no_such_name(module: object, package: str, kind: str, name: str) -> str:
+    near = get_close_matches(name, [n for n in dir(module) if n[0].isupper()], n=1)
+    hint = f"; did you mean {package}/{kind}/{near[0]}?" if near else ""
+    return f"package {package} is installed in a version without {kind}/{name}{hint}"
