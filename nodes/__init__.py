@@ -1,1 +1,26 @@
-"""The lesson nodes and the hardware drivers, one file each, each runnable alone."""
+"""The lesson nodes: one file each, and each runs alone: `python -m nodes.mock_sonar`.
+
+Modules with an underscore are what they share: how a node lives and ends (`_life`), its
+parameters (`_parameters`), its words (`_speech`).
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+
+def _leave(_number: int, _frame: FrameType | None) -> None:
+    os._exit(0)
+
+
+if sys.argv[0] == "-m":
+    # `python -m nodes.x` is importing this package on its way to the node. A Ctrl-C that comes
+    # while rclpy loads finds nothing to clean up, and should not leave a traceback behind.
+    signal.signal(signal.SIGINT, _leave)
+    signal.signal(signal.SIGTERM, _leave)

@@ -1,0 +1,79 @@
+"""What a node says, in Russian or in English, one line a message whatever is put into it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rclpy.impl.rcutils_logger import RcutilsLogger
+
+LONGEST = 400
+"""Characters of a message; the rest is cut off."""
+
+_PICTURES = {code: 0x2400 + code for code in range(0x20)} | {0x7F: 0x2421}
+_C1 = dict.fromkeys(range(0x80, 0xA0), "\N{REPLACEMENT CHARACTER}")
+
+
+@dataclass(frozen=True)
+class Phrase:
+    """One message in both languages, with fields for `str.format`."""
+
+    en: str
+    ru: str
+
+
+def language(environment: Mapping[str, str]) -> str:
+    """`ru` or `en`, by the first of DECK_LANG, LC_ALL, LC_MESSAGES and LANG that is set."""
+    for name in ("DECK_LANG", "LC_ALL", "LC_MESSAGES", "LANG"):
+        if environment.get(name):
+            return "ru" if environment[name].lower().startswith("ru") else "en"
+    return "en"
+
+
+def printable(text: str) -> str:
+    """Show control characters as their pictures, replace what is no character, cut to length."""
+    clean = text.encode("utf-8", "replace").decode("utf-8").translate(_PICTURES).translate(_C1)
+    return clean if len(clean) <= LONGEST else clean[: LONGEST - 1] + "…"
+
+
+class Speech:
+    """Logs phrases in one language."""
+
+    def __init__(self, logger: RcutilsLogger, language: str) -> None:
+        self._logger = logger
+        self.language = language
+        self._said_s: dict[Phrase, float] = {}
+
+    def text(self, phrase: Phrase, **values: object) -> str:
+        """The phrase in this language, printable."""
+        template = phrase.ru if self.language == "ru" else phrase.en
+        return printable(template.format(**values))
+
+    def info(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
+        """Log; not more often than every `every_s` seconds."""
+        self._say(self._logger.info, phrase, every_s, values)
+
+    def warn(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
+        """Log a warning; not more often than every `every_s` seconds."""
+        self._say(self._logger.warning, phrase, every_s, values)
+
+    def error(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
+        """Log an error; not more often than every `every_s` seconds."""
+        self._say(self._logger.error, phrase, every_s, values)
+
+    def _say(
+        self,
+        log: Callable[[str], object],
+        phrase: Phrase,
+        every_s: float,
+        values: Mapping[str, object],
+    ) -> None:
+        now_s = time.monotonic()
+        if every_s and now_s - self._said_s.get(phrase, -every_s) < every_s:
+            return
+        self._said_s[phrase] = now_s
+        log(self.text(phrase, **values))

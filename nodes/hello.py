@@ -1,0 +1,43 @@
+"""Lesson 1: the smallest node there is. It wakes up and counts the seconds."""
+
+from __future__ import annotations
+
+import sys
+
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._parameters import Number
+from nodes._speech import Phrase
+
+_AWAKE = Phrase("Hello, ROS 2! The robot is awake.", "Привет, ROS 2! Робот проснулся!")
+_COUNT = Phrase("Running for {seconds:g} s. All is well.", "Работаю уже {seconds:g} с. Всё хорошо.")
+
+
+class Hello(LessonNode):
+    """Says how long it has been running."""
+
+    NAME = "hello_node"
+    SETTINGS = (
+        Number(
+            "period", 1.0, "Time between two words", low=0.01, high=3600.0, unit="s", fixed=True
+        ),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._count = 0
+        self.create_timer(self.number("period"), self._tick)
+        self.say.info(_AWAKE)
+
+    def _tick(self) -> None:
+        self._count += 1
+        self.say.info(_COUNT, seconds=self._count * self.number("period"))
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(Hello, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
