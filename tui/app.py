@@ -34,7 +34,7 @@ SCREENS = {
 TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs)
 
 
-class DeckApp(Acting, App[int]):
+class DeckApp(App[int], Acting):
     """One screen for the lessons."""
 
     TITLE = "Deck"

@@ -82,7 +82,10 @@ def bound(target: DOMNode) -> Iterable[type[Action[Any]]]:
 
 
 class Acting(DOMNode):
-    """Mixed into the app and the screens: runs the actions that they bind."""
+    """Mixed into the app and the screens, as the last base: runs the actions that they bind.
+
+    Textual takes style sheets and component classes from the first base only.
+    """
 
     async def action_act(self, action_id: str) -> None:
         """Do what the action called `action_id` does."""

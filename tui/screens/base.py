@@ -25,7 +25,7 @@ HEIGHTS = [(0, "-flat"), (20, "-low"), (34, "-tall"), (50, "-high")]
 """Heights: 80x24 is -low, 120x40 -tall, 200x60 -high."""
 
 
-class DeckScreen(Acting, Screen[None]):
+class DeckScreen(Screen[None], Acting):
     """Base of the screens that show a session.
 
     A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
