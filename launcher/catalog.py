@@ -9,12 +9,14 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.errors import LauncherError, ProfileNotFoundError, UsageError
-from launcher.profile_extends import SHIPPED
+from launcher.errors import LauncherError, ProfileError, ProfileNotFoundError, UsageError
+from launcher.profile_text import SHIPPED
 from launcher.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    from launcher.errors import ProfileProblem
 
 ENDINGS = (".yaml", ".yml")
 LESSON = re.compile(r"0*([0-9]+[a-z]?)(?![0-9a-z])")
@@ -36,6 +38,8 @@ class ProfileEntry:
     panels: tuple[str, ...] = ()
     error: str = ""
     """Why it cannot be started, one problem a line; empty if it can."""
+    problems: tuple[ProfileProblem, ...] = ()
+    """The same, piece by piece."""
 
 
 def list_profiles(
@@ -53,7 +57,7 @@ def list_profiles(
 
 
 def find_profile(name: str | Path) -> Path:
-    """Return the file of a profile given by path, by name, by lesson number or by a name's beginning.
+    """Return the file of a profile given by path, name, lesson number or beginning of a name.
 
     What is in `./profiles` goes before the course.
 
@@ -116,7 +120,13 @@ def _entry(path: Path, hardware: str) -> ProfileEntry:
     try:
         profile = load_profile(path, hardware=hardware)
     except LauncherError as error:
-        return ProfileEntry(path.stem, path.absolute(), lesson=_number(path.stem), error=str(error))
+        return ProfileEntry(
+            name=path.stem,
+            path=path.absolute(),
+            lesson=_number(path.stem),
+            error=str(error),
+            problems=error.problems if isinstance(error, ProfileError) else (),
+        )
     return ProfileEntry(
         name=profile.name,
         path=profile.path,

@@ -6,19 +6,18 @@ other profile says. A node set to nothing is taken out, and `run` replaces `exec
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from launcher.profile_text import read_text, shown
+from launcher.profile_text import SHIPPED, read_text, shown
 from launcher.profile_tree import Branch, Entry, did_you_mean, empty, plain
 from launcher.profile_yaml import read_yaml
 from launcher.words import say
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from launcher.profile_tree import Problems
 
-SHIPPED = Path(__file__).resolve().parent.parent / "profiles"
-"""The profiles of the course."""
 ALL: Any = {}
 ALL["*"] = ALL
 JOINED: Any = {

@@ -138,7 +138,7 @@ class ReadyDocument(Document):
     topic: RosName | None = Field(None, description="Ready when somebody publishes this topic.")
     service: RosName | None = Field(None, description="Ready when this service is offered.")
     node: RosName | None = Field(None, description="Ready when this node is in the ROS graph.")
-    within: float = Field(10.0, gt=0, le=3600, description="Seconds; later it counts as failed.")
+    within: float = Field(10.0, gt=0, le=3600, description="Seconds that this may take.")
 
 
 class NodeDocument(Document):

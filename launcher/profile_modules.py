@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from importlib.machinery import ModuleSpec
 
 COURSE = "nodes"
@@ -34,12 +34,17 @@ def likely_names(module: str, folders: Sequence[Path]) -> list[str]:
     """Return modules that may have been meant: those beside it, and the course's nodes."""
     places = [*map(str, folders), *(entry or os.curdir for entry in sys.path)]
     package, _, _ = module.rpartition(".")
-    names = [found.name for found in pkgutil.iter_modules(list(map(str, folders)))]
+    names = _inside(map(str, folders))
     for parent in {package, COURSE} - {""}:
         spec = _find(parent, places)
         inner = spec.submodule_search_locations if spec is not None else None
-        names += [f"{parent}.{found.name}" for found in pkgutil.iter_modules(list(inner or ()))]
+        names += [f"{parent}.{name}" for name in _inside(inner or ())]
     return names
+
+
+def _inside(places: Iterable[str]) -> list[str]:
+    found = (module.name for module in pkgutil.iter_modules(list(places)))
+    return [name for name in found if not name.startswith("_")]
 
 
 def _runnable(module: str, places: Sequence[str]) -> bool:

@@ -13,6 +13,8 @@ from launcher.words import say
 if TYPE_CHECKING:
     from launcher.profile_tree import Problems
 
+SHIPPED = Path(__file__).resolve().parent.parent / "profiles"
+"""The profiles of the course."""
 MAX_BYTES = 256 * 1024
 
 
