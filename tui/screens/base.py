@@ -34,8 +34,8 @@ class DeckScreen(Screen[None], Acting):
     and 1 to 4 belong to the app.
     """
 
-    HORIZONTAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = BREAKPOINTS
-    VERTICAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = HEIGHTS
+    HORIZONTAL_BREAKPOINTS = BREAKPOINTS
+    VERTICAL_BREAKPOINTS = HEIGHTS
     DEFAULT_CSS = """
     DeckScreen { layers: base overlay; layout: vertical; }
     """
