@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +11,7 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
-from tui.widgets.half_blocks import changed_spans, coarser, fitting_size, resized
+from tui.widgets.half_blocks import changed_spans, coarser, fitting_size
 from tui.widgets.image_view import ImageView
 
 if TYPE_CHECKING:
@@ -66,20 +68,6 @@ def test_the_largest_picture_that_fits_keeps_its_shape(
     picture: tuple[int, int], room: tuple[int, int], expected: tuple[int, int]
 ) -> None:
     assert fitting_size(*picture, *room) == expected
-
-
-def test_shrinking_takes_the_mean_of_what_lies_under_a_pixel() -> None:
-    checkered = np.zeros((8, 8, 3), np.uint8)
-    checkered[:, ::2] = 200
-    assert (resized(checkered, 4, 4) == 100).all()
-
-
-@pytest.mark.parametrize("size", [(1, 2), (3, 2), (64, 48), (640, 480), (700, 500)])
-def test_any_size_can_be_made_of_any_other(size: tuple[int, int]) -> None:
-    for had in ((1, 1), (2, 3), (479, 641), (480, 640)):
-        made = resized(plain_picture(had[1], had[0], RED), *size)
-        assert made.shape == (size[1], size[0], 3)
-        assert (made == RED).all()
 
 
 def test_fewer_bits_keep_black_and_white() -> None:
@@ -197,6 +185,11 @@ async def test_a_resize_fits_the_picture_anew() -> None:
         await pilot.resize_terminal(80, 25)
         await pilot.pause()
         assert [len(segment.text) for segment in app.view.render_line(3)] == [8, 64, 8]
+
+
+def test_the_widget_costs_no_numpy_before_there_is_a_picture() -> None:
+    code = "import sys, tui.widgets.image_view; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 async def test_an_array_that_is_no_picture_is_refused() -> None:

@@ -27,6 +27,8 @@ CHUNK = 64
 """Characters in a line of a long text."""
 HEX_CHUNK = 16
 DEEPEST_OPEN = 5
+HEADER = "header"
+"""Folded by itself: stamp and frame are seldom what one looks for, and take four lines."""
 WIDEST_KEY = 24
 
 
@@ -86,7 +88,7 @@ def _value(
 
 
 def _branch(path: Path, label: str, value: Value, is_open: IsOpen) -> Iterator[EchoLine]:
-    opened = is_open(path, len(path) <= DEEPEST_OPEN)
+    opened = is_open(path, len(path) <= DEEPEST_OPEN and path[-1] != HEADER)
     if isinstance(value, Mapping):
         fields = ngettext("{n} field", "{n} fields", len(value)).format(n=len(value))
         yield EchoLine(path, label, "" if opened and value else f"({fields})", "branch", opened)

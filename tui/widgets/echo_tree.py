@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rich.cells import cell_len
 from rich.segment import Segment
-from rich.style import Style
 from textual.binding import Binding, BindingType
 from textual.geometry import Region, Size
 from textual.message import Message
@@ -59,8 +58,7 @@ class EchoTree(ScrollView, can_focus=True):
         &> .echo-tree--text { color: $text-success; }
         &> .echo-tree--bytes { color: $text-warning; }
         &> .echo-tree--note { color: $text-muted; text-style: italic; }
-        &> .echo-tree--cursor { background: $block-cursor-blurred-background; }
-        &:focus > .echo-tree--cursor {
+        &> .echo-tree--cursor {
             color: $block-cursor-foreground; background: $block-cursor-background;
         }
     }
@@ -152,10 +150,9 @@ class EchoTree(ScrollView, can_focus=True):
             return Strip.blank(width, self.rich_style)
         line = self._lines[index]
         segments = self._segments(line)
-        if index == self._cursor and self._message is not None:
-            cursor = self.get_component_rich_style("echo-tree--cursor", partial=True)
-            segments = [Segment(text, (style or Style()) + cursor) for text, style, _ in segments]
-            return cut(segments, width, self.rich_style + cursor)
+        if index == self._cursor and self.has_focus:
+            cursor = self.get_component_rich_style("echo-tree--cursor")
+            return cut([Segment(text, cursor) for text, _, _ in segments], width, cursor)
         return cut(segments, width, self.rich_style)
 
     def action_move(self, by: int) -> None:

@@ -1,4 +1,7 @@
-"""A picture as rows of half-block characters: two pixels a cell, upper and lower."""
+"""A picture as rows of half-block characters: two pixels a cell, upper and lower.
+
+Imports numpy: whoever stands on the first screen imports this when there is a picture.
+"""
 
 from __future__ import annotations
 
@@ -33,28 +36,6 @@ def fitting_size(width: int, height: int, columns: int, rows: int) -> tuple[int,
     return fit_width, fit_height
 
 
-def resized(picture: Pixels, width: int, height: int) -> Pixels:
-    """The picture at another size: means of areas when it shrinks, nearest pixels when it grows."""
-    rows, columns = picture.shape[:2]
-    # Two samples a side of a target pixel look as good as all of them, at a fraction of the cost.
-    row_step, column_step = max(1, rows // (2 * height)), max(1, columns // (2 * width))
-    coarse = picture[row_step // 2 :: row_step, column_step // 2 :: column_step]
-    return _averaged(_averaged(coarse, height, 0), width, 1)
-
-
-def _averaged(picture: Pixels, length: int, axis: int) -> Pixels:
-    had = picture.shape[axis]
-    starts = np.arange(length) * had // length
-    if had <= length:
-        repeated: Pixels = picture.take(starts, axis=axis)
-        return repeated
-    sums = np.add.reduceat(picture, starts, axis=axis, dtype=np.uint32)
-    counts = np.diff(starts, append=had)
-    shape = (-1, 1, 1) if axis == 0 else (1, -1, 1)
-    means: Pixels = (sums // counts.reshape(shape)).astype(np.uint8)
-    return means
-
-
 def coarser(picture: Pixels, bits: int) -> Pixels:
     """The picture with so many bits a channel, black staying black and white white."""
     if bits >= FULL_DEPTH:
@@ -63,6 +44,16 @@ def coarser(picture: Pixels, bits: int) -> Pixels:
     table = (np.arange(256) * levels + 127) // 255 * 255 // levels
     coarse: Pixels = table.astype(np.uint8)[picture]
     return coarse
+
+
+def steadied(before: Pixels, fresh: Pixels, bits: int) -> Pixels:
+    """The fresh picture, coarser, with the pixels of the one before where they hardly differ.
+
+    A pixel on the edge between two steps of colour must not flicker with the camera's noise.
+    """
+    moved = np.abs(fresh.astype(np.int16) - before) > (256 >> bits)
+    now: Pixels = np.where(moved.any(axis=2, keepdims=True), coarser(fresh, bits), before)
+    return now
 
 
 def changed_spans(before: Pixels, after: Pixels) -> list[tuple[int, int, int]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
@@ -12,13 +11,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.widgets.half_blocks import (
-    changed_spans,
-    coarser,
-    fitting_size,
-    resized,
-    row_segments,
-)
+from graph.images import shrink
 from tui.widgets.plain import plain
 from tui.widgets.words import cut, in_row, word_strips
 
@@ -103,6 +96,8 @@ class ImageView(Widget):
         top, left = self._margins(self._shown, width, height)
         if not 0 <= y - top < self._shown.shape[0] // 2:
             return Strip.blank(width, self.rich_style)
+        from tui.widgets.half_blocks import row_segments
+
         strip = Strip(row_segments(self._shown, y - top), self._shown.shape[1])
         return in_row(strip, left, width, self.rich_style)
 
@@ -111,25 +106,24 @@ class ImageView(Widget):
         self._draw()
 
     def _draw(self) -> None:
+        from tui.widgets import half_blocks
+
         width, height = self.size
         rows = height - self._caption_rows(height)
         if self._source is None or width < 1 or rows < 1:
             return
         had = self._shown
-        shape = fitting_size(self._source.shape[1], self._source.shape[0], width, rows)
-        fresh = resized(self._source, *shape)
+        shape = half_blocks.fitting_size(self._source.shape[1], self._source.shape[0], width, rows)
+        fresh = shrink(self._source, *shape)
         if had is None or had.shape != fresh.shape:
-            self._shown = coarser(fresh, self._bits)
+            self._shown = half_blocks.coarser(fresh, self._bits)
             self.refresh()
             return
-        # A pixel on the edge between two steps of colour must not flicker with camera noise.
-        moved = np.abs(fresh.astype(np.int16) - had) > (256 >> self._bits)
-        now = np.where(moved.any(axis=2, keepdims=True), coarser(fresh, self._bits), had)
-        self._shown = now
+        now = self._shown = half_blocks.steadied(had, fresh, self._bits)
         top, left = self._margins(now, width, height)
         regions = [
             Region(left + column, top + row, cells, 1)
-            for row, column, cells in changed_spans(had, now)
+            for row, column, cells in half_blocks.changed_spans(had, now)
         ]
         if regions:
             self.refresh(*regions)

@@ -277,28 +277,35 @@ class TopicsTable(ScrollView, can_focus=True):
         chosen, cells = self._drawn[y] = self._to_draw(row)
         base = self.rich_style
         if chosen:
-            base += self.get_component_rich_style("topics-table--cursor", partial=True)
+            base = self.get_component_rich_style("topics-table--cursor")
         trouble = base
         if row.trouble is not None and not chosen:
             trouble += self.get_component_rich_style("topics-table--trouble", partial=True)
-        segments = [Segment("▶ " if chosen else "  ", base)]
-        for place, text in zip(self._places, cells, strict=True):
-            style = trouble if place.column.id == "state" else base
-            segments.append(Segment(text + " ", style))
-        return Strip(segments).adjust_cell_length(width, base)
+        styles = [trouble if place.column.id == "state" else base for place in self._places]
+        return self._strip("▶ " if chosen else "", cells, styles, width, base)
 
     def _header(self, width: int) -> Strip:
         style = self.get_component_rich_style("topics-table--header")
         by_style: Style = style + self.get_component_rich_style(
             "topics-table--sorted", partial=True
         )
-        segments = [Segment(" " * MARK, style)]
-        for place in self._places:
-            title, is_by = _(place.column.title), place.column is self._order.column
-            if is_by:
-                title += "▼" if self._order.falling else "▲"
-            segments.append(Segment(place.fitted(title) + " ", by_style if is_by else style))
-        return Strip(segments).adjust_cell_length(width, style)
+        by, arrow = self._order.column, "▼" if self._order.falling else "▲"
+        styles = [by_style if place.column is by else style for place in self._places]
+        titles = tuple(
+            place.fitted(_(place.column.title) + (arrow if place.column is by else ""))
+            for place in self._places
+        )
+        return self._strip("", titles, styles, width, style)
+
+    def _strip(
+        self, mark: str, cells: tuple[str, ...], styles: list[Style], width: int, base: Style
+    ) -> Strip:
+        segments = [Segment(mark.ljust(MARK), base)]
+        end = 0
+        for place, text, style in zip(self._places, cells, styles, strict=True):
+            segments += [Segment(" " * (place.x - end), base), Segment(text, style)]
+            end = place.x + place.width
+        return Strip(segments).adjust_cell_length(width, base)
 
     def _empty_words(self) -> tuple[str, str]:
         if self._rows and self._order.words:

@@ -178,7 +178,7 @@ class Place:
 
 
 def placed(width: int) -> tuple[Place, ...]:
-    """The columns that fit into so many cells, one cell between them, from the first one on."""
+    """The columns that fit into so many cells, with their gaps."""
     kept = list(COLUMNS)
     for unneeded in _GIVEN_UP:
         if _least(kept) <= width:
@@ -194,9 +194,15 @@ def placed(width: int) -> tuple[Place, ...]:
             share += spare % len(flexible)
         wide = min(width, (column.width or column.least) + share)
         places.append(Place(column, x, wide))
-        x += wide + 1
+        x += wide + _gap(column)
     return tuple(places)
 
 
 def _least(columns: list[Column]) -> int:
-    return sum(column.width or column.least for column in columns) + len(columns) - 1
+    gaps = sum(_gap(column) for column in columns[:-1])
+    return sum(column.width or column.least for column in columns) + gaps
+
+
+def _gap(column: Column) -> int:
+    """Cells after a column: two where a figure on the right is followed by a word on the left."""
+    return 2 if column.id == "age" else 1

@@ -1,0 +1,135 @@
+"""What can be done on the screen of topics."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tui.actions.action import Action
+from tui.i18n import N_
+
+if TYPE_CHECKING:
+    from tui.screens.topics import TopicsScreen
+
+
+class TopicsAction(Action["TopicsScreen"]):
+    """Something that the screen of topics does."""
+
+
+class Filter(TopicsAction):
+    """Narrow the list down."""
+
+    id = "topics.filter"
+    key = "slash"
+    title = N_("Filter")
+    tooltip = N_("Show only topics whose name or type has the words that you type.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Put the cursor into the filter."""
+        target.focus_filter()
+
+
+class Pause(TopicsAction):
+    """Hold the message still."""
+
+    id = "topics.pause"
+    key = "p"
+    title = N_("Pause")
+    tooltip = N_("Hold the message still, or go on with the newest one.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Pause, or go on."""
+        target.toggle_pause()
+
+
+class CopyMessage(TopicsAction):
+    """The message for the clipboard."""
+
+    id = "topics.copy"
+    key = "y,c"
+    title = N_("Copy")
+    tooltip = N_("Copy the message as YAML, as `ros2 topic pub` takes it.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Copy it."""
+        target.copy_message()
+
+
+class PictureOrTree(TopicsAction):
+    """An image as a picture, or as its fields."""
+
+    id = "topics.picture"
+    key = "i"
+    title = N_("Picture")
+    tooltip = N_("Show an image as a picture, or as a tree of its fields.")
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """Only for images."""
+        return target.shows_image
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Show the other one."""
+        target.toggle_picture()
+
+
+class SortByNext(TopicsAction):
+    """Another column to sort by."""
+
+    id = "topics.sort"
+    key = "s"
+    title = N_("Sort")
+    tooltip = N_("Sort by the next column; a click on a title sorts by that one.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Sort by it."""
+        target.table.sort_by_next()
+
+
+class Reverse(TopicsAction):
+    """The order turned round."""
+
+    id = "topics.reverse"
+    key = "r"
+    title = N_("Reverse")
+    tooltip = N_("Turn the order of the topics round.")
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Turn it round."""
+        order = target.table.order
+        target.table.reorder(order.by(order.column_id))
+
+
+class Housekeeping(TopicsAction):
+    """Topics of ROS itself."""
+
+    id = "topics.housekeeping"
+    key = "a"
+    title = N_("All")
+    tooltip = N_("Show or hide topics of ROS itself: /rosout, /parameter_events.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Show or hide them."""
+        target.toggle_housekeeping()
+
+
+TOPICS_ACTIONS = (
+    Filter,
+    Pause,
+    CopyMessage,
+    SortByNext,
+    Reverse,
+    Housekeeping,
+    PictureOrTree,
+)

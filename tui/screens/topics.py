@@ -1,0 +1,237 @@
+"""Every topic with its rates, and the chosen one live."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Input, Static
+
+from graph import images
+from tui.actions import bindings
+from tui.actions.topics import TOPICS_ACTIONS
+from tui.i18n import _, ngettext
+from tui.screens.base import DeckScreen
+from tui.widgets.echo_tree import EchoTree
+from tui.widgets.echo_yaml import yaml_text
+from tui.widgets.topic_detail import TopicDetail
+from tui.widgets.topic_words import size_text
+from tui.widgets.topics_table import TopicsTable
+from tui.widgets.topics_table_columns import hz_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from textual.app import ComposeResult
+    from textual.timer import Timer
+
+    from graph.data import Sample, Value
+    from tui.messages import GraphChanged, LanguageChanged, SessionChanged
+
+IMAGE = "sensor_msgs/msg/Image"
+SETTLED_S = 0.12
+"""How long a choice must stand before its topic is subscribed: whoever walks down the list with
+the arrow keys asks for none of those passed by."""
+
+
+class TopicsScreen(DeckScreen):
+    """A table of topics and, of the chosen one, the newest message as a tree or a picture."""
+
+    tab: ClassVar[str] = "topics"
+    measure_all = True
+    BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS)
+    DEFAULT_CSS = """
+    TopicsScreen {
+        #topics-bar { height: 1; }
+        #topics-filter { width: 1fr; }
+        #topics-count { width: auto; padding: 0 1; color: $text-muted; }
+        #topics-body { height: 1fr; layout: vertical; }
+        TopicsTable { height: auto; min-height: 4; max-height: 50%; }
+        TopicDetail { border-top: solid $panel; }
+    }
+    TopicsScreen.-wide {
+        #topics-body { layout: horizontal; }
+        TopicsTable { width: 3fr; height: 1fr; max-height: 100%; }
+        TopicDetail { width: 2fr; border-top: none; border-left: solid $panel; }
+    }
+    TopicsScreen.-low TopicHead, TopicsScreen.-flat TopicHead { height: 2; }
+    TopicsScreen.-flat TopicDetail { border-top: none; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._settling: Timer | None = None
+
+    def compose_body(self) -> ComposeResult:
+        """The filter above table and message."""
+        with Horizontal(id="topics-bar"):
+            yield Input(id="topics-filter", compact=True, select_on_focus=False)
+            yield Static(id="topics-count", markup=False)
+        with Vertical(id="topics-body"):
+            yield TopicsTable()
+            yield TopicDetail()
+
+    @property
+    def table(self) -> TopicsTable:
+        """The table of topics."""
+        return self.query_one(TopicsTable)
+
+    @property
+    def detail(self) -> TopicDetail:
+        """The chosen topic."""
+        return self.query_one(TopicDetail)
+
+    @property
+    def filter(self) -> Input:
+        """Where the words of the filter are typed."""
+        return self.query_one("#topics-filter", Input)
+
+    def watch_topics(self) -> set[str]:
+        """The chosen one."""
+        chosen = self.table.chosen if self.is_mounted else None
+        return set() if chosen is None else {chosen}
+
+    def on_mount(self) -> None:
+        """Begin in the table."""
+        self.table.focus()
+        self._label()
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Show rates, and the newest message of the chosen topic."""
+        update = message.update
+        if update.error:
+            self.table.show_words(_("ROS cannot be observed"), update.error)
+        self.table.show(update.topics)
+        self.detail.show_topic(self.table.chosen_row)
+        self._count()
+        samples = update.samples.get(self.table.chosen or "", ())
+        if samples:
+            self._show_message(samples[-1])
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Forget the topics of a session that has ended."""
+        super().on_session_changed(message)
+        if self.feed.link is None:
+            self.table.show(())
+            self._label()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Say everything anew."""
+        super().on_language_changed(message)
+        self._label()
+        self.detail.relabel()
+
+    @on(TopicsTable.Chosen)
+    def _chosen(self) -> None:
+        self.detail.show_topic(self.table.chosen_row)
+        self.refresh_bindings()
+        if self._settling is not None:
+            self._settling.stop()
+        self._settling = self.set_timer(SETTLED_S, self.topics_changed)
+
+    @on(TopicsTable.Opened)
+    def _opened(self) -> None:
+        self.detail.echo.focus()
+
+    @on(TopicsTable.Arranged)
+    def _arranged(self) -> None:
+        self._count()
+
+    @on(EchoTree.PauseChanged)
+    def _pause_changed(self) -> None:
+        self.detail.relabel()
+
+    @on(Input.Changed, "#topics-filter")
+    def _filter_changed(self, event: Input.Changed) -> None:
+        self.table.filter(event.value)
+
+    @on(Input.Submitted, "#topics-filter")
+    def _filter_done(self) -> None:
+        self.table.focus()
+
+    def key_escape(self) -> None:
+        """Leave the filter and show every topic again, or leave the message."""
+        if self.filter.has_focus or self.focused is self.table:
+            self.filter.value = ""
+        self.table.focus()
+
+    def focus_filter(self) -> None:
+        """Put the cursor into the filter."""
+        self.filter.focus()
+
+    def toggle_housekeeping(self) -> None:
+        """Show or hide topics of ROS itself."""
+        order = self.table.order
+        self.table.reorder(replace(order, housekeeping=not order.housekeeping))
+
+    def toggle_pause(self) -> None:
+        """Hold the message still, or go on."""
+        self.detail.echo.pause(not self.detail.echo.paused)
+
+    @property
+    def shows_image(self) -> bool:
+        """Whether the chosen topic carries images."""
+        row = self.table.chosen_row if self.is_mounted else None
+        return row is not None and IMAGE in row.type_names
+
+    def toggle_picture(self) -> None:
+        """Show an image as a picture, or as a tree."""
+        self.detail.show_as_picture(not self.detail.as_picture)
+
+    def copy_message(self) -> None:
+        """Copy the message that is shown as YAML."""
+        message = self.detail.echo.message
+        if message is None:
+            self.notify(_("There is no message to copy."), severity="warning", markup=False)
+            return
+        text, cut = yaml_text(message)
+        self.app.copy_to_clipboard(text)
+        words = _("Copied as YAML: {size}.").format(size=size_text(len(text.encode())))
+        if cut:
+            words += " " + _("Long arrays were cut.")
+        self.notify(words, markup=False)
+
+    def _show_message(self, sample: Sample) -> None:
+        first = self.detail.sample is None
+        self.detail.show_message(sample)
+        if sample.type_name != IMAGE:
+            return
+        if first:
+            self.detail.show_as_picture(True)
+        if self.detail.as_picture and not self.detail.echo.paused:
+            self._show_picture(sample.value)
+
+    def _show_picture(self, value: Mapping[str, Value]) -> None:
+        encoding = str(value.get("encoding"))
+        try:
+            rgb = images.to_rgb(value)
+        except images.ImageError as error:
+            known = encoding in images.COLOURS or encoding in images.DEPTHS
+            headline = _("this picture cannot be shown")
+            if not known:
+                headline = _("pictures of the encoding {encoding} cannot be shown")
+            self.detail.show_no_picture(headline.format(encoding=encoding), str(error))
+            return
+        row = self.table.chosen_row
+        rate = f"{hz_text(row.hz if row else None)} {_('Hz')}"
+        self.detail.show_picture(rgb, f"{encoding} {rgb.shape[1]}×{rgb.shape[0]} · {rate}")
+
+    def _label(self) -> None:
+        self.filter.placeholder = _("filter: words of a name or a type")
+        running = self.feed.link is not None
+        headline = _("no topics yet") if running else _("no lesson is running")
+        self.table.show_words(headline, _("Nodes are starting.") if running else "")
+        self._count()
+
+    def _count(self) -> None:
+        update = self.feed.update
+        everything = 0 if update is None else len(update.topics)
+        shown = len(self.table.shown)
+        words = ngettext("{n} topic", "{n} topics", everything).format(n=everything)
+        if shown != everything:
+            words = _("{shown} of {topics}").format(shown=shown, topics=words)
+        count = self.query_one("#topics-count", Static)
+        if words != getattr(count, "content", None):
+            count.update(words)

@@ -1,0 +1,97 @@
+"""A topic in sentences: what it is doing, who is on it, and what to do when nothing comes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from graph.data import Trouble
+from tui.i18n import _, ngettext
+from tui.widgets.plain import plain
+from tui.widgets.topics_table_columns import bandwidth_text, hz_text
+from tui.widgets.trouble import no_data_words, trouble_words
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from graph.data import EndpointInfo, TopicRow
+
+LONGEST = 400
+KILO = 1000
+SHOWN_NODES = 4
+
+
+def advice(row: TopicRow) -> tuple[str, str]:
+    """Why nothing can be shown of the topic, and the way out; both empty if there is no trouble."""
+    if row.trouble is None:
+        return "", _remark(row)
+    return trouble_words(row.trouble, row.age_s), plain(_way_out(row, row.trouble), LONGEST)
+
+
+def _way_out(row: TopicRow, trouble: Trouble) -> str:
+    facts = row.facts
+    if trouble is Trouble.NO_PUBLISHER:
+        return _("Start the node that publishes it, or look for a misspelt or remapped name.")
+    if trouble is Trouble.QUIET:
+        return _("Publishers are there: {nodes}. Look at their logs.").format(
+            nodes=names(row.published_by) or row.publishers
+        )
+    if trouble is Trouble.UNKNOWN_TYPE and "package" in facts:
+        words = _("{type}: install the package {package}, or source the workspace that has it.")
+        return words.format(**facts)
+    if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
+        words = _(
+            "{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} "
+            "is offered. Make the publisher {requested} or the subscriber {offered}."
+        )
+        return words.format(**facts)
+    return row.detail
+
+
+def _remark(row: TopicRow) -> str:
+    if "types" in row.facts:
+        words = _("Peers disagree about the type: {types}; shown is {shown}.")
+        return plain(words.format(**row.facts), LONGEST)
+    return plain(row.detail, LONGEST)
+
+
+def figures(row: TopicRow, size_bytes: int | None) -> str:
+    """Rate, bandwidth and size in one line; why there are none if so."""
+    if not row.measured:
+        parts = [_("not measured: Deck is not subscribed")]
+    elif row.trouble is Trouble.QUIET and row.age_s is not None:
+        parts = [no_data_words(row.age_s)]
+    elif row.hz is None:
+        parts = [_("no rate yet: it takes two messages")] if row.trouble is None else []
+    else:
+        parts = [f"{hz_text(row.hz)} {_('Hz')}", bandwidth_text(row.bytes_per_s)]
+    if size_bytes is not None:
+        parts.append(_("{size} a message").format(size=size_text(size_bytes)))
+    return " · ".join(parts)
+
+
+def size_text(size_bytes: int) -> str:
+    """A size with three figures and its unit."""
+    if size_bytes < KILO:
+        return _("{n} B").format(n=size_bytes)
+    if size_bytes < KILO * KILO:
+        return _("{n} kB").format(n=f"{size_bytes / KILO:.1f}")
+    return _("{n} MB").format(n=f"{size_bytes / KILO / KILO:.1f}")
+
+
+def ends(row: TopicRow) -> str:
+    """Who publishes and who listens, by their names where they are known."""
+    publishers = names(row.published_by) or ngettext(
+        "{n} publisher", "{n} publishers", row.publishers
+    ).format(n=row.publishers)
+    subscribers = names(row.subscribed_by) or ngettext(
+        "{n} subscriber", "{n} subscribers", row.subscribers
+    ).format(n=row.subscribers)
+    return f"{publishers} → {subscribers}"
+
+
+def names(endpoints: Sequence[EndpointInfo]) -> str:
+    """The nodes of these endpoints, each once, without the slash of the root namespace."""
+    found = dict.fromkeys(plain(end.node.removeprefix("/"), LONGEST) for end in endpoints)
+    shown = list(found)[:SHOWN_NODES]
+    more = len(found) - len(shown)
+    return ", ".join(shown) + (f" +{more}" if more else "")
