@@ -23,7 +23,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from launcher.words import say
+from launcher.words import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -66,11 +66,17 @@ class ProfileProblem:
         """`file:line:column`, as editors and terminals make it clickable."""
         return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
 
-    def __str__(self) -> str:
+    @property
+    def words(self) -> Words:
         """One line: where, which field, what is wrong, how to mend it."""
-        field = f"{self.field}: " if self.field else ""
-        hint = f" ({self.hint})" if self.hint else ""
-        return f"{self.where}: {field}{self.message}{hint}"
+        field = "{field}: " if self.field else ""
+        hint = " ({hint})" if self.hint else ""
+        values = {"field": self.field, "message": self.message, "hint": self.hint}
+        return Words("{where}: " + field + "{message}" + hint, {"where": self.where, **values})
+
+    def __str__(self) -> str:
+        """The same, in English."""
+        return str(self.words)
 
 
 class ProfileError(UsageError):
@@ -79,7 +85,11 @@ class ProfileError(UsageError):
     def __init__(self, problems: Iterable[ProfileProblem]) -> None:
         """Keep `problems`, of which there is at least one."""
         self.problems: tuple[ProfileProblem, ...] = tuple(problems)
-        super().__init__("\n".join(map(str, self.problems)))
+        super().__init__(*(problem.words for problem in self.problems))
+
+    def __str__(self) -> str:
+        """One problem a line."""
+        return "\n".join(map(str, self.problems))
 
 
 class ProfileNotFoundError(UsageError):

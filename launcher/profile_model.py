@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSche
 from pydantic_core import PydanticCustomError
 
 from launcher.domain import LAST_DOMAIN
-from launcher.words import say
+from launcher.words import Words, say
 
 Restart = Literal["never", "on-failure", "always"]
 Panel = Literal["sonar", "wheels", "camera", "head", "voice", "composer"]
@@ -26,9 +26,9 @@ PEER = re.compile(r"[A-Za-z0-9:][A-Za-z0-9.:%_-]*")
 ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
-def refuse(template: str, **values: object) -> PydanticCustomError:
-    """Return the error by which a validator here refuses a value, in translatable words."""
-    return PydanticCustomError("deck", "{words}", {"words": say(template, **values)})
+def refuse(words: Words) -> PydanticCustomError:
+    """Return the error by which a validator here refuses a value."""
+    return PydanticCustomError("deck", "{words}", {"words": words})
 
 
 def _texts(value: object) -> object:
@@ -37,13 +37,13 @@ def _texts(value: object) -> object:
 
 def _module(value: object) -> object:
     if isinstance(value, str) and not MODULE.fullmatch(value):
-        raise refuse("{value!r} is no Python module; write it as nodes.hello", value=value)
+        raise refuse(say("{value!r} is no Python module; write it as nodes.hello", value=value))
     return value
 
 
 def _ros_name(value: object) -> object:
     if isinstance(value, str) and not ROS_NAME.fullmatch(value):
-        raise refuse("{value!r} is no ROS name; write it as /sensor/sonar_front", value=value)
+        raise refuse(say("{value!r} is no ROS name; write it as /sensor/sonar_front", value=value))
     return value
 
 
@@ -56,21 +56,21 @@ def _ros_names(value: object) -> object:
 def _variables(value: object) -> object:
     for name, text in value.items() if isinstance(value, dict) else ():
         if not ENV_NAME.fullmatch(name):
-            raise refuse("{name!r} is no name of an environment variable", name=name)
+            raise refuse(say("{name!r} is no name of an environment variable", name=name))
         if isinstance(text, str) and "\0" in text:
-            raise refuse("the variable {name} holds a NUL character", name=name)
+            raise refuse(say("the variable {name} holds a NUL character", name=name))
     return value
 
 
 def _command(value: object) -> object:
     if isinstance(value, str):
         raise refuse(
-            "expected a list, found one text; write [{words}]", words=", ".join(value.split())
+            say("expected a list, found one text; write [{words}]", words=", ".join(value.split()))
         )
     if value == []:
-        raise refuse("an empty command; write for example [ros2, run, package, program]")
+        raise refuse(say("an empty command; write for example [ros2, run, package, program]"))
     if isinstance(value, list) and any("\0" in str(word) for word in value):
-        raise refuse("a command cannot hold a NUL character")
+        raise refuse(say("a command cannot hold a NUL character"))
     return value
 
 
@@ -79,12 +79,12 @@ def _discovery(value: object) -> object:
         return value
     if not isinstance(value, list) or not value:
         raise refuse(
-            "expected localhost, subnet or a list of addresses, found {value!r}", value=value
+            say("expected localhost, subnet or a list of addresses, found {value!r}", value=value)
         )
     for peer in value:
         if not isinstance(peer, str) or not PEER.fullmatch(peer):
             raise refuse(
-                "{peer!r} is no address; write it as 192.168.1.7 or robot.local", peer=peer
+                say("{peer!r} is no address; write it as 192.168.1.7 or robot.local", peer=peer)
             )
     return tuple(value)
 

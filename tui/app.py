@@ -84,7 +84,7 @@ class DeckApp(App[int], Acting):
 
     def refuse(self, error: LauncherError) -> None:
         """Say why nothing was opened."""
-        words = "\n".join(said(str(part)) for part in error.args) or str(error)
+        words = "\n".join(said(part) for part in error.args if isinstance(part, str)) or str(error)
         self.exit(error.exit_code, message=words)
 
     def on_graph_ready(self, message: GraphReady) -> None:

@@ -75,7 +75,8 @@ def said(words: str) -> str:
     template = getattr(words, "template", None)
     if template is None:
         return words
-    values: dict[str, object] = getattr(words, "values", {})
+    found: dict[str, object] = getattr(words, "values", {})
+    values = {k: said(value) if isinstance(value, str) else value for k, value in found.items()}
     return _(template).format(**values) if values else _(template)
 
 
