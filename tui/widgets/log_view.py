@@ -129,9 +129,28 @@ class LogView(LogLines):
         """Which of the found lines is pointed at, from 1; 0 if none is."""
         return self.index.found_number(self.choice.cursor)
 
+    @property
+    def chosen_count(self) -> int:
+        """How many of the lines shown are chosen."""
+        return len(self._chosen())
+
+    @property
+    def chosen_node(self) -> str | None:
+        """Node of the line pointed at, None if none is."""
+        cursor = self.choice.cursor
+        found = [entry.node for entry in self._chosen() if entry.id == cursor]
+        return found[0] if found else None
+
+    def _chosen(self) -> list[Entry]:
+        span = self.choice.span
+        if span is None:
+            return []
+        first, end = self.index.place_of(span[0]), self.index.place_of(span[1] + 1)
+        return self.index.shown[first:end]
+
     def chosen_lines(self) -> list[str]:
         """The lines chosen, as text with date, severity and node."""
-        return self._exported(entry for entry in self.index.shown if entry.id in self.choice)
+        return self._exported(self._chosen())
 
     def shown_lines(self) -> list[str]:
         """All lines that the filter lets through, likewise."""

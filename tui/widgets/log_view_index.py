@@ -6,6 +6,7 @@ when it is folded to a width.
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from itertools import accumulate, chain
@@ -19,18 +20,34 @@ from tui.widgets.log_view_ring import Entry
 _id_of = attrgetter("id")
 
 
+_narrow = re.compile("[ -~\xa0-\xac\xae-\u02ff\u0370-\u0482\u048a-\u052f\u2010-\u2027]*").fullmatch
+"""Matches texts of which every character takes one cell."""
+
+
 def folded(text: str, width: int) -> list[str]:
-    """The text cut into pieces of at most `width` cells; an empty one is one empty piece."""
-    if text.isascii():
-        return [text[at : at + width] for at in range(0, len(text), width)] or [""]
-    return chop_cells(text, width) or [""]
+    """The text cut into rows of at most `width` cells, and a blank at the end of a row.
+
+    Rows end between words where the row is at least half full then; texts with wide or joined
+    characters are cut anywhere between these.
+    """
+    if not _narrow(text):
+        return chop_cells(text, width) or [""]
+    pieces: list[str] = []
+    at, end = 0, len(text)
+    while end - at > width:
+        cut = text.rfind(" ", at + width // 2, at + width + 1) + 1 or at + width
+        pieces.append(text[at:cut])
+        at = cut
+    if at < end or not pieces:
+        pieces.append(text[at:])
+    return pieces
 
 
 def folded_rows(text: str, width: int) -> int:
-    """How many pieces `folded` makes, without making them where that can be told."""
-    if text.isascii():
-        return max(1, -(-len(text) // width))
-    return 1 if cell_len(text) <= width else len(folded(text, width))
+    """How many rows `folded` makes, without making them where that can be told."""
+    if len(text) <= width and (text.isascii() or cell_len(text) <= width):
+        return 1
+    return len(folded(text, width))
 
 
 class LogIndex:

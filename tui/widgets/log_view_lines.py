@@ -38,7 +38,14 @@ class LogLines(TailView):
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = PALETTE_CLASSES
-    DEFAULT_CSS = f"LogLines {{ background: $surface; color: $foreground; {PALETTE_CSS} }}"
+    DEFAULT_CSS = f"""
+    LogLines {{
+        background: $surface;
+        color: $foreground;
+        &:focus {{ background-tint: $foreground 4%; }}
+        {PALETTE_CSS}
+    }}
+    """
 
     def __init__(
         self,

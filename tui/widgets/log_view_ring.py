@@ -12,7 +12,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from launcher.status import LogLine
+from launcher.status import LogLine, Severity
+from tui.i18n import said
 from tui.widgets.plain import plain
 
 LONGEST_TEXT = 16_384
@@ -51,6 +52,8 @@ class LogRing:
         """Keep at most so many lines and bytes, and a quarter more for a while."""
         self.max_lines, self.max_bytes = max_lines, max_bytes
         self.entries: list[Entry] = []
+        self.counts: dict[str, list[int]] = {}
+        """Lines that ever came, by node and rank of the severity; missing ones do not count."""
         self._next_id = 0
         self._held = 0
         self._bytes = 0
@@ -67,7 +70,10 @@ class LogRing:
                 seen[node] += seq - last - 1
                 self._add(node, line.time_s, skipped=seq - last - 1)
             self._last_seq[node] = seq
-            self._add(node, line.time_s, line.severity.rank, line.text)
+            rank = line.severity.rank
+            self.counts.setdefault(node, [0] * len(Severity))[rank] += 1
+            text = line.text if line.source != "deck" else said(line.text)
+            self._add(node, line.time_s, rank, text)
         for node, count in skipped.items():
             missing = count - seen[node]
             if missing > 0:
@@ -92,6 +98,8 @@ class LogRing:
     def clear(self) -> None:
         """Forget every line."""
         self.entries.clear()
+        self.counts.clear()
+        self._last_seq.clear()
         self._held = self._bytes = 0
 
     def hold(self) -> None:

@@ -69,11 +69,10 @@ def _second(second: int) -> str:
 def clock(time_s: float, cells: int) -> str:
     """Local time of day in so many cells, with milliseconds if they fit."""
     try:
-        words = _second(int(time_s))
+        second, milliseconds = divmod(round(time_s * 1000), 1000)
+        words = f"{_second(second)}.{milliseconds:03}"
     except (OverflowError, ValueError, OSError):
         words = "--:--:--"
-    else:
-        words = f"{words}.{int(time_s % 1 * 1000):03}"
     return words[:cells].ljust(cells)
 
 

@@ -100,13 +100,13 @@ class TailView(ScrollView, can_focus=True):
             self.set_timer(rest, self._rows_came)
 
     def _rows_came(self) -> None:
+        self._waiting = False
+        self._drawn_s = monotonic()
         had = self.virtual_size.height
         self.redraw(only_end=not self.following and self.total_rows >= had)
 
     def redraw(self, *, only_end: bool = False) -> None:
         """Draw; with `only_end` nothing but rows that came into sight below the others."""
-        self._waiting = False
-        self._drawn_s = monotonic()
         had = self.virtual_size.height
         # Assigned past the reactive: its watcher would lay out the whole screen for each batch.
         self.set_reactive(Widget.virtual_size, Size(self.container_size.width, self.total_rows))

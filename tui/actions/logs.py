@@ -1,0 +1,260 @@
+"""What can be done on the Logs screen; each letter also under its Cyrillic key."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from tui.actions.action import Action
+from tui.i18n import N_
+
+if TYPE_CHECKING:
+    from tui.screens.logs import LogsScreen
+
+
+class LogsAction(Action["LogsScreen"]):
+    """Something about the log."""
+
+
+class Follow(LogsAction):
+    """Follow or pause."""
+
+    id = "logs.follow"
+    key = "p,з"
+    title = N_("Pause")
+    tooltip = N_("Stand still while lines come in, or follow the newest again.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Do the other of the two."""
+        target.pane.view.toggle_following()
+
+
+class Search(LogsAction):
+    """Search."""
+
+    id = "logs.search"
+    key = "slash,ctrl+f"
+    title = N_("Search")
+    tooltip = N_("Find text in the lines while it is written; Escape ends it.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Ask what for."""
+        target.pane.search()
+
+
+class _Find(LogsAction):
+    """Go to a line that was found."""
+
+    step: ClassVar[int]
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Point at it."""
+        target.pane.find(cls.step)
+
+
+class FindNext(_Find):
+    """The next found line."""
+
+    id = "logs.next"
+    key = "n,т"
+    title = N_("Next")
+    tooltip = N_("Go to the next line that was found.")
+    step = 1
+
+
+class FindPrevious(_Find):
+    """The previous found line."""
+
+    id = "logs.previous"
+    key = "N,Т"
+    title = N_("Previous")
+    tooltip = N_("Go to the previous line that was found.")
+    step = -1
+
+
+class OnlyFound(LogsAction):
+    """Found lines only, or all."""
+
+    id = "logs.only_found"
+    key = "f,а"
+    title = N_("Only found")
+    tooltip = N_("Leave out the lines that do not hold the text searched for.")
+
+    @classmethod
+    def possible(cls, target: LogsScreen) -> bool | None:
+        """Only with a text to search for."""
+        return True if target.pane.view.log_filter.search else None
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Do the other of the two."""
+        chosen = target.pane.view.log_filter
+        target.choose(replace(chosen, only_found=not chosen.only_found))
+
+
+class RaiseSeverity(LogsAction):
+    """A higher lowest severity."""
+
+    id = "logs.severity"
+    key = "s,ы"
+    title = N_("Severity")
+    tooltip = N_("Leave out the least severe lines that are shown; after FATAL comes all.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Take the next one."""
+        target.choose(target.pane.view.log_filter.next_minimum())
+
+
+class ShowNodes(LogsAction):
+    """The list of nodes."""
+
+    id = "logs.nodes"
+    key = "l,д"
+    title = N_("Nodes")
+    tooltip = N_("Go to the list of nodes; there Enter mutes one, or lets it be heard.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Open it, or close it where it covers the log."""
+        target.toggle_nodes()
+
+
+class Mute(LogsAction):
+    """Mute a node, or hear it."""
+
+    id = "logs.mute"
+    key = "m,ь"
+    title = N_("Mute")
+    tooltip = N_("Mute the node of the chosen line or row, or let it be heard again.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: LogsScreen) -> bool | None:
+        """Only with a node to mute."""
+        return True if target.chosen_node else None
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Do the other of the two."""
+        if target.chosen_node:
+            target.choose(target.pane.view.log_filter.toggled(target.chosen_node))
+
+
+class Alone(LogsAction):
+    """Mute all but one node."""
+
+    id = "logs.alone"
+    key = "o,щ"
+    title = N_("Only this")
+    tooltip = N_("Mute all but the node of the chosen line or row; again: as before.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: LogsScreen) -> bool | None:
+        """Only with a node to listen to."""
+        return True if target.chosen_node else None
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Listen to it alone."""
+        if target.chosen_node:
+            target.choose(target.pane.view.log_filter.alone(target.chosen_node))
+
+
+class HearAll(LogsAction):
+    """Hear every node."""
+
+    id = "logs.all"
+    key = "a,ф"
+    title = N_("All nodes")
+    tooltip = N_("Let every node be heard, at every severity.")
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Mute nobody, leave out nothing."""
+        target.hear_all()
+
+
+class Fold(LogsAction):
+    """Fold long lines, or not."""
+
+    id = "logs.fold"
+    key = "w,ц"
+    title = N_("Fold")
+    tooltip = N_("Fold long lines, or show one row of each: left and right shift it.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Do the other of the two."""
+        target.pane.view.set_fold(not target.pane.view.fold)
+
+
+class Copy(LogsAction):
+    """Copy the lines chosen."""
+
+    id = "logs.copy"
+    key = "c,с"
+    title = N_("Copy")
+    tooltip = N_("Copy the lines chosen to the clipboard of your terminal.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Copy."""
+        target.pane.copy()
+
+
+class CopyAll(LogsAction):
+    """Copy all lines shown."""
+
+    id = "logs.copy_all"
+    key = "C,С"
+    title = N_("Copy all")
+    tooltip = N_("Copy all lines that are shown to the clipboard of your terminal.")
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Copy."""
+        target.pane.copy_all()
+
+
+class Save(LogsAction):
+    """Write lines to a file."""
+
+    id = "logs.save"
+    key = "ctrl+s"
+    title = N_("Write")
+    tooltip = N_("Write the lines chosen, else all shown, to a file.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LogsScreen) -> None:
+        """Ask for its name."""
+        target.pane.save()
+
+
+LOGS_ACTIONS = (
+    Follow,
+    Search,
+    FindNext,
+    FindPrevious,
+    OnlyFound,
+    RaiseSeverity,
+    ShowNodes,
+    Mute,
+    Alone,
+    HearAll,
+    Fold,
+    Copy,
+    CopyAll,
+    Save,
+)

@@ -1,0 +1,100 @@
+"""One line in which something is asked: what to search for, where to write."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
+from textual.message import Message
+from textual.widgets import Input, Static
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+    from textual.widget import Widget
+
+
+class LogPrompt(Horizontal):
+    """A label, a text field and room for a remark; out of sight until `ask` is called.
+
+    `kind` tells what was asked. Escape gives up.
+    """
+
+    DEFAULT_CSS = """
+    LogPrompt {
+        display: none;
+        height: 1;
+        background: $boost;
+        &.-asking { display: block; }
+        #label { width: auto; padding: 0 1; text-style: bold; }
+        #remark { width: auto; max-width: 50%; padding: 0 1; color: $text-warning; }
+        Input { width: 1fr; }
+    }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "give_up", show=False)]
+
+    class Edited(Message):
+        """The text is another one."""
+
+        def __init__(self, prompt: LogPrompt, text: str) -> None:
+            """Carry the text as it is now."""
+            super().__init__()
+            self.prompt, self.kind, self.text = prompt, prompt.kind, text
+
+        @property
+        def control(self) -> Widget:
+            """The prompt."""
+            return self.prompt
+
+    class Answered(Edited):
+        """Enter was pressed."""
+
+    class GivenUp(Edited):
+        """Escape was pressed."""
+
+    def __init__(self, id: str | None = None) -> None:
+        """Begin out of sight."""
+        super().__init__(id=id)
+        self.kind = ""
+
+    def compose(self) -> ComposeResult:
+        """Label, field, remark."""
+        yield Static("", id="label", markup=False)
+        yield Input(compact=True, select_on_focus=False)
+        yield Static("", id="remark", markup=False)
+
+    def ask(self, kind: str, label: str, text: str) -> None:
+        """Ask, with an answer to begin with."""
+        self.kind = kind
+        self.add_class("-asking")
+        self.query_one("#label", Static).update(label)
+        self.remark("")
+        field = self.query_one(Input)
+        with self.prevent(Input.Changed):
+            field.value = text
+        field.cursor_position = len(text)
+        field.focus()
+
+    def remark(self, words: str) -> None:
+        """Say something about the answer."""
+        self.query_one("#remark", Static).update(words)
+
+    def close(self) -> None:
+        """Go out of sight."""
+        self.kind = ""
+        self.remove_class("-asking")
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Hand on what is being written."""
+        event.stop()
+        self.remark("")
+        self.post_message(self.Edited(self, event.value))
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Hand on the answer."""
+        event.stop()
+        self.post_message(self.Answered(self, event.value))
+
+    def action_give_up(self) -> None:
+        """Leave it."""
+        self.post_message(self.GivenUp(self, self.query_one(Input).value))
