@@ -9,6 +9,8 @@ import sys
 from typing import TYPE_CHECKING, ClassVar
 
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -16,7 +18,9 @@ from nodes._parameters import BadValueError, Setting, Value
 from nodes._speech import Phrase, Speech, language
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
+
+    from rclpy.timer import Timer
 
 _BAD_VALUE = Phrase(
     "parameter {name} is {value!r}, but must be {expected}; for example: -p {name}:={example}",
@@ -37,6 +41,12 @@ class UsageError(Exception):
         super().__init__(phrase.en.format(**values))
         self.phrase = phrase
         self.values = values
+
+
+def change_period(timer: Timer, period_s: float) -> None:
+    """Let a timer run at another pace from now on."""
+    timer.timer_period_ns = int(period_s * 1e9)
+    timer.reset()
 
 
 class LessonNode(Node):
@@ -75,6 +85,10 @@ class LessonNode(Node):
 
     def parameters_changed(self) -> None:
         """New values have just been taken, at run time."""
+
+    def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
+        """Call back by a clock that never jumps: a Pi sets its own when it finds a network."""
+        return self.create_timer(period_s, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def before_end(self) -> None:
         """The node is about to end; the graph can still be talked to."""

@@ -26,7 +26,7 @@ class Hello(LessonNode):
     def __init__(self) -> None:
         super().__init__()
         self._count = 0
-        self.create_timer(self.number("period"), self._tick)
+        self.every(self.number("period"), self._tick)
         self.say.info(_AWAKE)
 
     def _tick(self) -> None:

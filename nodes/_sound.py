@@ -1,0 +1,18 @@
+"""std_msgs/ByteMultiArray to bytes and back.
+
+In rclpy its `data` is a list of bytes objects of length 1: `bytes(data)` is a TypeError.
+"""
+
+from __future__ import annotations
+
+from std_msgs.msg import ByteMultiArray
+
+
+def to_message(sound: bytes) -> ByteMultiArray:
+    """Pack bytes."""
+    return ByteMultiArray(data=[sound[at : at + 1] for at in range(len(sound))])
+
+
+def from_message(message: ByteMultiArray) -> bytes:
+    """Unpack bytes."""
+    return b"".join(message.data)

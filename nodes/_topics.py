@@ -1,0 +1,32 @@
+"""Names and qualities of service of the topics that nodes meet on."""
+
+from __future__ import annotations
+
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+AI_COMMAND = "/ai_command"
+CAMERA = "/camera/color/image_raw"
+DRIVE = "/drive"
+DRIVE_SAFE = "/drive_safe"
+EMERGENCY_STOP = "/emergency_stop"
+HEAD_SERVICE = "set_head_position"
+HEAD_STATE = "/head_state"
+LLM_RAW_JSON = "/llm_raw_json"
+LLM_RESULT = "/llm_result"
+MICROPHONE = "/audio/mic_raw"
+SAFETY_STATE = "/safety_state"
+SONAR_FRONT = "/sensor/sonar_front"
+SPEAKER = "/audio/speaker_raw"
+TF_STATIC = "/tf_static"
+WHEEL_COMMANDS = "/wheel_commands"
+
+DEPTH = 10
+"""Queue of an ordinary topic, as everywhere in the course."""
+NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
+"""For those who want the latest message only."""
+LATCHED = QoSProfile(
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+"""A late subscriber gets the last message."""

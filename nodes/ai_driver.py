@@ -1,0 +1,60 @@
+"""Words to motion: takes `forward`, `налево`, `stop` and their like, and publishes /drive."""
+
+from __future__ import annotations
+
+import sys
+
+from ackermann_msgs.msg import AckermannDriveStamped
+from std_msgs.msg import String
+
+from nodes._drive import to_message
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._speech import Phrase
+from nodes._topics import AI_COMMAND, DEPTH, DRIVE
+from robot.words import WORDS, parse_word
+
+_STARTED = Phrase("Translating words into motion: {words}", "Перевожу слова в движение: {words}")
+_DRIVE = Phrase(
+    'Heard "{word}": speed {speed:.2f} m/s, steering {steering:.2f} rad',
+    "Команда «{word}»: скорость {speed:.2f} м/с, руль {steering:.2f} рад",
+)
+_UNKNOWN = Phrase(
+    'Unknown command "{word}", nothing is done. Known: {words}',
+    "Неизвестная команда «{word}», ничего не делаю. Знаю: {words}",
+)
+
+
+class AiDriver(LessonNode):
+    """Publishes one /drive for each known word, nothing for any other."""
+
+    NAME = "ai_driver_translator"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._publisher = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
+        self.create_subscription(String, AI_COMMAND, self._hear, DEPTH)
+        self._known = ", ".join(WORDS[self.say.language])
+        self.say.info(_STARTED, words=self._known)
+
+    def _hear(self, message: String) -> None:
+        setpoint = parse_word(message.data)
+        if setpoint is None:
+            self.say.warn(_UNKNOWN, word=message.data[:80], words=self._known)
+            return
+        self._publisher.publish(to_message(self, setpoint))
+        self.say.info(
+            _DRIVE,
+            word=message.data.strip(),
+            speed=setpoint.speed_m_s,
+            steering=setpoint.steering_rad,
+        )
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(AiDriver, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,94 @@
+"""Where the camera sits on the robot: the static transform base_link -> camera_link.
+
+Published once, latched: whoever comes later gets it too. Metres forward, left and up, then roll,
+pitch and yaw in radians (REP-103).
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import TYPE_CHECKING
+
+from geometry_msgs.msg import TransformStamped
+from tf2_msgs.msg import TFMessage
+
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._parameters import Number, Text, Value
+from nodes._speech import Phrase
+from nodes._topics import LATCHED, TF_STATIC
+from robot.geometry import quaternion_from_rpy
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_PUBLISHED = Phrase(
+    "{child} sits at x {x:g}, y {y:g}, z {z:g} m from {parent}",
+    "{child} стоит в точке x {x:g}, y {y:g}, z {z:g} м от {parent}",
+)
+_SAME = Phrase(
+    "parameters parent and child are both {parent}, but must differ",
+    "параметры parent и child оба равны {parent}, а должны различаться",
+)
+
+
+def _metres(name: str, default: float, about: str) -> Number:
+    return Number(name, default, about, low=-10.0, high=10.0, unit="m")
+
+
+def _radians(name: str, about: str) -> Number:
+    return Number(name, 0.0, about, low=-math.pi, high=math.pi, unit="rad")
+
+
+class CameraTf(LessonNode):
+    """Publishes one transform, and again when a parameter changes."""
+
+    NAME = "camera_tf"
+    SETTINGS = (
+        Text("parent", "base_link", "The frame of the robot", fixed=True),
+        Text("child", "camera_link", "The frame of the camera", fixed=True),
+        _metres("x", 0.15, "Forward"),
+        _metres("y", 0.0, "To the left"),
+        _metres("z", 0.25, "Up"),
+        _radians("roll", "About x"),
+        _radians("pitch", "About y, + looks down"),
+        _radians("yaw", "About z, + looks left"),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._publisher = self.create_publisher(TFMessage, TF_STATIC, LATCHED)
+        self._publish()
+
+    def contradiction(self, values: Mapping[str, Value]) -> Phrase | None:
+        """A frame has no place in itself."""
+        return _SAME if values["parent"] == values["child"] else None
+
+    def parameters_changed(self) -> None:
+        """Tell the new place."""
+        self._publish()
+
+    def _publish(self) -> None:
+        stamped = TransformStamped()
+        stamped.header.stamp = self.get_clock().now().to_msg()
+        stamped.header.frame_id = self.text("parent")
+        stamped.child_frame_id = self.text("child")
+        x, y, z = (self.number(axis) for axis in "xyz")
+        place, turn = stamped.transform.translation, stamped.transform.rotation
+        place.x, place.y, place.z = x, y, z
+        rotation = quaternion_from_rpy(*(self.number(n) for n in ("roll", "pitch", "yaw")))
+        turn.x, turn.y, turn.z, turn.w = rotation.x, rotation.y, rotation.z, rotation.w
+        self._publisher.publish(TFMessage(transforms=[stamped]))
+        self.say.info(
+            _PUBLISHED, parent=self.text("parent"), child=self.text("child"), x=x, y=y, z=z
+        )
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(CameraTf, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,207 @@
+"""The electronic differential: /drive to the speed of each rear wheel.
+
+The motors have no gears between them, so the inner wheel of a curve is made slower here. In a
+/wheel_commands message every array has three places, in the order of the names; nan stands where
+a joint takes no such command (a wheel has no position, the steering no velocity).
+
+The command of the moment is repeated `rate` times a second, so that one who comes late sees it. It
+becomes a stop at an emergency stop (latched until released), when no /drive came for `max_age_s`
+seconds (looked at with each repetition), at a command that is no number, and when this node ends.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+
+from ackermann_msgs.msg import AckermannDriveStamped
+from rclpy.duration import Duration
+from sensor_msgs.msg import JointState
+
+from nodes._drive import FRAME, from_message
+from nodes._emergency import EmergencyStop
+from nodes._life import run
+from nodes._node import LessonNode, change_period
+from nodes._parameters import Number, Text
+from nodes._speech import Phrase
+from nodes._topics import DEPTH, DRIVE, WHEEL_COMMANDS
+from robot.kinematics import (
+    STRAIGHT_BELOW_RAD,
+    TRACK_M,
+    WHEEL_RADIUS_M,
+    WHEELBASE_M,
+    WheelSpeeds,
+    wheel_speeds,
+)
+from robot.words import STOP, DriveSetpoint
+
+JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
+_LAST_STOP = Duration(seconds=0.2)
+"""How long the last stop may take to reach everybody."""
+
+_ROUNDING = 1e-6
+"""0.6 rad is a little more in the 32 bits of a /drive."""
+
+_STARTED = Phrase(
+    "The electronic differential listens to {topic}", "Электронный дифференциал слушает {topic}"
+)
+_NUMBERS = (
+    ": {speed:.2f} m/s, steering {steering:.2f} rad -> left {left:.2f}, right {right:.2f} m/s",
+    ": {speed:.2f} м/с, руль {steering:.2f} рад -> левое {left:.2f}, правое {right:.2f} м/с",
+)
+_STANDING = Phrase("Standing" + _NUMBERS[0], "Стоим" + _NUMBERS[1])
+_STRAIGHT = Phrase("Straight" + _NUMBERS[0], "Едем прямо" + _NUMBERS[1])
+_LEFT = Phrase("Turning left" + _NUMBERS[0], "Поворот налево" + _NUMBERS[1])
+_RIGHT = Phrase("Turning right" + _NUMBERS[0], "Поворот направо" + _NUMBERS[1])
+_NO_NUMBER = Phrase(
+    "The command is no number ({speed} m/s, {steering} rad): stop",
+    "В команде не числа ({speed} м/с, {steering} рад): стоп",
+)
+_TOO_MUCH = Phrase(
+    "Asked for {speed:.2f} m/s and {steering:.2f} rad, limited to {fastest:g} m/s"
+    " and {sharpest:g} rad",
+    "Запрошено {speed:.2f} м/с и {steering:.2f} рад, ограничено до {fastest:g} м/с"
+    " и {sharpest:g} рад",
+)
+_SILENT = Phrase("No command for {max_age:g} s: stop", "Нет команд дольше {max_age:g} с: стоп")
+_EMERGENCY = Phrase(
+    "EMERGENCY STOP: the wheels stand until it is released",
+    "АВАРИЙНАЯ ОСТАНОВКА: колёса стоят, пока её не снимут",
+)
+_RELEASED = Phrase(
+    "The emergency stop is released; waiting for a new command",
+    "Аварийная остановка снята; жду новой команды",
+)
+
+
+class ElectronicDifferential(LessonNode):
+    """Publishes wheel speeds for the newest /drive."""
+
+    NAME = "electronic_differential"
+    SETTINGS = (
+        Text("drive_topic", DRIVE, "Which commands are obeyed: /drive or /drive_safe", fixed=True),
+        Number(
+            "wheelbase", WHEELBASE_M, "Between front and rear axle", low=0.02, high=10.0, unit="m"
+        ),
+        Number("track", TRACK_M, "Between the rear wheels", low=0.02, high=10.0, unit="m"),
+        Number("wheel_radius", WHEEL_RADIUS_M, "Of a rear wheel", low=0.005, high=2.0, unit="m"),
+        Number(
+            "max_speed", 1.0, "Faster commands are slowed to it", low=0.01, high=20.0, unit="m/s"
+        ),
+        Number("max_steering", 0.6, "The steering's stop", low=0.05, high=1.5, unit="rad"),
+        Number("rate", 2.0, "Repetitions of the command a second", low=0.5, high=100.0, unit="Hz"),
+        Number(
+            "max_age_s",
+            0.0,
+            "A command older than this becomes a stop; 0: never",
+            high=60.0,
+            unit="s",
+        ),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._command = STOP
+        self._heard = False
+        self._told: DriveSetpoint | None = None
+        self._received_s = time.monotonic()
+        topic = self.text("drive_topic")
+        self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
+        self._emergency = EmergencyStop(self, self._emergency_changed)
+        self.create_subscription(AckermannDriveStamped, topic, self._hear, DEPTH)
+        self._timer = self.every(1.0 / self.number("rate"), self._tick)
+        self.say.info(_STARTED, topic=topic)
+
+    def parameters_changed(self) -> None:
+        """Keep the new rate, and the new chassis with the next command."""
+        change_period(self._timer, 1.0 / self.number("rate"))
+
+    def before_end(self) -> None:
+        """Leave the wheels standing."""
+        self._command = STOP
+        self._publish()
+        self._publisher.wait_for_all_acked(_LAST_STOP)
+
+    def _hear(self, message: AckermannDriveStamped) -> None:
+        self._received_s = time.monotonic()
+        if self._emergency.active:
+            return
+        self._heard = True
+        self._command = self._limited(from_message(message))
+        self._publish()
+
+    def _limited(self, asked: DriveSetpoint) -> DriveSetpoint:
+        speed, steering = asked.speed_m_s, asked.steering_rad
+        if not (math.isfinite(speed) and math.isfinite(steering)):
+            self.say.error(_NO_NUMBER, every_s=1.0, speed=speed, steering=steering)
+            return STOP
+        fastest, sharpest = self.number("max_speed"), self.number("max_steering")
+        if abs(speed) > fastest + _ROUNDING or abs(steering) > sharpest + _ROUNDING:
+            self.say.warn(
+                _TOO_MUCH,
+                every_s=1.0,
+                speed=speed,
+                steering=steering,
+                fastest=fastest,
+                sharpest=sharpest,
+            )
+        return DriveSetpoint(
+            max(-fastest, min(fastest, speed)), max(-sharpest, min(sharpest, steering))
+        )
+
+    def _tick(self) -> None:
+        max_age_s = self.number("max_age_s")
+        late = max_age_s > 0 and time.monotonic() - self._received_s > max_age_s
+        if late and self._command != STOP:
+            self.say.warn(_SILENT, max_age=max_age_s)
+            self._command = STOP
+        self._publish()
+
+    def _emergency_changed(self, active: bool) -> None:
+        self._command = STOP
+        if active:
+            self.say.error(_EMERGENCY)
+        else:
+            self.say.warn(_RELEASED)
+        self._publish()
+
+    def _publish(self) -> None:
+        speed, steering = self._command.speed_m_s, self._command.steering_rad
+        wheels = wheel_speeds(speed, steering, self.number("wheelbase"), self.number("track"))
+        message = JointState()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.header.frame_id = FRAME
+        message.name = list(JOINTS)
+        message.position = [math.nan, math.nan, steering]
+        radius_m = self.number("wheel_radius")
+        message.velocity = [wheels.left_m_s / radius_m, wheels.right_m_s / radius_m, math.nan]
+        self._publisher.publish(message)
+        if self._heard and self._command != self._told:
+            self._tell(wheels)
+
+    def _tell(self, wheels: WheelSpeeds) -> None:
+        command = self._command
+        if command.speed_m_s == 0:
+            phrase = _STANDING
+        elif abs(command.steering_rad) < STRAIGHT_BELOW_RAD:
+            phrase = _STRAIGHT
+        else:
+            phrase = _LEFT if command.steering_rad > 0 else _RIGHT
+        self.say.info(
+            phrase,
+            speed=command.speed_m_s,
+            steering=command.steering_rad,
+            left=wheels.left_m_s,
+            right=wheels.right_m_s,
+        )
+        self._told = command
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(ElectronicDifferential, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,74 @@
+"""A microphone and a loudspeaker that are not there.
+
+Every `period` seconds somebody says a phrase into the microphone, as text in bytes where a real one
+would send sound; what comes for the loudspeaker is written to the log.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from std_msgs.msg import ByteMultiArray
+
+from nodes._life import run
+from nodes._node import LessonNode, change_period
+from nodes._parameters import Number, Text
+from nodes._sound import from_message, to_message
+from nodes._speech import Phrase
+from nodes._topics import DEPTH, MICROPHONE, SPEAKER
+
+_STARTED = Phrase("Microphone and loudspeaker are on", "Микрофон и динамик включены")
+_SAID = Phrase(
+    'Somebody said into the microphone: "{words}"', "Человек сказал в микрофон: «{words}»"
+)
+_PLAYED = Phrase('The loudspeaker plays: "{words}"', "Динамик воспроизводит: «{words}»")
+_PHRASE = Phrase(
+    "VOICE_COMMAND: have a look round and tell me what is there",
+    "VOICE_COMMAND: осмотрись и расскажи, что там",
+)
+
+
+class MockAudio(LessonNode):
+    """Speaks now and then, and listens."""
+
+    NAME = "audio_system"
+    SETTINGS = (
+        Number("period", 10.0, "Time between two phrases", low=0.1, high=3600.0, unit="s"),
+        Number(
+            "first_after", 3.0, "Time before the first", low=0.1, high=3600.0, unit="s", fixed=True
+        ),
+        Text("phrase", "", "What is said; empty: a request to look round", may_be_empty=True),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._began = False
+        self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
+        self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
+        self._timer = self.every(self.number("first_after"), self._speak)
+        self.say.info(_STARTED)
+
+    def parameters_changed(self) -> None:
+        """Keep the new period, from the next phrase on."""
+        if self._began:
+            change_period(self._timer, self.number("period"))
+
+    def _speak(self) -> None:
+        if not self._began:
+            self._began = True
+            change_period(self._timer, self.number("period"))
+        words = self.text("phrase") or self.say.text(_PHRASE)
+        self._publisher.publish(to_message(words.encode("utf-8", "replace")))
+        self.say.info(_SAID, words=words)
+
+    def _play(self, message: ByteMultiArray) -> None:
+        self.say.info(_PLAYED, words=from_message(message).decode("utf-8", "replace"))
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(MockAudio, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,75 @@
+"""A camera that is not there: publishes a small film with a counting caption, 10 pictures a second.
+
+In place of an Orbbec Gemini: same topic, same frame, `bgr8` as in the course or `rgb8` as the
+real driver has it.
+"""
+
+from __future__ import annotations
+
+import sys
+from array import array
+
+import numpy as np
+from sensor_msgs.msg import Image
+
+from nodes._life import run
+from nodes._node import LessonNode, change_period
+from nodes._parameters import Choice, Number, Text, Whole
+from nodes._scene import Scene
+from nodes._speech import Phrase
+from nodes._topics import CAMERA, NEWEST
+
+_STARTED = Phrase(
+    "The camera films {width}x{height} {encoding}, {rate:g} pictures a second",
+    "Камера снимает {width}x{height} {encoding}, {rate:g} кадров в секунду",
+)
+
+
+class MockCamera(LessonNode):
+    """Publishes pictures of a scene."""
+
+    NAME = "mock_camera"
+    SETTINGS = (
+        Text("topic", CAMERA, "Where the pictures are published", fixed=True),
+        Number("rate", 10.0, "Pictures a second", low=0.1, high=120.0, unit="Hz"),
+        Whole("width", 640, "Columns", low=16, high=4096, fixed=True),
+        Whole("height", 480, "Rows", low=16, high=4096, fixed=True),
+        Choice("encoding", "bgr8", "Order of colours", choices=("bgr8", "rgb8"), fixed=True),
+        Text("frame_id", "camera_color_optical_frame", "Frame of the pictures", fixed=True),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        width, height = int(self.number("width")), int(self.number("height"))
+        encoding = self.text("encoding")
+        self._scene = Scene(height, width, blue_first=encoding == "bgr8")
+        self._message = Image(height=height, width=width, encoding=encoding, step=3 * width)
+        self._message.header.frame_id = self.text("frame_id")
+        self._message.data = array("B", bytes(height * width * 3))
+        # The picture is drawn straight into the message.
+        self._picture = np.frombuffer(self._message.data, np.uint8).reshape(height, width, 3)
+        self._number = 0
+        self._publisher = self.create_publisher(Image, self.text("topic"), NEWEST)
+        self._timer = self.every(1.0 / self.number("rate"), self._tick)
+        self.say.info(
+            _STARTED, width=width, height=height, encoding=encoding, rate=self.number("rate")
+        )
+
+    def parameters_changed(self) -> None:
+        """Keep the new rate."""
+        change_period(self._timer, 1.0 / self.number("rate"))
+
+    def _tick(self) -> None:
+        self._scene.draw(self._picture, self._number)
+        self._message.header.stamp = self.get_clock().now().to_msg()
+        self._publisher.publish(self._message)
+        self._number += 1
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(MockCamera, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,99 @@
+"""A ToF sonar that is not there: publishes a distance in metres.
+
+By REP-117 +inf says "nothing in range" (`value:=.inf` makes it constant) and nan says "no valid
+reading" (`dropout` makes some). Three patterns: random distances as in the course, a sweep to and
+fro, and a constant.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import sys
+import time
+from typing import TYPE_CHECKING
+
+from std_msgs.msg import Float32
+
+from nodes._life import run
+from nodes._node import LessonNode, change_period
+from nodes._parameters import Choice, Number, Text, Value
+from nodes._speech import Phrase
+from nodes._topics import DEPTH, SONAR_FRONT
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_STARTED = Phrase("The sonar publishes {topic}", "Сонар публикует {topic}")
+_DISTANCE = Phrase("Distance {metres:.2f} m", "Расстояние {metres:.2f} м")
+_ORDER = Phrase(
+    "parameter min_distance is {min_distance:g}, but must be below max_distance {max_distance:g}",
+    "параметр min_distance равен {min_distance:g}, а должен быть меньше max_distance"
+    " {max_distance:g}",
+)
+_LOG_EVERY_S = 0.9
+
+
+class MockSonar(LessonNode):
+    """Publishes distances by a pattern."""
+
+    NAME = "mock_sonar_front"
+    SETTINGS = (
+        Text("topic", SONAR_FRONT, "Where the distance is published", fixed=True),
+        Number("rate", 1.0, "Readings a second", low=0.1, high=200.0, unit="Hz"),
+        Choice(
+            "pattern", "random", "How the distance changes", choices=("random", "sweep", "constant")
+        ),
+        Number("min_distance", 0.2, "Nearest distance", low=0.0, high=100.0, unit="m"),
+        Number("max_distance", 3.0, "Farthest distance", low=0.0, high=100.0, unit="m"),
+        Number("value", 1.5, "Distance of the constant pattern", high=math.inf, unit="m"),
+        Number("sweep_period", 10.0, "To and fro of the sweep", low=0.1, high=3600.0, unit="s"),
+        Number("noise", 0.0, "Standard deviation added to each reading", high=10.0, unit="m"),
+        Number("dropout", 0.0, "Share of readings that are nan instead", high=1.0),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._random = random.Random()
+        self._began_s = time.monotonic()
+        topic = self.text("topic")
+        self._publisher = self.create_publisher(Float32, topic, DEPTH)
+        self._timer = self.every(1.0 / self.number("rate"), self._tick)
+        self.say.info(_STARTED, topic=topic)
+
+    def contradiction(self, values: Mapping[str, Value]) -> Phrase | None:
+        """The nearest distance must be nearer than the farthest."""
+        return None if float(values["min_distance"]) < float(values["max_distance"]) else _ORDER
+
+    def parameters_changed(self) -> None:
+        """Keep the new rate."""
+        change_period(self._timer, 1.0 / self.number("rate"))
+
+    def _tick(self) -> None:
+        metres = self._distance()
+        self._publisher.publish(Float32(data=metres))
+        self.say.info(_DISTANCE, every_s=_LOG_EVERY_S, metres=metres)
+
+    def _distance(self) -> float:
+        if self._random.random() < self.number("dropout"):
+            return math.nan
+        noise = self._random.gauss(0.0, self.number("noise"))
+        return max(0.0, self._pattern() + noise)
+
+    def _pattern(self) -> float:
+        if self.text("pattern") == "constant":
+            return self.number("value")
+        low, high = self.number("min_distance"), self.number("max_distance")
+        if self.text("pattern") == "random":
+            return self._random.uniform(low, high)
+        turns = (time.monotonic() - self._began_s) / self.number("sweep_period")
+        return high - (high - low) * (1.0 - math.cos(2.0 * math.pi * turns)) / 2.0
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(MockSonar, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

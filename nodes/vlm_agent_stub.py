@@ -1,0 +1,93 @@
+"""Where a vision model would be asked: keeps the newest picture, and every 3 s "sends" it.
+
+The stream runs at 10 pictures a second, a model is paid by the picture: so the newest one is
+only remembered as it came, and decoded when it is needed. What would be sent is made for real, a
+JPEG; nothing leaves this machine.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import Image
+
+from nodes._life import run
+from nodes._node import LessonNode, change_period
+from nodes._parameters import Number, Text, Whole
+from nodes._pictures import BadPictureError, bgr
+from nodes._speech import Phrase
+from nodes._topics import CAMERA, NEWEST
+
+_STARTED = Phrase("Waiting for pictures on {topic}", "Жду кадры в {topic}")
+_NONE = Phrase("No picture yet on {topic}", "Кадров в {topic} пока нет")
+_OLD = Phrase("No new picture on {topic} since the last one", "Новых кадров в {topic} нет")
+_SENT = Phrase(
+    "Picture {width}x{height} -> JPEG of {size:.0f} kB, would go to the vision model now",
+    "Кадр {width}x{height} -> JPEG {size:.0f} кБ, сейчас ушёл бы в модель зрения",
+)
+_BAD = Phrase("The picture is refused: {reason}", "Кадр не принят: {reason}")
+_NO_OPENCV = Phrase(
+    "Picture {width}x{height}; no JPEG without OpenCV: pip install opencv-python-headless",
+    "Кадр {width}x{height}; без OpenCV нет JPEG: pip install opencv-python-headless",
+)
+
+
+class VlmAgentStub(LessonNode):
+    """Takes the newest picture at a modest pace."""
+
+    NAME = "vlm_agent"
+    SETTINGS = (
+        Text("topic", CAMERA, "Where the pictures come from", fixed=True),
+        Number("period", 3.0, "Time between two looks", low=0.1, high=3600.0, unit="s"),
+        Whole("quality", 80, "Of the JPEG", low=1, high=100),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._newest: bytes | None = None
+        """Serialized: decoding ten pictures a second to use one in thirty would be a waste."""
+        self._any = False
+        topic = self.text("topic")
+        self.create_subscription(Image, topic, self._keep, NEWEST, raw=True)
+        self._timer = self.every(self.number("period"), self._look)
+        self.say.info(_STARTED, topic=topic)
+
+    def parameters_changed(self) -> None:
+        """Keep the new period."""
+        change_period(self._timer, self.number("period"))
+
+    def _keep(self, serialized: bytes) -> None:
+        self._newest = serialized
+        self._any = True
+
+    def _look(self) -> None:
+        if self._newest is None:
+            self.say.warn(_OLD if self._any else _NONE, topic=self.text("topic"))
+            return
+        message, self._newest = deserialize_message(self._newest, Image), None
+        try:
+            self._send(message)
+        except BadPictureError as error:
+            self.say.warn(_BAD, reason=self.say.text(error.phrase, **error.values))
+
+    def _send(self, message: Image) -> None:
+        picture = bgr(message)
+        size = {"width": message.width, "height": message.height}
+        try:
+            import cv2
+        except ImportError:
+            self.say.warn(_NO_OPENCV, **size)
+            return
+        quality = [cv2.IMWRITE_JPEG_QUALITY, int(self.number("quality"))]
+        _made, jpeg = cv2.imencode(".jpg", picture, quality)
+        self.say.info(_SENT, size=len(jpeg) / 1000, **size)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(VlmAgentStub, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
