@@ -74,7 +74,8 @@ def find_profile(name: str | Path) -> Path:
     }
     if text in known:
         return known[text]
-    fits = [stem for stem in known if _number(stem) == _number(text) != ""]
+    number = _number(text) if LESSON.fullmatch(text) else None
+    fits = [stem for stem in known if _number(stem) == number]
     fits = fits or [stem for stem in known if text and stem.startswith(text)]
     if len(fits) == 1:
         return known[fits[0]]

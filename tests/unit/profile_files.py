@@ -1,0 +1,37 @@
+"""Writing little profiles for tests, and reading what is wrong with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+from launcher.errors import ProfileError, ProfileProblem
+from launcher.profile import Profile, load_profile
+
+
+def written(folder: Path, text: str, name: str = "lesson.yaml") -> Path:
+    """Write a profile into a folder."""
+    path = folder / name
+    path.write_text(dedent(text), encoding="utf-8")
+    return path
+
+
+def loaded(folder: Path, text: str, **options: Any) -> Profile:
+    """Load a profile from its text."""
+    return load_profile(written(folder, text), environ={}, **options)
+
+
+def problems(folder: Path, text: str, **options: Any) -> tuple[ProfileProblem, ...]:
+    """Return what is wrong with a profile, nothing if nothing is."""
+    try:
+        loaded(folder, text, **options)
+    except ProfileError as error:
+        return error.problems
+    return ()
+
+
+def told(folder: Path, text: str, **options: Any) -> list[str]:
+    """Return the problems as `line:column: field: message (hint)`."""
+    path = f"{folder / 'lesson.yaml'}:"
+    return [str(problem).removeprefix(path) for problem in problems(folder, text, **options)]

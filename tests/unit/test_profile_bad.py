@@ -1,0 +1,366 @@
+"""Every way in which a profile can be wrong has its own message, with place, field and mend."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from launcher.errors import ProfileError
+from launcher.profile import load_profile
+from tests.unit.profile_files import told, written
+
+BAD = {
+    "unknown key": (
+        "lession: 1\nnodes: {a: {exec: [x]}}",
+        "1:1: lession: unknown key (did you mean lesson?)",
+    ),
+    "unknown key of a node": (
+        "nodes:\n  a:\n    exec: [x]\n    parms: {}",
+        "4:5: nodes.a.parms: unknown key (did you mean params?)",
+    ),
+    "unknown key near nothing": (
+        "nodes: {a: {exec: [x], ready: {zzz: 1, node: b}}}",
+        "1:32: nodes.a.ready.zzz: unknown key (known are topic, service, node, within)",
+    ),
+    "number where text belongs": (
+        "nodes: {a: {run: 12}}",
+        "1:18: nodes.a.run: expected text, found 12 (put it between quotes)",
+    ),
+    "text where a number belongs": (
+        "domain: many\nnodes: {a: {exec: [x]}}",
+        "1:9: domain: expected a whole number, found the text 'many'",
+    ),
+    "text where a list belongs": (
+        "nodes:\n  a: {exec: [x]}\n  b: {exec: [x], needs: a}",
+        "3:25: nodes.b.needs: expected a list, found the text 'a' (write [a])",
+    ),
+    "a command that is no list": (
+        "nodes: {a: {exec: ros2 run pkg exe}}",
+        "1:19: nodes.a.exec: expected a list, found one text; write [ros2, run, pkg, exe]",
+    ),
+    "an empty command": (
+        "nodes: {a: {exec: []}}",
+        "1:19: nodes.a.exec: an empty command; write for example [ros2, run, package, program]",
+    ),
+    "a list where keys belong": (
+        "nodes: [a]",
+        "1:8: nodes: expected keys and values, found a list",
+    ),
+    "text where a node belongs": (
+        "nodes: {a: sleep}",
+        "1:12: nodes.a: expected keys and values, found the text 'sleep'",
+    ),
+    "a word that is no choice": (
+        "nodes: {a: {exec: [x], restart: allways}}",
+        (
+            "1:33: nodes.a.restart: expected one of never, on-failure, always, found the text"
+            " 'allways' (did you mean always?)"
+        ),
+    ),
+    "an unknown panel": (
+        "panels: [sonr]\nnodes: {a: {exec: [x]}}",
+        (
+            "1:10: panels[0]: expected one of sonar, wheels, camera, head, voice, composer,"
+            " found the"
+            " text 'sonr' (did you mean sonar?)"
+        ),
+    ),
+    "a number out of range": (
+        "nodes: {a: {exec: [x], ready: {node: a, within: 0}}}",
+        "1:49: nodes.a.ready.within: expected more than 0, found 0",
+    ),
+    "a domain too high": (
+        "domain: 233\nnodes: {a: {exec: [x]}}",
+        "1:9: domain: expected at most 232, found 233",
+    ),
+    "a domain too low": (
+        "domain: -1\nnodes: {a: {exec: [x]}}",
+        "1:9: domain: expected at least 0, found -1",
+    ),
+    "an unknown discovery": (
+        "discovery: lan\nnodes: {a: {exec: [x]}}",
+        "1:12: discovery: expected localhost, subnet or a list of addresses, found 'lan'",
+    ),
+    "an address that is none": (
+        "discovery: [robot;rm]\nnodes: {a: {exec: [x]}}",
+        "1:12: discovery: 'robot;rm' is no address; write it as 192.168.1.7 or robot.local",
+    ),
+    "a need of nobody": (
+        "nodes:\n  sonar: {exec: [x]}\n  b: {exec: [x], needs: [sonr]}",
+        "3:26: nodes.b.needs[0]: there is no node 'sonr' (did you mean sonar?)",
+    ),
+    "a cycle": (
+        (
+            "nodes:\n  a: {exec: [x], needs: [b]}\n  b: {exec: [x], needs: [c]}\n"
+            "  c: {exec: [x], needs: [a]}"
+        ),
+        (
+            "2:25: nodes.a.needs: nodes need each other in a cycle: a -> b -> c -> a (take"
+            " one of the"
+            " needs out)"
+        ),
+    ),
+    "a need of oneself": (
+        "nodes: {a: {exec: [x], needs: [a]}}",
+        "1:31: nodes.a.needs: nodes need each other in a cycle: a -> a (take one of the needs out)",
+    ),
+    "a need of an optional node": (
+        "nodes:\n  a: {exec: [x], optional: true}\n  b: {exec: [x], needs: [a]}",
+        "3:26: nodes.b.needs[0]: a is optional, so nothing can need it",
+    ),
+    "an unknown module": (
+        "nodes: {a: {run: nodes.helo}}",
+        "1:18: nodes.a.run: there is no module 'nodes.helo' (did you mean nodes.hello?)",
+    ),
+    "a module without its package": (
+        "nodes: {a: {run: hello}}",
+        "1:18: nodes.a.run: there is no module 'hello' (did you mean nodes.hello?)",
+    ),
+    "a package that cannot be run": (
+        "nodes: {a: {run: nodes}}",
+        "1:18: nodes.a.run: there is no module 'nodes'",
+    ),
+    "a file name where a module belongs": (
+        "nodes: {a: {run: nodes/hello.py}}",
+        "1:18: nodes.a.run: 'nodes/hello.py' is no Python module; write it as nodes.hello",
+    ),
+    "both run and exec": (
+        "nodes:\n  a:\n    run: nodes.hello\n    exec: [x]",
+        "4:5: nodes.a: has both `run` and `exec` (keep one)",
+    ),
+    "neither run nor exec": (
+        "nodes:\n  a: {params: {x: 1}}",
+        "2:3: nodes.a: needs `run` or `exec` (write run: nodes.hello)",
+    ),
+    "a node with nothing in it": (
+        "nodes:\n  a:\n",
+        "2:3: nodes.a: needs `run` or `exec` (write run: nodes.hello)",
+    ),
+    "a node's name that ROS refuses": (
+        "nodes: {front-sonar: {exec: [x]}}",
+        (
+            "1:9: nodes.front-sonar: 'front-sonar' is no name of a ROS node (letters,"
+            " digits and _, not"
+            " beginning with a digit)"
+        ),
+    ),
+    "a duplicate node": (
+        "nodes:\n  a: {exec: [x]}\n  b: {exec: [x]}\n  a: {exec: [y]}",
+        (
+            "4:3: nodes.a: the key stands here for the second time; first on line 2 (join them or"
+            " rename one)"
+        ),
+    ),
+    "a duplicate key": (
+        "lesson: 1\nlesson: 2\nnodes: {a: {exec: [x]}}",
+        (
+            "2:1: lesson: the key stands here for the second time; first on line 1 (join them or"
+            " rename one)"
+        ),
+    ),
+    "a tab": (
+        "nodes:\n\ta: {exec: [x]}",
+        "2:1: a tab indents this line (YAML wants blanks: replace the tab)",
+    ),
+    "an unclosed bracket": ("nodes: {a: {exec: [x]}", "not YAML"),
+    "an empty file": ("", "1:1: is empty (a profile has at least `nodes:`)"),
+    "only a comment": ("# nothing\n", "1:1: is empty (a profile has at least `nodes:`)"),
+    "a list": ("- a\n- b", "1:1: expected keys and values, found a list"),
+    "a word": ("hello", "1:1: expected keys and values, found a single value"),
+    "two documents": (
+        "nodes: {a: {exec: [x]}}\n---\nnodes: {}",
+        "2:1: a second document begins; one file, one profile",
+    ),
+    "no nodes": ("lesson: 1", "1:1: nodes: there is no node to start"),
+    "an anchor in itself": ("nodes: &n {a: *n}", "1:15: *n contains itself"),
+    "an alias of nothing": (
+        "nodes: {a: *n}",
+        "1:12: *n stands for nothing: no &n before it",
+    ),
+    "a tag that would run code": (
+        "nodes: !!python/object/apply:os.system [ls]",
+        "1:8: the tag !!python/object/apply:os.system is refused: a profile holds plain data",
+    ),
+    "a tag of one's own": (
+        "nodes: !env HOME",
+        "1:8: the tag !env is refused: a profile holds plain data",
+    ),
+    "a control character": (
+        "title: a\x07b\nnodes: {}",
+        "1:9: the character U+0007 is not allowed (remove it)",
+    ),
+    "a condition that is none": (
+        "nodes: {a: {exec: [x], when: hardware = mock}}",
+        (
+            "1:30: nodes.a.when: 'hardware = mock' is no condition (write for example: hardware =="
+            ' "mock")'
+        ),
+    ),
+    "a condition about something unknown": (
+        "nodes: {a: {exec: [x], when: 'hardwar == \"mock\"'}}",
+        "1:30: nodes.a.when: 'hardwar' is not known (did you mean hardware?)",
+    ),
+    "a condition that can never be": (
+        "nodes: {a: {exec: [x], when: 'hardware == \"rael\"'}}",
+        "1:30: nodes.a.when: hardware is never 'rael', only one of mock, real (did you mean real?)",
+    ),
+    "a parameter without a value": (
+        "nodes: {a: {exec: [x], params: {rate: }}}",
+        "nodes.a.params.rate: a ROS parameter cannot be empty (give it a value, or leave it out)",
+    ),
+    "a parameter of mixed types": (
+        "nodes: {a: {exec: [x], params: {l: [1, x]}}}",
+        (
+            "1:36: nodes.a.params.l: a list in ROS holds one type, this one holds integer, string"
+            " (quote all of them, or none)"
+        ),
+    ),
+    "a parameter that is an empty list": (
+        "nodes: {a: {exec: [x], params: {l: []}}}",
+        "1:36: nodes.a.params.l: an empty list has no type in ROS (leave the parameter out)",
+    ),
+    "a parameter that is a table": (
+        "nodes: {a: {exec: [x], params: {l: [[1]]}}}",
+        (
+            "1:37: nodes.a.params.l[0]: ROS has no parameter that is a list of lists (give each its"
+            " own name)"
+        ),
+    ),
+    "a parameter that no integer holds": (
+        "nodes: {a: {exec: [x], params: {n: 9223372036854775808}}}",
+        "1:36: nodes.a.params.n: 9223372036854775808 does not fit into 64 bits",
+    ),
+    "a parameter with a name that ROS refuses": (
+        "nodes: {a: {exec: [x], params: {max-speed: 1}}}",
+        (
+            "1:33: nodes.a.params.max-speed: 'max-speed' is no name of a ROS parameter"
+            " (letters, digits"
+            " and _, joined by dots)"
+        ),
+    ),
+    "a topic name that ROS refuses": (
+        "nodes: {a: {exec: [x], remap: {/drive: drive safe}}}",
+        "1:40: nodes.a.remap./drive: 'drive safe' is no ROS name; write it as /sensor/sonar_front",
+    ),
+    "two conditions of readiness": (
+        "nodes: {a: {exec: [x], ready: {node: a, topic: b}}}",
+        (
+            "1:31: nodes.a.ready: expected exactly one of topic, service, node (write"
+            " ready: {topic:"
+            " /chatter, within: 10})"
+        ),
+    ),
+    "a directory that is not there": (
+        "nodes: {a: {exec: [x], cwd: nowhere}}",
+        "1:29: nodes.a.cwd: there is no directory",
+    ),
+    "an extended profile that is not there": (
+        "extends: 09-brian\nnodes: {a: {exec: [x]}}",
+        "1:10: extends: there is no profile '09-brian' to extend (did you mean 09-brain?)",
+    ),
+    "a profile that extends itself": (
+        "extends: lesson\nnodes: {a: {exec: [x]}}",
+        "1:10: extends: profiles extend each other in a cycle: lesson -> lesson",
+    ),
+    "a device setting that is not there": (
+        "devices: {pico: {port: /dev/a}}\nnodes: {a: {exec: [x, '${devices.pico.prt}']}}",
+        "2:23: nodes.a.exec[1]: there is no device setting 'pico.prt' (did you mean pico.port?)",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_one_message_tells_place_field_and_mend(case: str, tmp_path: Path) -> None:
+    text, expected = BAD[case]
+    messages = told(tmp_path, text)
+    assert len(messages) == 1
+    assert expected in messages[0]
+
+
+def test_all_that_is_wrong_is_told_at_once_in_order_of_lines(tmp_path: Path) -> None:
+    messages = told(
+        tmp_path,
+        """\
+        domain: 300
+        nodes:
+          a: {exec: [x], needs: [b], params: {x: []}}
+          b: {run: nodes.helo, restart: maybe}
+        """,
+        overrides=("c.x=1",),
+    )
+    lines = [message.split(":", 2)[:2] for message in messages[1:]]
+    assert messages[0].startswith("--set c.x=1: there is no node 'c'")
+    assert lines == [["1", "9"], ["3", "42"], ["4", "12"], ["4", "33"]]
+
+
+def test_a_yaml_bomb_is_refused_before_it_grows(tmp_path: Path) -> None:
+    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 12)]
+    messages = told(tmp_path, "\n".join(lines))
+    assert len(messages) == 1
+    assert "more than 20000 values, aliases counted" in messages[0]
+
+
+def test_endless_nesting_is_refused(tmp_path: Path) -> None:
+    messages = told(tmp_path, "nodes: " + "[" * 100_000)
+    assert len(messages) == 1
+    assert "nested deeper than 24 levels" in messages[0]
+
+
+def _refused(path: Path) -> str:
+    with pytest.raises(ProfileError) as caught:
+        load_profile(path)
+    return str(caught.value)
+
+
+def test_a_missing_file_is_told(tmp_path: Path) -> None:
+    assert "none.yaml: no such file" in _refused(tmp_path / "none.yaml")
+
+
+def test_a_directory_is_told_with_the_profiles_in_it(tmp_path: Path) -> None:
+    written(tmp_path, "nodes: {}", "a.yaml")
+    assert "found a directory (in it there are: a.yaml)" in _refused(tmp_path)
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    assert "not a regular file" in _refused(tmp_path / "pipe.yaml")
+
+
+def test_a_file_without_permission_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written(tmp_path, "nodes: {}")
+
+    def refused(*_args: object, **_options: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", refused)
+    assert "no permission to read it" in _refused(path)
+
+
+def test_bytes_that_are_not_utf8_are_told_with_their_place(tmp_path: Path) -> None:
+    path = tmp_path / "latin.yaml"
+    path.write_bytes("nodes: {}\ntitle: Урок".encode("cp1251"))
+    assert "latin.yaml:2:8: is not UTF-8: byte 0xd3 (save the file as UTF-8)" in _refused(path)
+
+
+def test_a_huge_file_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "huge.yaml"
+    path.write_text("#" * 300_000)
+    assert "is larger than 256 KiB" in _refused(path)
+
+
+def test_a_circle_of_profiles_is_named(tmp_path: Path) -> None:
+    written(tmp_path, "extends: b\nnodes: {x: {exec: [x]}}", "a.yaml")
+    written(tmp_path, "extends: c", "b.yaml")
+    written(tmp_path, "extends: a", "c.yaml")
+    assert "profiles extend each other in a cycle: a -> b -> c -> a" in _refused(
+        tmp_path / "a.yaml"
+    )
+
+
+def test_a_fault_in_an_extended_profile_names_that_file(tmp_path: Path) -> None:
+    base = written(tmp_path, "nodes:\n  x: {exec: [x], warm: 1}", "base.yaml")
+    own = written(tmp_path, "extends: base\nlesson: 2", "own.yaml")
+    assert f"{base}:2:24: nodes.x.warm: expected true or false" in _refused(own)

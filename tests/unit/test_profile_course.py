@@ -1,0 +1,72 @@
+"""The course's own profiles are right, and the schema beside them says what the model says."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from launcher.catalog import list_profiles
+from launcher.profile import load_profile
+from launcher.profile_schema import render
+
+PROFILES = Path(__file__).parents[2] / "profiles"
+LESSONS = sorted(PROFILES.glob("*.yaml"))
+
+
+def test_every_lesson_is_there() -> None:
+    assert [path.stem for path in LESSONS] == [
+        *("01-hello", "02-sonar-safety", "03-head-service", "04-ackermann"),
+        *("04b-electronic-differential", "05-tf2", "06-rviz", "07-vision", "08-audio"),
+        *("09-brain", "10-llm-json"),
+    ]
+
+
+@pytest.mark.parametrize("hardware", ["mock", "real"])
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_a_lesson_is_valid_and_titled_in_both_languages(path: Path, hardware: str) -> None:
+    profile = load_profile(path, hardware=hardware)
+    assert set(profile.title) == set(profile.about) == {"en", "ru"}
+    assert profile.warnings == ()
+    assert profile.path.read_text().startswith("# yaml-language-server: $schema=schema.json")
+
+
+def test_the_schema_is_true() -> None:
+    assert (PROFILES / "schema.json").read_text() == render(), (
+        "python -m launcher.profile_schema > profiles/schema.json"
+    )
+
+
+def test_the_schema_names_every_key_and_choice() -> None:
+    schema = json.loads(render())
+    node = schema["$defs"]["NodeDocument"]["properties"]
+    assert set(schema["properties"]) >= {"nodes", "title", "domain", "discovery", "extends"}
+    assert node["restart"]["enum"] == ["never", "on-failure", "always"]
+    assert all("description" in key for key in (*schema["properties"].values(), *node.values()))
+    assert schema["additionalProperties"] is False
+
+
+def test_the_brain_lesson_has_its_eight_nodes() -> None:
+    profile = load_profile(PROFILES / "09-brain.yaml")
+    assert list(profile.nodes) == [
+        *("sonar_front", "camera", "audio", "head_controller", "ai_driver"),
+        *("safety_stop", "electronic_differential", "ai_brain"),
+    ]
+    assert profile.nodes["safety_stop"].params["gate"] is True
+    assert profile.nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
+    assert set(profile.nodes["ai_brain"].needs) == set(profile.nodes) - {"ai_brain"}
+
+
+def test_rviz_is_optional() -> None:
+    rviz = load_profile(PROFILES / "06-rviz.yaml").nodes["rviz"]
+    assert rviz.optional
+    assert rviz.cwd is not None
+    assert (rviz.cwd / "robot.rviz").is_file()
+
+
+def test_the_catalog_lists_the_lessons_in_order(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert [entry.path for entry in list_profiles()] == LESSONS
