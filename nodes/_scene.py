@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _SKY_TOP, _SKY_LOW = (96, 148, 224), (196, 220, 244)
 _GROUND_FAR, _GROUND_NEAR = (132, 148, 96), (72, 88, 56)
 _BALL, _BALL_LIGHT = (216, 72, 40), (255, 188, 160)
-_CAPTION = (24, 255, 64)
+_CAPTION, _BAND = (24, 255, 64), (24, 32, 48)
 
 _GLYPH_ROWS = 7
 _GLYPHS = {
@@ -58,10 +58,10 @@ class Scene:
     def __init__(self, height: int, width: int, *, blue_first: bool) -> None:
         self._order = slice(None, None, -1) if blue_first else slice(None)
         self._height, self._width = height, width
+        self._scale = max(1, width // 210)
         self._background = self._paint_background()
         self._radius = max(2, height // 8)
         self._ball, self._ball_mask = self._paint_ball()
-        self._scale = max(1, width // 210)
         self._letters = {letter: self._paint_letter(rows) for letter, rows in _GLYPHS.items()}
 
     def draw(self, picture: NDArray[np.uint8], number: int) -> None:
@@ -78,6 +78,8 @@ class Scene:
                 np.linspace(_GROUND_FAR, _GROUND_NEAR, self._height - horizon),
             )
         )
+        # A dark band, for the caption to be read on.
+        rows[self._height // 12 - 2 * self._scale :][: (_GLYPH_ROWS + 4) * self._scale] = _BAND
         colours = rows.astype(np.uint8)[:, self._order]
         return np.repeat(colours[:, None, :], self._width, axis=1)
 

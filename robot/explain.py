@@ -7,6 +7,7 @@ Here the `action` decides which model was meant, and only that one is asked.
 from __future__ import annotations
 
 import difflib
+import sys
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ValidationError
@@ -101,7 +102,7 @@ class Explainer:
             return self._unknown(path, name, model)
         if code == "range" and name in _RANGES:
             limits = _RANGES[name]
-            args = {"low": limits.low, "high": limits.high, "value": float(value)}
+            args = {"low": limits.low, "high": limits.high, "value": _finite(value)}
             return Problem.of(code, path, self._place(path), unit=limits.unit, **args)
         if code == "too_many":
             return Problem.of(code, path, self._place(path), count=len(value), limit=MAX_COMMANDS)
@@ -116,6 +117,11 @@ class Explainer:
 
     def _place(self, path: Path) -> tuple[int, int]:
         return line_column(self._text, self._found.values.get(path, 0))
+
+
+def _finite(value: float) -> float:
+    """Arguments may travel as JSON, which has no infinities."""
+    return max(-sys.float_info.max, min(sys.float_info.max, float(value)))
 
 
 def _errors(model: type[BaseModel], value: object) -> list[ErrorDetails]:

@@ -45,6 +45,36 @@ TEMPLATES: Mapping[str, str] = MappingProxyType(
 )
 """Code of a problem to its message in English, for `str.format` with the arguments."""
 
+TEMPLATES_RU: Mapping[str, str] = MappingProxyType(
+    {
+        "too_big": "{size} байт — слишком много: не больше {limit}",
+        "encoding": "текст не в UTF-8",
+        "value_expected": "здесь должно быть значение",
+        "key_expected": "здесь должно быть имя поля в двойных кавычках",
+        "colon_expected": "после имени поля должно быть двоеточие",
+        "comma_expected": "здесь должна быть запятая или {closing}",
+        "string_bad": "текст в кавычках не закончен, или знаку в нём нужна обратная косая черта",
+        "half_character": "в этом тексте половина знака (одиночный суррогат)",
+        "not_finite": "nan и бесконечность — не числа, за которыми робот может следовать",
+        "too_deep": "слишком глубокая вложенность: не больше {limit}",
+        "text_after": "после конца JSON ничего быть не должно",
+        "duplicate": "поле {name} здесь дважды",
+        "missing": "нет поля {name}",
+        "unknown": "поля {name} не бывает",
+        "unknown_near": "поля {name} не бывает: может быть, {near}?",
+        "action": "должно быть одним из: {choices}",
+        "object": "должно быть объектом в фигурных скобках",
+        "list": "должно быть списком в квадратных скобках",
+        "text": "должно быть текстом в двойных кавычках",
+        "number": "должно быть числом",
+        "whole": "должно быть целым числом",
+        "range": "должно быть от {low:g} до {high:g} {unit}, а не {value:g}",
+        "too_many": "{count} команд — слишком много: не больше {limit}",
+        "invalid": "недопустимо",
+    }
+)
+"""The same in Russian."""
+
 _LONGEST_NAME = 40
 
 
@@ -76,6 +106,10 @@ class Problem:
         }
         message = TEMPLATES[code].format(**shown)
         return cls(field_name(path), *place, message, code, MappingProxyType(shown))
+
+    def in_russian(self) -> str:
+        """The message in Russian, without the place."""
+        return TEMPLATES_RU[self.code].format(**self.args)
 
     def __str__(self) -> str:
         """Place, field and message in one line."""

@@ -1,0 +1,158 @@
+"""The brain of lesson 9: hears a voice, looks at the distance, and has the robot act.
+
+The reasoning that an LLM would do is a few rules in `robot.brain`: with an obstacle within
+`stop_distance`, or without a fresh and valid distance, the robot is told to stop; else the head
+turns, the robot drives forward, and the loudspeaker says so. A word that drives ("стоп", "left")
+is obeyed as it is, as long as it does not lead into the unknown.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+from sensor_msgs.msg import Image
+from std_msgs.msg import ByteMultiArray, Float32, String
+
+from nodes._head_client import HeadAnswer, HeadClient
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._parameters import Number
+from nodes._sound import from_message, to_message
+from nodes._speech import Phrase
+from nodes._topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, NEWEST, SONAR_FRONT, SPEAKER
+from robot.brain import Decision, decide, spoken
+from robot.safety import Reading, look
+from robot.words import WORDS, parse_word
+
+LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0
+FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]
+"""The course's own nodes know Russian words only."""
+
+_STARTED = Phrase("The brain is awake and waits for a voice", "Мозг проснулся и ждёт голоса")
+_HEARD = Phrase('Heard: "{words}"', "Слышу: «{words}»")
+_THINKING = Phrase(
+    "Thinking with the voice, {picture} and {distance}",
+    "Думаю: голос, {picture} и {distance}",
+)
+_PICTURE = Phrase("a picture", "кадр")
+_NO_PICTURE = Phrase("no picture", "без кадра")
+_DISTANCE = Phrase("{metres:.2f} m ahead", "{metres:.2f} м впереди")
+_NO_DISTANCE = Phrase("no distance", "без расстояния")
+_THOUGHTS = {
+    Decision.LOOK_AND_GO: Phrase(
+        "The way is free: I look round and drive on", "Путь свободен: осмотрюсь и поеду вперёд"
+    ),
+    Decision.OBSTACLE: Phrase("An obstacle is near: I stop", "Препятствие близко: останавливаюсь"),
+    Decision.BLIND: Phrase(
+        "I do not know what is ahead: I stop", "Не знаю, что впереди: останавливаюсь"
+    ),
+    Decision.OBEY: Phrase("As you say", "Как скажете"),
+}
+_REPLIES = {
+    Decision.LOOK_AND_GO: Phrase("I look round and drive on.", "Осматриваюсь и еду вперёд."),
+    Decision.OBSTACLE: Phrase(
+        "There is something in front of me, I stand still.", "Передо мной препятствие, стою."
+    ),
+    Decision.BLIND: Phrase(
+        "I cannot see what is ahead, I stand still.", "Не вижу, что впереди, стою."
+    ),
+    Decision.OBEY: Phrase("As you say.", "Как скажете."),
+}
+_DECIDED = Phrase("Decision: {thought}", "Решение: {thought}")
+_HEAD_ASKED = Phrase(
+    "Asking the head for pan {pan}°, tilt {tilt}°", "Прошу голову: pan {pan}°, tilt {tilt}°"
+)
+_HEAD_DONE = Phrase("The head has turned", "Голова повернулась")
+_HEAD_REFUSED = Phrase("The head refused", "Голова отказалась")
+_HEAD_TROUBLE = Phrase("The head does not turn: {trouble}", "Голова не поворачивается: {trouble}")
+
+
+class AiBrain(LessonNode):
+    """Turns each voice message into words, a look and an answer."""
+
+    NAME = "ai_brain"
+    SETTINGS = (
+        Number("stop_distance", 1.0, "Nearer than this it stops", low=0.05, high=100.0, unit="m"),
+        Number(
+            "stale_after_s", 2.5, "An older distance is not believed", low=0.1, high=60.0, unit="s"
+        ),
+        Number("head_timeout", 5.0, "For the head's answer", low=0.1, high=60.0, unit="s"),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._picture: bytes | None = None
+        """Serialized: nobody looks at it before there is a vision model."""
+        self._front_m: float | None = None
+        self._front_s = 0.0
+        self._command = self.create_publisher(String, AI_COMMAND, DEPTH)
+        self._speaker = self.create_publisher(ByteMultiArray, SPEAKER, DEPTH)
+        self._head = HeadClient(self, lambda: self.number("head_timeout"))
+        self.create_subscription(Image, CAMERA, self._see, NEWEST, raw=True)
+        self.create_subscription(Float32, SONAR_FRONT, self._measure, DEPTH)
+        self.create_subscription(ByteMultiArray, MICROPHONE, self._hear, DEPTH)
+        self.say.info(_STARTED)
+
+    def _see(self, picture: bytes) -> None:
+        self._picture = picture
+
+    def _measure(self, message: Float32) -> None:
+        self._front_m, self._front_s = message.data, time.monotonic()
+
+    def _hear(self, message: ByteMultiArray) -> None:
+        words = spoken(from_message(message))
+        self.say.info(_HEARD, words=words)
+        self._tell_what_is_known()
+        order = parse_word(words)
+        reading = Reading(self._front_m, time.monotonic() - self._front_s)
+        front = look(reading, self.number("stop_distance"), self.number("stale_after_s"))
+        self._act(decide(order, front), words)
+
+    def _tell_what_is_known(self) -> None:
+        distance = (
+            self.say.text(_NO_DISTANCE)
+            if self._front_m is None
+            else self.say.text(_DISTANCE, metres=self._front_m)
+        )
+        picture = self.say.text(_NO_PICTURE if self._picture is None else _PICTURE)
+        self.say.info(_THINKING, picture=picture, distance=distance)
+
+    def _act(self, decision: Decision, words: str) -> None:
+        self.say.info(_DECIDED, thought=self.say.text(_THOUGHTS[decision]))
+        if decision == Decision.OBEY:
+            self._drive(_canonical(words))
+        elif decision == Decision.LOOK_AND_GO:
+            self.say.info(_HEAD_ASKED, pan=LOOK_PAN_DEG, tilt=LOOK_TILT_DEG)
+            self._head.turn(LOOK_PAN_DEG, LOOK_TILT_DEG, self._head_answered)
+            self._drive(FORWARD)
+        else:
+            self._drive(STOP_WORD)
+        reply = self.say.text(_REPLIES[decision])
+        self._speaker.publish(to_message(reply.encode()))
+
+    def _drive(self, word: str) -> None:
+        self._command.publish(String(data=word))
+
+    def _head_answered(self, answer: HeadAnswer) -> None:
+        if answer.trouble:
+            self.say.warn(_HEAD_TROUBLE, trouble=answer.trouble)
+        elif answer.sum:
+            self.say.info(_HEAD_DONE)
+        else:
+            self.say.warn(_HEAD_REFUSED)
+
+
+def _canonical(word: str) -> str:
+    """The Russian word that asks for the same motion."""
+    asked = parse_word(word)
+    return next((known for known in WORDS["ru"] if parse_word(known) == asked), STOP_WORD)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(AiBrain, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

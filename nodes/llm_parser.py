@@ -1,0 +1,150 @@
+"""From an LLM's JSON to motion: checks a whole response, then carries it out in order.
+
+One bad command and none is executed. /drive is published at once; turns of the head are asked for
+one after the other, and a new response drops those that have not begun. What came of each response
+is told on /llm_result as JSON, one object a message:
+
+    {"event": "accepted", "commands": 2, "thought": "..."}
+    {"event": "refused", "problems": [{"field", "line", "column", "message", "code", "args"}]}
+    {"event": "drive", "speed": 0.2, "steering": -0.3}
+    {"event": "head", "pan": -45, "tilt": 10, "sum": 1}     or "error" with a sentence
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from ackermann_msgs.msg import AckermannDriveStamped
+from std_msgs.msg import String
+
+from nodes._drive import to_message
+from nodes._head_client import HeadAnswer, HeadClient
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._parameters import Number
+from nodes._speech import Phrase
+from nodes._topics import DEPTH, DRIVE, LLM_RAW_JSON, LLM_RESULT
+from robot.commands import (
+    MAX_COMMANDS,
+    CommandError,
+    DriveCommand,
+    HeadCommand,
+    LlmResponse,
+    Problem,
+    parse_llm,
+)
+from robot.words import DriveSetpoint
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_STARTED = Phrase("Waiting for JSON on {topic}", "Жду JSON в {topic}")
+_THOUGHT = Phrase(
+    'The model thinks: "{thought}" ({count} commands)',
+    "Мысль модели: «{thought}» (команд: {count})",
+)
+_REFUSED = Phrase("Refused, nothing is done: {problem}", "Отказ, ничего не сделано: {problem}")
+_DRIVE = Phrase(
+    "Chassis: speed {speed:g} m/s, steering {steering:g} rad",
+    "Шасси: скорость {speed:g} м/с, руль {steering:g} рад",
+)
+_HEAD = Phrase("Head: asked for pan {pan}°, tilt {tilt}°", "Голова: прошу pan {pan}°, tilt {tilt}°")
+_HEAD_DONE = Phrase(
+    "Head: pan {pan}°, tilt {tilt}° done", "Голова: pan {pan}°, tilt {tilt}° готово"
+)
+_HEAD_REFUSED = Phrase(
+    "Head: pan {pan}°, tilt {tilt}° refused", "Голова: pan {pan}°, tilt {tilt}° — отказ"
+)
+_HEAD_TROUBLE = Phrase("Head: {trouble}", "Голова: {trouble}")
+_RESULTS = 2 * MAX_COMMANDS
+"""Queue of results: a response brings forth more of them at once than an ordinary queue holds."""
+
+
+class LlmParser(LessonNode):
+    """Carries out responses that pass the schema."""
+
+    NAME = "llm_parser"
+    SETTINGS = (
+        Number("head_timeout", 5.0, "For each answer of the head", low=0.1, high=60.0, unit="s"),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._drive = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
+        self._result = self.create_publisher(String, LLM_RESULT, _RESULTS)
+        self._head = HeadClient(self, lambda: self.number("head_timeout"))
+        self.create_subscription(String, LLM_RAW_JSON, self._receive, DEPTH)
+        self.say.info(_STARTED, topic=LLM_RAW_JSON)
+
+    def _receive(self, message: String) -> None:
+        try:
+            response = parse_llm(message.data)
+        except CommandError as error:
+            self._refuse(error.problems)
+            return
+        self._execute(response)
+
+    def _refuse(self, problems: Sequence[Problem]) -> None:
+        russian = self.say.language == "ru"
+        reports = []
+        for problem in problems:
+            place = f"{problem.line}:{problem.column} {problem.field}".rstrip()
+            words = problem.in_russian() if russian else problem.message
+            self.say.error(_REFUSED, problem=f"{place}: {words}")
+            reports.append(
+                {
+                    "field": problem.field,
+                    "line": problem.line,
+                    "column": problem.column,
+                    "message": words,
+                    "code": problem.code,
+                    "args": dict(problem.args),
+                }
+            )
+        self._tell(event="refused", problems=reports)
+
+    def _execute(self, response: LlmResponse) -> None:
+        self.say.info(_THOUGHT, thought=response.thought, count=len(response.commands))
+        self._tell(event="accepted", commands=len(response.commands), thought=response.thought)
+        self._head.forget()
+        for command in response.commands:
+            if isinstance(command, DriveCommand):
+                self._drive_as(command)
+            else:
+                self._turn_as(command)
+
+    def _drive_as(self, command: DriveCommand) -> None:
+        speed, steering = command.speed, command.steering
+        self._drive.publish(to_message(self, DriveSetpoint(speed, steering)))
+        self.say.info(_DRIVE, speed=speed, steering=steering)
+        self._tell(event="drive", speed=speed, steering=steering)
+
+    def _turn_as(self, command: HeadCommand) -> None:
+        self.say.info(_HEAD, pan=command.pan, tilt=command.tilt)
+        self._head.turn(command.pan, command.tilt, self._head_answered)
+
+    def _head_answered(self, answer: HeadAnswer) -> None:
+        pose = {"pan": answer.pan, "tilt": answer.tilt}
+        if answer.trouble or answer.sum is None:
+            self.say.warn(_HEAD_TROUBLE, trouble=answer.trouble)
+            self._tell(event="head", **pose, error=answer.trouble)
+            return
+        if answer.sum:
+            self.say.info(_HEAD_DONE, **pose)
+        else:
+            self.say.warn(_HEAD_REFUSED, **pose)
+        self._tell(event="head", **pose, sum=answer.sum)
+
+    def _tell(self, **report: object) -> None:
+        self._result.publish(String(data=json.dumps(report, ensure_ascii=False)))
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(LlmParser, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
