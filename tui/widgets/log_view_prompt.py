@@ -33,8 +33,8 @@ class LogPrompt(Horizontal):
     """
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "give_up", show=False)]
 
-    class Edited(Message):
-        """The text is another one."""
+    class Said(Message):
+        """Base of what it tells."""
 
         def __init__(self, prompt: LogPrompt, text: str) -> None:
             """Carry the text as it is now."""
@@ -46,10 +46,13 @@ class LogPrompt(Horizontal):
             """The prompt."""
             return self.prompt
 
-    class Answered(Edited):
+    class Edited(Said):
+        """The text is another one."""
+
+    class Answered(Said):
         """Enter was pressed."""
 
-    class GivenUp(Edited):
+    class GivenUp(Said):
         """Escape was pressed."""
 
     def __init__(self, id: str | None = None) -> None:

@@ -1,0 +1,105 @@
+"""What a log view keeps: bounded, fair to quiet nodes, honest about what is missing."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from launcher.status import LogLine, Severity
+from tui.widgets.log_view_ring import LONGEST_TEXT, LogRing
+
+
+def line(node: str, seq: int, text: str = "hello", severity: Severity = Severity.INFO) -> LogLine:
+    return LogLine(node, seq, 1_700_000_000.0 + seq, severity, text)
+
+
+def fill(ring: LogRing, node: str, first: int, count: int, text: str = "hello") -> None:
+    ring.append([line(node, seq, text) for seq in range(first, first + count)], {})
+    if ring.full:
+        ring.trim()
+
+
+def test_a_flood_of_one_node_leaves_the_lines_of_the_others() -> None:
+    ring = LogRing(max_lines=1000)
+    fill(ring, "quiet", 1, 50)
+    for batch in range(40):
+        fill(ring, "noisy", 1 + batch * 500, 500)
+    kept = Counter(entry.node for entry in ring.entries)
+    assert kept["quiet"] == 50
+    assert len(ring.entries) <= 1250
+    assert ring.entries[-1].text == "hello"
+
+
+def test_lines_stay_in_order_and_the_oldest_go_first() -> None:
+    ring = LogRing(max_lines=100)
+    for batch in range(20):
+        fill(ring, "noisy", 1 + batch * 30, 30)
+    ids = [entry.id for entry in ring.entries]
+    assert ids == sorted(ids)
+    assert ids[-1] == 599
+    assert ids[0] == 600 - len(ids)
+
+
+def test_memory_is_bounded_in_bytes_too() -> None:
+    ring = LogRing(max_lines=20_000, max_bytes=1_000_000)
+    for batch in range(30):
+        fill(ring, "noisy", 1 + batch * 20, 20, "x" * 10_000)
+        assert sum(entry.size for entry in ring.entries) <= 1_250_000 + 20 * 10_300
+    assert ring.entries[-1].id == 599
+
+
+def test_a_line_of_a_megabyte_is_cut_and_says_so() -> None:
+    ring = LogRing()
+    (entry,) = ring.append([line("noisy", 1, "x" * 1_000_000)], {})
+    assert len(entry.text) < LONGEST_TEXT + 30
+    assert entry.text.endswith(f"(+{1_000_000 - LONGEST_TEXT})")
+
+
+def test_a_gap_in_the_numbers_is_marked_where_it_is() -> None:
+    ring = LogRing()
+    ring.append([line("a", 1), line("b", 7)], {})
+    entries = ring.append([line("b", 8), line("a", 12)], {"a": 10})
+    assert [(entry.node, entry.skipped) for entry in entries] == [("b", 0), ("a", 10), ("a", 0)]
+
+
+def test_lines_reported_as_skipped_are_marked_once() -> None:
+    ring = LogRing()
+    ring.append([line("a", 1)], {})
+    assert [entry.skipped for entry in ring.append([], {"a": 5})] == [5]
+    assert [entry.skipped for entry in ring.append([line("a", 7)], {})] == [0]
+
+
+def test_the_first_line_of_a_node_is_no_gap_whatever_its_number() -> None:
+    ring = LogRing()
+    assert [entry.skipped for entry in ring.append([line("a", 500)], {})] == [0]
+    assert [entry.skipped for entry in ring.append([line("a", 1)], {})] == [0]
+
+
+def test_what_somebody_reads_is_not_dropped_and_the_gap_behind_it_is_marked() -> None:
+    ring = LogRing(max_lines=100)
+    fill(ring, "noisy", 1, 100)
+    read = list(ring.entries)
+    ring.hold()
+    for batch in range(10):
+        fill(ring, "noisy", 101 + batch * 100, 100)
+    assert ring.entries[:100] == read
+    assert len(ring.entries) <= 100 + 126
+    mark = ring.entries[100]
+    assert mark.skipped == 1000 - (len(ring.entries) - 101)
+    ring.release()
+    ring.trim()
+    assert len(ring.entries) == 100
+    assert ring.entries[-1].id == 1099
+
+
+def test_control_characters_become_their_pictures() -> None:
+    ring = LogRing()
+    (entry,) = ring.append([line("a", 1, "\x1b]52;c;AAAA\x07 \x00 \ud800 [red]x[/red]")], {})
+    assert entry.text == "␛]52;c;AAAA␇ ␀ � [red]x[/red]"
+
+
+def test_lines_are_counted_by_node_and_severity() -> None:
+    ring = LogRing(max_lines=4)
+    for seq in range(10):
+        fill(ring, "a", seq, 1)
+    ring.append([line("a", 10, severity=Severity.WARN), line("b", 1, severity=Severity.FATAL)], {})
+    assert ring.counts == {"a": [0, 10, 1, 0, 0], "b": [0, 0, 0, 0, 1]}
