@@ -56,7 +56,7 @@ def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
         return _live(node_type, arguments, ending)
     except UsageError as error:
         speech = Speech(get_logger(node_type.NAME), language(os.environ))
-        get_logger(node_type.NAME).fatal(speech.text(error.phrase, **error.values))
+        speech.fatal(error.phrase, **error.values)
         return USAGE
     finally:
         try_shutdown()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from rclpy.impl.rcutils_logger import RcutilsLogger
 
@@ -53,27 +53,30 @@ class Speech:
         template = phrase.ru if self.language == "ru" else phrase.en
         return printable(template.format(**values))
 
+    # One line for each severity: rclpy remembers the severity of each line that logs.
+
     def info(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
         """Log; not more often than every `every_s` seconds."""
-        self._say(self._logger.info, phrase, every_s, values)
+        if self._is_due(phrase, every_s):
+            self._logger.info(self.text(phrase, **values))
 
     def warn(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
         """Log a warning; not more often than every `every_s` seconds."""
-        self._say(self._logger.warning, phrase, every_s, values)
+        if self._is_due(phrase, every_s):
+            self._logger.warning(self.text(phrase, **values))
 
     def error(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
         """Log an error; not more often than every `every_s` seconds."""
-        self._say(self._logger.error, phrase, every_s, values)
+        if self._is_due(phrase, every_s):
+            self._logger.error(self.text(phrase, **values))
 
-    def _say(
-        self,
-        log: Callable[[str], object],
-        phrase: Phrase,
-        every_s: float,
-        values: Mapping[str, object],
-    ) -> None:
+    def fatal(self, phrase: Phrase, **values: object) -> None:
+        """Log why the node cannot go on."""
+        self._logger.fatal(self.text(phrase, **values))
+
+    def _is_due(self, phrase: Phrase, every_s: float) -> bool:
         now_s = time.monotonic()
         if every_s and now_s - self._said_s.get(phrase, -every_s) < every_s:
-            return
+            return False
         self._said_s[phrase] = now_s
-        log(self.text(phrase, **values))
+        return True

@@ -1,0 +1,104 @@
+"""A lesson node as a process of its own, as a person would start it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+ROOT = Path(__file__).parents[2]
+
+
+class NodeProcess:
+    """`python -m MODULE --ros-args -p NAME:=VALUE ...`; its output goes to a file."""
+
+    def __init__(
+        self,
+        module: str,
+        domain: int,
+        *,
+        name: str = "",
+        params: dict[str, object] | None = None,
+        lang: str = "en",
+        arguments: tuple[str, ...] = (),
+    ) -> None:
+        self.module = module
+        command = [sys.executable, "-m", module, *arguments]
+        if name or params:
+            command.append("--ros-args")
+        if name:
+            command += ["-r", f"__node:={name}"]
+        for key, value in (params or {}).items():
+            command += ["-p", f"{key}:={str(value).lower() if value in (True, False) else value}"]
+        environment = {
+            **os.environ,
+            "ROS_DOMAIN_ID": str(domain),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "ROS_PYTHON_CHECK_FIELDS": "1",
+            "PYTHONUNBUFFERED": "1",
+            "DECK_LANG": lang,
+        }
+        self._log = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - closed in `close`
+        self.process = subprocess.Popen(
+            command,
+            cwd=ROOT,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=self._log,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def output(self) -> str:
+        """All that it has written so far."""
+        size = os.fstat(self._log.fileno()).st_size
+        return os.pread(self._log.fileno(), size, 0).decode("utf-8", "replace")
+
+    def wait_for_words(self, *words: str) -> None:
+        """Wait until it has written these words, in any order."""
+        wait_until(
+            lambda: all(word in self.output for word in words) or self._stop_waiting(words),
+            f"{words} in the output of {self.module}",
+        )
+
+    def send(self, number: signal.Signals) -> None:
+        """Send a signal."""
+        self.process.send_signal(number)
+
+    def wait(self, within_s: float = 20.0) -> int:
+        """Wait for the end; the exit code comes back."""
+        return self.process.wait(within_s)
+
+    def close(self) -> None:
+        """End it, whatever it does."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+            try:
+                self.process.wait(10)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        self._log.close()
+
+    def _stop_waiting(self, words: tuple[str, ...]) -> bool:
+        if self.process.poll() is None:
+            return False
+        raise AssertionError(
+            f"{self.module} ended with {self.process.returncode} before {words}:\n{self.output}"
+        )

@@ -1,0 +1,94 @@
+"""A ROS node of the test's own: it hears, speaks and calls, while the test waits for conditions."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from typing import TYPE_CHECKING, Any
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from rclpy.publisher import Publisher
+    from rclpy.subscription import Subscription
+    from typing_extensions import Self
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Peer:
+    """A node on its own context and thread; to be closed, or used in a `with`."""
+
+    def __init__(self, domain: int, name: str = "peer") -> None:
+        # A fixture that outlives a test does not see that test's environment.
+        os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=domain)
+        self.node = rclpy.create_node(name, context=self._context)
+        self._publishers: dict[str, Publisher] = {}
+        self._subscriptions: list[Subscription[Any]] = []
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._thread = threading.Thread(target=self._spin, name="peer", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the node and its thread."""
+        self._context.try_shutdown()
+        self._thread.join(timeout=10)
+        self._executor.shutdown()
+        self.node.destroy_node()
+
+    def hear(self, topic: str, kind: type, qos: QoSProfile | int = 100) -> list[Any]:
+        """A list that grows with every message of the topic from now on."""
+        heard: list[Any] = []
+        self._subscriptions.append(self.node.create_subscription(kind, topic, heard.append, qos))
+        return heard
+
+    def publisher(self, topic: str, kind: type, qos: QoSProfile | int = 10) -> Publisher:
+        """The publisher of a topic, made once."""
+        if topic not in self._publishers:
+            self._publishers[topic] = self.node.create_publisher(kind, topic, qos)
+        return self._publishers[topic]
+
+    def say(
+        self, topic: str, message: Any, *, listeners: int = 1, qos: QoSProfile | int = 10
+    ) -> None:
+        """Publish, once so many subscriptions are matched that the message cannot get lost."""
+        publisher = self.publisher(topic, type(message), qos)
+        wait_until(
+            lambda: publisher.get_subscription_count() >= listeners,
+            f"{listeners} subscribers of {topic}",
+        )
+        publisher.publish(message)
+
+    def ask(self, service: str, kind: Any, request: Any, within_s: float = 30.0) -> Any:
+        """Call a service and return its response."""
+        client = self.node.create_client(kind, service)
+        try:
+            wait_until(client.service_is_ready, f"service {service}", within_s)
+            future = client.call_async(request)
+            wait_until(future.done, f"an answer of {service}", within_s)
+            return future.result()
+        finally:
+            self.node.destroy_client(client)
+
+    def sees(self, node: str) -> bool:
+        """Whether a node of that name is in the graph."""
+        return node in self.node.get_node_names()
+
+    def _spin(self) -> None:
+        with contextlib.suppress(ExternalShutdownException):
+            self._executor.spin()
