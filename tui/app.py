@@ -1,29 +1,37 @@
-"""The app: which screens there are, and the session they show opened, closed and left."""
+"""The app: its screens, its languages and themes, and the session opened, closed and left."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import asyncio
+import contextlib
+from collections.abc import Iterable, Sequence
+from functools import partial
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import work
-from textual.app import App
+from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 
 from launcher.errors import LauncherError
-from tui.actions import Acting, Action, bindings
+from tui.actions import REGISTRY, Acting, Action, bindings, bound
 from tui.actions.app import APP_ACTIONS, ShowComposer, ShowDeck, ShowLogs, ShowTopics
 from tui.brake import Brake
 from tui.feed import Feed, GraphReady
-from tui.i18n import LANGUAGES, _, language, pick, said, set_language
+from tui.i18n import LANGUAGES, NAMES, _, language, pick, said, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
+from tui.seams import Order
+from tui.themes import CYCLE, HIGH_CONTRAST, after
 
 if TYPE_CHECKING:
+    from textual.driver import Driver
     from textual.screen import Screen
 
-    from tui.seams import Launchpad, Order
+    from tui.seams import Launchpad
 
 SCREENS = {
+    "picker": ("tui.screens.picker", "PickerScreen"),
     "deck": ("tui.screens.deck", "LessonDeck"),
     "topics": ("tui.screens.topics", "TopicsScreen"),
     "composer": ("tui.screens.composer", "ComposerScreen"),
@@ -32,6 +40,7 @@ SCREENS = {
 """Imported when first shown: the first frame needs only one of them."""
 
 TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs)
+WELL = frozenset({"ready", "running"})
 
 
 class DeckApp(App[int], Acting):
@@ -39,53 +48,169 @@ class DeckApp(App[int], Acting):
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(*APP_ACTIONS)
-    ENABLE_COMMAND_PALETTE = True
 
-    def __init__(self, pad: Launchpad, order: Order | None = None) -> None:
-        """`pad` lists and opens; an `order` is opened at once, without one the picker is shown."""
-        super().__init__()
+    def __init__(
+        self,
+        pad: Launchpad,
+        order: Order,
+        first_screen: str = "deck",
+        driver_class: type[Driver] | None = None,
+    ) -> None:
+        """`pad` lists and opens; an `order` that names nothing is asked for by the picker."""
+        super().__init__(driver_class=driver_class)
         self.pad = pad
-        self.order = order
-        self.first_screen = "deck"
+        self.defaults = order
+        """What every order has: hardware, overrides, domain."""
         self.feed = Feed(self)
         self.brake = Brake(self)
+        self.parting_words = ""
+        """Said on the terminal after the screen has gone."""
+        self._picking = order.profile is None and order.attach is None
+        self._first_screen = "picker" if self._picking else first_screen
+        self._opening = ""
+        self._leaving = False
+        self.register_theme(HIGH_CONTRAST)
+
+    # Screens
 
     def get_default_screen(self) -> Screen[Any]:
         """Begin with the lesson, or with the picker if none was named."""
-        return self._session_screen(self.first_screen)
+        return self._made_screen(self._first_screen)
 
     async def show_screen(self, name: str) -> None:
         """Bring one of `SCREENS` to the front."""
-        await self.switch_screen(self._session_screen(name))
+        await self.switch_screen(self._made_screen(name))
 
-    def _session_screen(self, name: str) -> Screen[Any]:
+    def _made_screen(self, name: str) -> Screen[Any]:
         """Return the screen called `name`, made when first asked for."""
         if not self.is_screen_installed(name):
             module, made = SCREENS[name]
             self.install_screen(getattr(import_module(module), made)(), name)
         return self.get_screen(name)
 
+    def show_help(self) -> None:
+        """Explain the screen in front."""
+        from tui.screens.help import HelpScreen
+
+        if not isinstance(self.screen, HelpScreen):
+            self.push_screen(HelpScreen(self.screen))
+
+    # The session
+
     def on_ready(self) -> None:
         """Open what was ordered, now that the first frame is out."""
-        if self.order is not None:
-            self.open(self.order)
+        if not self._picking:
+            self.open(self.defaults)
 
     @work(exclusive=True, group="session")
     async def open(self, order: Order) -> None:
         """Start or attach to a session and show it until it ends."""
+        self._opening = order.attach or (order.profile or Path()).stem
         try:
+            if self._picking:
+                await self.show_screen("deck")
             link = await self.pad.open(order)
         except LauncherError as error:
-            self.refuse(error)
+            await self._refuse(error)
             return
+        finally:
+            self._opening = ""
         self.brake.forget()
         self.feed.connect(link, self.pad.observe(link.session))
+        self.brake.prepare()
+        self.refresh_bindings()
+        if link.strays:
+            self.ask_about(link.strays)
         await self.feed.listen()
+        self.refresh_bindings()
 
-    def refuse(self, error: LauncherError) -> None:
-        """Say why nothing was opened."""
-        words = "\n".join(said(part) for part in error.args if isinstance(part, str)) or str(error)
-        self.exit(error.exit_code, message=words)
+    async def _refuse(self, error: LauncherError) -> None:
+        """Say why nothing was opened: where it was picked, or by ending."""
+        reason = _words_of(error)
+        if not self._picking or self._leaving:
+            self.parting_words = reason
+            self.exit(return_code=error.exit_code)
+            return
+        from tui.screens.refused import RefusedScreen
+
+        await self._show_picker()
+        self.push_screen(RefusedScreen(reason))
+
+    @work(group="strays")
+    async def ask_about(self, strays: tuple[Any, ...]) -> None:
+        """Offer to stop what an earlier run left behind."""
+        from tui.screens.strays import StraysScreen
+
+        if await self.push_screen_wait(StraysScreen(strays)) and self.feed.link is not None:
+            with contextlib.suppress(LauncherError):
+                await self.feed.link.stop_strays(strays)
+
+    @work(exclusive=True, group="leaving")
+    async def close_session(self) -> None:
+        """Stop the nodes that this screen has started, or let go of the others; then pick anew."""
+        await self._end_session()
+        await self._show_picker()
+
+    async def _show_picker(self) -> None:
+        """Go back to the list; the screens of the session go with it."""
+        self._picking = True
+        old = [self.get_screen(name) for name in SCREENS if self.is_screen_installed(name)]
+        for screen in old:
+            self.uninstall_screen(screen)
+        self.feed.close()
+        await self.show_screen("picker")
+        for screen in old:
+            if screen.is_running:
+                await screen.remove()
+
+    async def _end_session(self) -> None:
+        """Stop or let go of the session, with a dialog that shows what is waited for."""
+        from tui.screens.stopping import StoppingScreen
+
+        link, graph = self.feed.link, self.feed.graph
+        if link is None or not link.session.foreground:
+            await self.feed.disconnect()
+            return
+        dialog = StoppingScreen()
+        await self.push_screen(dialog)
+        ending = [asyncio.ensure_future(link.shutdown())]
+        if graph is not None:
+            ending.append(asyncio.ensure_future(asyncio.to_thread(graph.stop)))
+        await asyncio.gather(*ending, return_exceptions=True)
+        await self.feed.disconnect()
+        if dialog.is_running and self.screen is dialog:
+            await dialog.dismiss()
+
+    @work(group="leaving")
+    async def stop_now(self) -> None:
+        """Skip the waiting for nodes that do not end by themselves."""
+        link = self.feed.link
+        if link is None:
+            self.exit(return_code=self.return_code or 0)
+            return
+        with contextlib.suppress(LauncherError):
+            await link.shutdown(now=True)
+
+    @property
+    def crashed(self) -> bool:
+        """Whether the app ended by a fault of its own."""
+        return self._exception is not None
+
+    def leave(self, code: int = 0) -> None:
+        """Stop what this screen has started, and end; asked again, at once."""
+        if self._leaving:
+            self.stop_now()
+            return
+        self._leaving = True
+        self.end(code)
+
+    @work(exclusive=True, group="leaving")
+    async def end(self, code: int) -> None:
+        """End the session, then the app."""
+        await self._end_session()
+        self.exit(return_code=code)
+
+    # What the feed and the brake tell
 
     def on_graph_ready(self, message: GraphReady) -> None:
         """Take the update that waits."""
@@ -99,21 +224,25 @@ class DeckApp(App[int], Acting):
         self.feed.tell(lambda: EmergencyChanged(self.brake.state))
         self.refresh_bindings()
 
+    # Words
+
     def tabs(self, front: str) -> Sequence[tuple[str, str, bool]]:
         """Return (text, action, in front) of every screen of the session."""
         return [
-            (f"{self.key_of(tab)} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front)
+            (f"{self.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front)
             for tab in TABS
         ]
 
     def state_words(self) -> Sequence[str]:
-        """Return what runs, in words: the longest first, the last always fits."""
+        """Return what runs, in words, from long to short; the first that fits is shown."""
         session = self.feed.session
         if session is None:
-            return (said(self.feed.ended),) if self.feed.ended else ()
+            if self.feed.ended:
+                return (said(self.feed.ended), _("ended"))
+            return (_("opening {name}…").format(name=self._opening),) if self._opening else ()
         nodes = self.feed.nodes.values()
-        well = sum(node.state.value in {"ready", "running"} for node in nodes)
-        count = f"{well}/{len(nodes)}"
+        well = sum(node.state.value in WELL for node in nodes)
+        count = f"{'●' if well == len(nodes) else '◔'} {well}/{len(nodes)}"
         title = f"{session.lesson} {pick(session.title)}".strip() or session.name
         domain = _("domain {domain}").format(domain=session.domain)
         return (
@@ -123,14 +252,94 @@ class DeckApp(App[int], Acting):
             count,
         )
 
-    def key_of(self, action: type[Action[Any]]) -> str:
-        """Return how the first key of `action` is written."""
-        key = self._keymap.get(action.id, action.key).split(",")[0]
+    def keys_of(self, action: type[Action[Any]]) -> list[str]:
+        """Return how the keys of `action` are written, those of the user's keymap."""
+        keys = self._keymap.get(action.id, action.key).split(",")
+        return [self.key_text(key.strip()) for key in keys]
+
+    def key_text(self, key: str) -> str:
+        """Return how a key is written."""
         return self.get_key_display(Binding(key, ""))
 
-    def switch_language(self) -> None:
-        """Speak the next language, and draw every text anew."""
-        after = LANGUAGES[(LANGUAGES.index(language()) + 1) % len(LANGUAGES)]
-        set_language(after)
+    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
+        """Fill the palette from the actions that are possible now."""
+        targets = ((screen, bound(screen)), (self, bound(self)))
+        for target, actions in targets:
+            for action in actions:
+                if action.palette and action.possible(target):
+                    run = partial(action.run, target)
+                    yield SystemCommand(_(action.title), _(action.tooltip), run)
+        for code, name in NAMES.items():
+            yield SystemCommand(name, _("Speak this language."), partial(self.speak, code))
+        for theme in sorted(self.available_themes):
+            words = _("Theme: {name}").format(name=theme)
+            take = partial(setattr, self, "theme", theme)
+            yield SystemCommand(words, _("Take these colours."), take, theme in CYCLE)
+
+    def action_command_palette(self) -> None:
+        """Open the palette in the language spoken now."""
+        from textual.command import CommandPalette
+
+        if not isinstance(self.screen, CommandPalette):
+            words = _("What is to be done?")
+            self.push_screen(CommandPalette(placeholder=words, id="--command-palette"))
+
+    def action_help_quit(self) -> None:
+        """Ctrl+C copies elsewhere: say how to leave."""
+        self.notify(_("Press q, or Ctrl+Q in a text field, to leave."), markup=False)
+
+    def speak(self, code: str) -> None:
+        """Speak this language from now on, and draw every text anew."""
+        set_language(code)
+        for screen in self.screen_stack:
+            screen.post_message(LanguageChanged())
         self.feed.tell(LanguageChanged)
         self.refresh_bindings()
+
+    def switch_language(self) -> None:
+        """Speak the next language."""
+        self.speak(LANGUAGES[(LANGUAGES.index(language()) + 1) % len(LANGUAGES)])
+
+    def next_theme(self) -> None:
+        """Take the next theme of the cycle."""
+        self.theme = after(self.theme)
+
+
+def every_action() -> frozenset[str]:
+    """Return the binding id of every action there is; it takes every screen to know them."""
+    for module, _made in SCREENS.values():
+        import_module(module)
+    import_module("tui.screens.help")
+    return frozenset(REGISTRY)
+
+
+def _words_of(error: LauncherError) -> str:
+    """Return an error in the language spoken now, every problem of a profile on its line."""
+    problems: Sequence[Any] = getattr(error, "problems", ())
+    if not problems:
+        return said(error.args[0]) if error.args else str(error)
+    lines = []
+    for problem in problems:
+        field = f"{problem.field}: " if problem.field else ""
+        hint = f" ({said(problem.hint)})" if problem.hint else ""
+        lines.append(f"{problem.where}: {field}{said(problem.message)}{hint}")
+    return "\n".join(lines)
+
+
+def run_screen(
+    profile: Path | None,
+    *,
+    hardware: str = "mock",
+    overrides: Sequence[str] = (),
+    domain: int | None = None,
+    lang: str | None = None,
+    attach: str | None = None,
+) -> int:
+    """Show the screen until it is left; return the exit code of the program.
+
+    With a `profile` that is started, with `attach` that session is shown, else one is picked.
+    """
+    from tui.live import run_live
+
+    order = Order(profile, attach, hardware, tuple(overrides), domain)
+    return run_live(order, lang)

@@ -11,9 +11,8 @@ from tui.emergency import Emergency, listeners
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
     from tui.app import DeckApp
-    from tui.seams import GraphLink
 
-SENT_WITHIN_S = 1.0
+SENT_WITHIN_S = 2.0
 
 
 class Brake:
@@ -42,23 +41,38 @@ class Brake:
         """Start anew with another session."""
         self._set(Emergency())
 
+    def prepare(self) -> None:
+        """Have the publisher made, so that the first word goes out at once."""
+        graph = self._app.feed.graph
+        if graph is not None:
+            prepared = graph.prepare_publisher(emergency.TOPIC, emergency.TOPIC_TYPE, latched=True)
+            # If it cannot be made, publishing will say so.
+            prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
+
     async def _stop(self) -> None:
         """Publish; where that cannot have reached anybody, stop all nodes as well."""
         feed = self._app.feed
-        reached = listeners(feed.update)
-        sent = await self._send(engaged=True)
-        if sent and reached:
+        reached = listeners(feed.update) > 0
+        sending = asyncio.ensure_future(self._send(engaged=True))
+        if reached and await sending:
             return
-        self._set(self.state.fallen_back(emergency.NO_LISTENER if sent else emergency.NO_GRAPH))
+        self._set(self.state.fallen_back(emergency.NO_GRAPH if reached else _unheard(feed.update)))
         if feed.link is not None:
             await feed.link.stop()
+        await sending
 
     async def _send(self, *, engaged: bool) -> bool:
         """Publish the latched word; return whether ROS took it."""
         graph = self._app.feed.graph
         if graph is None:
             return False
-        return await _published(graph, engaged)
+        message = {"data": engaged}
+        future = graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, message, latched=True)
+        try:
+            await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
+        except Exception:  # noqa: BLE001 - whatever it was, the nodes are stopped in its place
+            return False
+        return True
 
     def _set(self, state: Emergency) -> None:
         if state != self.state:
@@ -66,10 +80,6 @@ class Brake:
             self._app.emergency_changed()
 
 
-async def _published(graph: GraphLink, engaged: bool) -> bool:
-    future = graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, {"data": engaged}, latched=True)
-    try:
-        await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
-    except Exception:  # noqa: BLE001 - whatever it was, the nodes are stopped in its place
-        return False
-    return True
+def _unheard(update: GraphUpdate | None) -> str:
+    """Return why nobody can have heard it."""
+    return emergency.NO_GRAPH if update is None or update.error else emergency.NO_LISTENER

@@ -6,7 +6,8 @@ thread by way of an inbox.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import asyncio
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from textual.message import Message
@@ -20,7 +21,7 @@ from tui.screens.base import DeckScreen
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
-    from launcher.status import NodeStatus, SessionInfo
+    from launcher.status import LogLine, NodeStatus, SessionInfo
     from tui.app import DeckApp
     from tui.seams import GraphLink, SessionLink
 
@@ -57,6 +58,11 @@ class Feed:
         return {} if self.link is None else self.link.nodes
 
     @property
+    def opened(self) -> bool:
+        """Whether there is a session to be looked at, be it one that has ended."""
+        return self.link is not None or bool(self.ended)
+
+    @property
     def front(self) -> DeckScreen | None:
         """The screen of the session that is in front, below any dialog."""
         stack = reversed(self._app.screen_stack)
@@ -78,10 +84,21 @@ class Feed:
         self.link = self.graph = None
         self.ended = ended
         if graph is not None:
-            graph.stop()
+            await asyncio.to_thread(graph.stop)
         if link is not None:
             await link.aclose()
         self.tell(lambda: SessionChanged(ended))
+
+    def close(self) -> None:
+        """Forget the session that has ended, and the screens that showed it."""
+        self.ended = ""
+        self._screens.clear()
+        self.history.clear()
+
+    def note(self, lines: Sequence[LogLine]) -> None:
+        """Add lines of this screen's own to the log."""
+        self.history.add(lines)
+        self.tell(lambda: LogArrived(tuple(lines), {}))
 
     async def listen(self) -> None:
         """Hand over what the session says until it ends."""

@@ -21,12 +21,13 @@ _language = "en"
 _catalogue: _gettext.NullTranslations = _gettext.NullTranslations()
 
 
-def detect(option: str | None = None, environ: Mapping[str, str] | None = None) -> str:
-    """Return the language asked for: `--lang`, then `DECK_LANG`, then the locale, then English."""
+def detect(
+    option: str | None = None, environ: Mapping[str, str] | None = None, settled: str = ""
+) -> str:
+    """Return the language: `--lang`, `DECK_LANG`, what is settled, the locale, else English."""
     env = os.environ if environ is None else environ
-    wishes = (option, env.get("DECK_LANG"))
     locale = env.get("LC_ALL") or env.get("LC_MESSAGES") or env.get("LANG")
-    for wish in (*wishes, locale):
+    for wish in (option, env.get("DECK_LANG"), settled, locale):
         code = (wish or "").replace("-", "_").split("_")[0].split(".")[0].lower()
         if code in LANGUAGES:
             return code

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable, Iterable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -79,10 +79,15 @@ class GraphLink(Protocol):
     def measure(self, all_topics: bool) -> None:
         """Measure the rates of all topics, or only of those watched and followed."""
 
+    def prepare_publisher(
+        self, topic: str, type_name: str, *, latched: bool = False
+    ) -> Future[None]:
+        """Make a publisher now, so that its first message goes out at once."""
+
     def publish(
         self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
-    ) -> Future[None]:
-        """Publish one message; the future fails with a clear word if that is impossible."""
+    ) -> Future[int]:
+        """Publish one message; the future tells how many it went to, or fails with a word why."""
 
     def call(
         self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
@@ -99,6 +104,8 @@ class Lesson:
     path: Path
     title: Mapping[str, str]
     """Language code to title."""
+    about: Mapping[str, str] = field(default_factory=dict)
+    """Language code to a few sentences."""
     lesson: str = ""
     nodes: tuple[str, ...] = ()
     panels: tuple[str, ...] = ()

@@ -308,6 +308,7 @@ class RecordedGraph:
     stopped: bool = False
     published: list[tuple[str, str, Mapping[str, Any], bool]] = field(default_factory=list)
     """(topic, type, value, latched)."""
+    prepared: list[tuple[str, str, bool]] = field(default_factory=list)
     called: list[tuple[str, str, Mapping[str, Any]]] = field(default_factory=list)
     publish_error: Exception | None = None
     """Set: every publishing fails by this."""
@@ -336,13 +337,21 @@ class RecordedGraph:
     def measure(self, all_topics: bool) -> None:
         self.measured = all_topics
 
+    def prepare_publisher(
+        self, topic: str, type_name: str, *, latched: bool = False
+    ) -> Future[None]:
+        self.prepared.append((topic, type_name, latched))
+        future: Future[None] = Future()
+        future.set_result(None)
+        return future
+
     def publish(
         self, topic: str, type_name: str, value: Mapping[str, Any], *, latched: bool = False
-    ) -> Future[None]:
+    ) -> Future[int]:
         self.published.append((topic, type_name, value, latched))
-        future: Future[None] = Future()
+        future: Future[int] = Future()
         if self.publish_error is None:
-            future.set_result(None)
+            future.set_result(1)
         else:
             future.set_exception(self.publish_error)
         return future
@@ -359,32 +368,40 @@ class RecordedGraph:
 
 LESSONS = [
     Lesson(
-        "01-hello",
-        Path("profiles/01-hello.yaml"),
-        {"en": "The first node", "ru": "Первый узел"},
-        "1",
-        ("hello",),
+        name="01-hello",
+        path=Path("profiles/01-hello.yaml"),
+        title={"en": "The first node", "ru": "Первый узел"},
+        about={
+            "en": "A node is one small program of the robot. This one says hello every second.",
+            "ru": "Узел — одна небольшая программа робота. Этот раз в секунду подаёт голос.",
+        },
+        lesson="1",
+        nodes=("hello_node",),
     ),
     Lesson(
-        "02-sonar-safety",
-        Path("profiles/02-sonar-safety.yaml"),
-        {"en": "Topics: sonar and safety stop", "ru": "Топики: сонар и узел безопасности"},
-        "2",
-        ("sonar_front", "safety_stop"),
-        ("sonar",),
+        name="02-sonar-safety",
+        path=Path("profiles/02-sonar-safety.yaml"),
+        title={"en": "Topics: sonar and safety stop", "ru": "Топики: сонар и узел безопасности"},
+        lesson="2",
+        nodes=("sonar_front", "safety_stop"),
+        panels=("sonar",),
     ),
     Lesson(
-        "09-brain",
-        Path("profiles/09-brain.yaml"),
-        SESSION.title,
-        "9",
-        tuple(NODES),
-        SESSION.panels,
+        name="09-brain",
+        path=Path("profiles/09-brain.yaml"),
+        title=SESSION.title,
+        about={
+            "en": "The robot hears a phrase, looks around, and drives on or stops.",
+            "ru": "Робот слышит фразу, осматривается и едет дальше либо останавливается.",
+        },
+        lesson="9",
+        nodes=tuple(NODES),
+        panels=SESSION.panels,
     ),
     Lesson(
-        "my-robot",
-        Path("profiles/my-robot.yaml"),
-        {},
+        name="my-robot",
+        path=Path("profiles/my-robot.yaml"),
+        title={},
         error="profiles/my-robot.yaml:7:5: nodes.sonar.rum: unknown key (did you mean `run`?)",
     ),
 ]

@@ -41,9 +41,8 @@ class Look:
     def app(self, screen: str = "deck", pad: RecordedPad | None = None) -> DeckApp:
         """Return an app with the recorded lesson 9 opened, that will show `screen`."""
         set_language(self.language)
-        app = DeckApp(pad or RecordedPad(), Order(Path("profiles/09-brain.yaml")))
-        app.first_screen = screen
-        return app
+        order = Order() if screen == "picker" else Order(Path("profiles/09-brain.yaml"))
+        return DeckApp(pad or RecordedPad(), order, screen)
 
     @staticmethod
     async def settle(pilot: Pilot[Any]) -> None:
@@ -56,7 +55,7 @@ async def settle(pilot: Pilot[Any]) -> None:
     app = pilot.app
     for _round in range(200):
         await pilot.pause(0.01)
-        if isinstance(app, DeckApp) and app.feed.link is not None and app.feed.update is not None:
+        if isinstance(app, DeckApp) and app.feed.update is not None:
             break
     for _round in range(3):
         await pilot.pause()

@@ -28,8 +28,6 @@ class Action(Generic[Target]):
     """Two or three words, marked by `N_`."""
     tooltip: ClassVar[str]
     """A sentence, marked by `N_`."""
-    scope: ClassVar[str] = "screen"
-    """`screen` or `app`: whose `act` runs it."""
     footer: ClassVar[bool] = False
     """Whether the footer shows it."""
     priority: ClassVar[bool] = False
@@ -61,7 +59,7 @@ def bindings(*actions: type[Action[Any]]) -> list[BindingType]:
     return [
         Binding(
             action.key,
-            f"{action.scope}.act({action.id!r})",
+            f"act({action.id!r})",
             action.title,
             show=action.footer,
             tooltip=action.tooltip,

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 class AppAction(Action["DeckApp"]):
     """Something that the app does, whichever screen is in front."""
 
-    scope = "app"
-
 
 class SessionAction(AppAction):
     """Something that needs a session."""
@@ -63,7 +61,16 @@ class EmergencyRelease(SessionAction):
         target.brake.release()
 
 
-class ShowScreen(SessionAction):
+class OpenedAction(AppAction):
+    """Something that needs a session, which may have ended."""
+
+    @classmethod
+    def possible(cls, target: DeckApp) -> bool | None:
+        """Only while a session, or its remains, are shown."""
+        return target.feed.opened
+
+
+class ShowScreen(OpenedAction):
     """Bring a screen of the session to the front."""
 
     screen = ""
@@ -157,7 +164,7 @@ class SwitchTheme(AppAction):
         target.next_theme()
 
 
-class CloseSession(SessionAction):
+class CloseSession(OpenedAction):
     """Back to the list of lessons."""
 
     id = "session.close"
@@ -168,7 +175,7 @@ class CloseSession(SessionAction):
     @classmethod
     async def run(cls, target: DeckApp) -> None:
         """Stop, or let go of, the session and show the picker."""
-        await target.close_session()
+        target.close_session()
 
 
 class Quit(AppAction):

@@ -42,6 +42,8 @@ class DeckScreen(Screen[None], Acting):
 
     tab: ClassVar[str] = ""
     """Which tab of the title bar is in front while this screen is."""
+    about: ClassVar[str] = ""
+    """What the screen shows, in a few sentences for the help page, marked by `N_`."""
     period_s: ClassVar[float] = 0.25
     """Seconds between two updates of the graph while this screen is in front."""
     measure_all: bool = False
@@ -119,8 +121,8 @@ class DeckScreen(Screen[None], Acting):
 
     def show_frame(self) -> None:
         """Show title, session and emergency stop as they are."""
-        if not self.is_mounted:
-            return
         deck = self.deck
-        self.query_one(TitleBar).show(deck.tabs(self.tab), deck.state_words())
-        self.query_one(EmergencyBanner).show(deck.brake.state, deck.key_of(EmergencyRelease))
+        for bar in self.query(TitleBar):
+            bar.show(deck.tabs(self.tab), deck.state_words())
+        for banner in self.query(EmergencyBanner):
+            banner.show(deck.brake.state, deck.keys_of(EmergencyRelease)[0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from rich.cells import cell_len
 from textual.content import Content
@@ -13,7 +13,10 @@ from tui.actions import REGISTRY
 from tui.i18n import _
 
 if TYPE_CHECKING:
+    from textual.app import ActiveBinding
     from textual.screen import Screen
+
+    from tui.actions import Action
 
 
 class Key(NamedTuple):
@@ -21,7 +24,7 @@ class Key(NamedTuple):
 
     key: str
     title: str
-    action: str
+    id: str
     enabled: bool
 
 
@@ -36,6 +39,10 @@ class KeyBar(Widget):
         width: 1fr;
         background: $footer-background;
         color: $footer-foreground;
+        link-style: none;
+        link-color: $footer-description-foreground;
+        link-background: transparent;
+        link-style-hover: reverse;
         .key-bar--key { color: $footer-key-foreground; text-style: bold; }
         .key-bar--title { color: $footer-description-foreground; }
         .key-bar--off { color: $footer-description-foreground 50%; }
@@ -52,13 +59,28 @@ class KeyBar(Widget):
 
     def keys(self) -> list[Key]:
         """Return what can be done now, what the focused widget offers first."""
-        found: dict[str, Key] = {}
-        for _node, binding, enabled, _tooltip in self.screen.active_bindings.values():
-            action = REGISTRY.get(binding.id or "")
-            if binding.show and action is not None and binding.action not in found:
-                key = self.app.get_key_display(binding)
-                found[binding.action] = Key(key, _(action.title), binding.action, enabled)
-        return list(found.values())
+        found: dict[str, list[ActiveBinding]] = {}
+        for active in self.screen.active_bindings.values():
+            name = active.binding.id or ""
+            if active.binding.show and name in REGISTRY:
+                found.setdefault(name, []).append(active)
+        order = {name: place for place, name in enumerate(REGISTRY)}
+        names = sorted(found, key=lambda name: (found[name][0].node is self.app, order[name]))
+        return [self._key(REGISTRY[name], found[name]) for name in names]
+
+    def _key(self, action: type[Action[Any]], keys: list[ActiveBinding]) -> Key:
+        """Return the action with the first of its keys that the focused widget leaves to it."""
+        wanted = action.key.split(",")
+        first = min(keys, key=lambda one: (*wanted, one.binding.key).index(one.binding.key))
+        key = self.app.get_key_display(first.binding)
+        return Key(key, _(action.title), action.id, first.enabled)
+
+    async def action_press(self, name: str) -> None:
+        """Do what was clicked, as its key would."""
+        for active in self.screen.active_bindings.values():
+            if active.binding.id == name:
+                await self.app.run_action(active.binding.action, active.node)
+                return
 
     def render(self) -> Content:
         """Draw as many as fit."""
@@ -71,7 +93,7 @@ class KeyBar(Widget):
             room -= cell_len(entry.key) + cell_len(entry.title) + 3
             if room < 0:
                 break
-            meta = Style.from_meta({"@click": entry.action}) if entry.enabled else Style()
+            meta = Style.from_meta({"@click": f"press({entry.id!r})"}) if entry.enabled else Style()
             parts.append(
                 Content.assemble(
                     (f" {entry.key}", (key_style if entry.enabled else off_style) + meta),

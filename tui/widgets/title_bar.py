@@ -27,6 +27,10 @@ class TitleBar(Widget):
         width: 1fr;
         background: $panel;
         color: $foreground;
+        link-style: none;
+        link-color: $foreground;
+        link-background: transparent;
+        link-style-hover: reverse;
         .title-bar--name { color: $accent; text-style: bold; }
         .title-bar--tab { color: $foreground; }
         .title-bar--front { color: $foreground; text-style: bold reverse; }

@@ -1,0 +1,126 @@
+"""The app on a real terminal: signals, hang-ups, stray output, and settings that last."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from textual.theme import BUILTIN_THEMES
+
+from launcher.errors import LauncherError
+from launcher.rundir import log_dir
+from launcher.status import LogLine, Severity
+from tui import clock
+from tui.app import DeckApp, every_action
+from tui.i18n import _, detect, set_language
+from tui.session import LivePad
+from tui.settings import Settings, SettingsError, load, save, settings_path
+from tui.stray_output import StrayOutput
+from tui.terminal import DeckDriver
+from tui.themes import HIGH_CONTRAST
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from tui.seams import Order
+
+LOOK_S = 0.5
+"""How often the terminal is asked whether it is still there."""
+PATIENCE_S = 15.0
+"""How long a session may take to stop when there is nobody to look at it any more."""
+SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
+
+
+class LiveApp(DeckApp):
+    """Leaves orderly whatever the terminal does, and remembers what was settled."""
+
+    def __init__(self, order: Order, stray: StrayOutput, settings: Settings) -> None:
+        super().__init__(LivePad(), order, driver_class=DeckDriver)
+        self._stray = stray
+        self._settings = settings
+        self._stray_count = 0
+        self._deserted = False
+
+    def on_mount(self) -> None:
+        """Take the settings, and watch the terminal."""
+        if self._settings.theme:
+            self.theme = self._settings.theme
+        self.set_keymap(self._settings.keys)
+        loop = asyncio.get_running_loop()
+        for number in SIGNALS:
+            loop.add_signal_handler(number, self.desert, 128 + number)
+        self.set_interval(LOOK_S, self._look)
+
+    def desert(self, code: int) -> None:
+        """Leave because nobody is there any more, or because the system says so."""
+        if self._deserted:
+            self.stop_now()
+            return
+        self._deserted = True
+        self.leave(code)
+        self.set_timer(PATIENCE_S, self.stop_now)
+
+    def watch_theme(self, theme: str) -> None:
+        """Remember the theme."""
+        self._remember(theme=theme)
+
+    def speak(self, code: str) -> None:
+        """Remember the language."""
+        super().speak(code)
+        self._remember(language=code)
+
+    def _remember(self, **values: str) -> None:
+        changed: Any = replace(self._settings, **values)  # type: ignore[arg-type]
+        if not self.is_running or changed == self._settings:
+            return
+        self._settings = changed
+        try:
+            save(settings_path(), changed)
+        except SettingsError as error:
+            self.notify(plain(str(error)), severity="warning", markup=False)
+
+    def _look(self) -> None:
+        if isinstance(self._driver, DeckDriver) and self._driver.gone:
+            self._driver.give_up()
+            if not self._deserted:
+                self.desert(128 + signal.SIGHUP)
+        fresh = self._stray.new_lines()
+        first, self._stray_count = self._stray_count + 1, self._stray_count + len(fresh)
+        if fresh:
+            now_s = clock.now()
+            self.feed.note(
+                [
+                    LogLine("deck", first + at, now_s, Severity.INFO, plain(text), source="deck")
+                    for at, text in enumerate(fresh)
+                ]
+            )
+
+
+def run_live(order: Order, lang: str | None) -> int:
+    """Run the app on this terminal; return the exit code of the program."""
+    set_language(detect(lang))
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        return _refused(_("the screen needs a terminal; `deck run` does without"))
+    themes = {*BUILTIN_THEMES, HIGH_CONTRAST.name}
+    try:
+        settings = load(settings_path(), themes, every_action)
+        stray = StrayOutput(log_dir() / f"screen-{os.getpid()}.log")
+    except (SettingsError, LauncherError) as error:
+        return _refused(str(error))
+    set_language(detect(lang, settled=settings.language))
+    with stray:
+        app = LiveApp(order, stray, settings)
+        app.run()
+    if app.parting_words:
+        return _refused(app.parting_words, app.return_code or 0)
+    if app.crashed:
+        return _refused(_("Deck has failed; what is known is in {path}").format(path=stray.path), 1)
+    return app.return_code or 0
+
+
+def _refused(words: str, code: int = 2) -> int:
+    print(words, file=sys.stderr)  # noqa: T201
+    return code

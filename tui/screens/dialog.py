@@ -1,0 +1,73 @@
+"""The frame of every dialog: a titled box over the screen, its keys at the bottom."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, ClassVar, TypeVar, cast
+
+from textual.containers import Vertical, VerticalScroll
+from textual.content import Content
+from textual.screen import ModalScreen
+from textual.widgets import Static
+
+from tui.actions import Acting
+from tui.widgets.key_bar import KeyBar
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from tui.app import DeckApp
+
+Answer = TypeVar("Answer")
+
+
+class Dialog(ModalScreen[Answer], Acting):
+    """A title and a text; a subclass says which, and binds what can be answered."""
+
+    DEFAULT_CSS: ClassVar[str] = """
+    Dialog {
+        align: center middle;
+        #dialog {
+            width: 80; max-width: 96%; height: auto; max-height: 96%;
+            background: $surface; border: round $accent; padding: 0 1;
+            border-title-color: $accent; border-title-style: bold;
+        }
+        #dialog-scroll { height: auto; max-height: 1fr; }
+        #dialog-text { height: auto; padding: 1 1; }
+        KeyBar { dock: none; background: $surface; }
+    }
+    """
+
+    @property
+    def deck(self) -> DeckApp:
+        """The app."""
+        return cast("DeckApp", self.app)
+
+    @abstractmethod
+    def title_words(self) -> str:
+        """Return the title."""
+
+    def words(self) -> Content:
+        """Return the text, as things are now."""
+        return Content("")
+
+    def compose(self) -> ComposeResult:
+        """Put the frame around the text."""
+        with Vertical(id="dialog"):
+            with VerticalScroll(id="dialog-scroll"):
+                yield from self.compose_text()
+            yield KeyBar()
+
+    def compose_text(self) -> ComposeResult:
+        """Yield what stands in the frame."""
+        yield Static(id="dialog-text", markup=False)
+
+    def on_mount(self) -> None:
+        """Show the text."""
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Show the text as it is now, in the language spoken now."""
+        self.query_one("#dialog").border_title = self.title_words()
+        for text in self.query("#dialog-text").results(Static):
+            text.update(self.words())

@@ -1,0 +1,107 @@
+"""What a person has settled for good: theme, language and keys, in a small JSON file.
+
+`$XDG_CONFIG_HOME/deck/settings.json`, by default under `~/.config`::
+
+    {"theme": "textual-light", "language": "ru", "keys": {"node.restart": "f7"}}
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tui.i18n import LANGUAGES, _
+
+
+class SettingsError(Exception):
+    """The file cannot be used; the text names the place and the mend."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Empty where nothing is settled."""
+
+    theme: str = ""
+    language: str = ""
+    keys: dict[str, str] = field(default_factory=dict)
+    """Binding id to keys, comma-separated."""
+
+
+def settings_path() -> Path:
+    """Return where the settings are, or would be."""
+    base = os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config"
+    return Path(base) / "deck" / "settings.json"
+
+
+def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[str]]) -> Settings:
+    """Read the settings; none if there is no file.
+
+    `actions` are asked for only if keys are settled: it takes every screen to know them all.
+
+    Raises:
+        SettingsError: if it is no JSON, or something in it is unknown.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return Settings()
+    except (OSError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{path}: {error}") from error
+    try:
+        raw = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise SettingsError(f"{path}:{error.lineno}:{error.colno}: {error.msg}") from error
+    problem = _problem(raw, themes, actions)
+    if problem:
+        raise SettingsError(f"{path}: {problem}")
+    return Settings(**raw)
+
+
+def save(path: Path, settings: Settings) -> None:
+    """Write the settings, whole or not at all; a disk that refuses is no reason to stop."""
+    raw = {name: value for name, value in vars(settings).items() if value}
+    beside = path.with_suffix(".new")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        beside.write_text(json.dumps(raw, ensure_ascii=False, indent=2) + "\n", encoding="utf-8")
+        beside.replace(path)
+    except OSError as error:
+        raise SettingsError(f"{path}: {error.strerror}") from error
+
+
+def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collection[str]]) -> str:
+    if not isinstance(raw, dict):
+        return _("expected an object: {example}").format(example='{"language": "ru"}')
+    for name, value in raw.items():
+        if name not in Settings.__dataclass_fields__:
+            known = ", ".join(Settings.__dataclass_fields__)
+            return _("unknown setting {name!r}; there are: {known}").format(name=name, known=known)
+        if name == "keys":
+            found = _keys_problem(value, actions())
+            if found:
+                return found
+        elif value not in (themes if name == "theme" else LANGUAGES):
+            known = ", ".join(sorted(themes if name == "theme" else LANGUAGES))
+            return _("{name}: no {value!r}; there are: {known}").format(
+                name=name, value=value, known=known
+            )
+    return ""
+
+
+def _keys_problem(value: object, actions: Collection[str]) -> str:
+    if not isinstance(value, dict):
+        return _("keys: expected an object of actions and their keys")
+    for action, keys in value.items():
+        if action not in actions:
+            known = ", ".join(sorted(actions))
+            return _("keys: no action {name!r}; there are: {known}").format(
+                name=action, known=known
+            )
+        if not isinstance(keys, str) or not keys.strip():
+            return _("keys: {name}: expected a key such as {example}").format(
+                name=action, example='"f7"'
+            )
+    return ""

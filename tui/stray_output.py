@@ -1,0 +1,72 @@
+"""What libraries print past Textual, the C++ of DDS above all: kept off the screen, in a file.
+
+While the screen runs, descriptors 1 and 2 lead to that file; its lines can be read here, to be
+shown among the logs.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from typing_extensions import Self
+
+MOST_BYTES = 5_000_000
+"""The file is emptied when it is larger."""
+READ_BYTES = 16_384
+
+
+class StrayOutput:
+    """A context in which everything printed goes to `path`; an empty file is removed after."""
+
+    def __init__(self, path: Path) -> None:
+        """Nothing is opened yet."""
+        self.path = path
+        self._fd = -1
+        self._saved: list[tuple[int, int]] = []
+        self._read = 0
+
+    def __enter__(self) -> Self:
+        """Lead 1 and 2 to the file."""
+        flags = os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND | os.O_CLOEXEC
+        self._fd = os.open(self.path, flags, 0o600)
+        for number in (1, 2):
+            self._saved.append((number, os.dup(number)))
+            os.dup2(self._fd, number)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Lead 1 and 2 back to where they led."""
+        for stream in (sys.__stdout__, sys.__stderr__):
+            if stream is not None:
+                stream.flush()
+        for number, saved in self._saved:
+            os.dup2(saved, number)
+            os.close(saved)
+        empty = not os.fstat(self._fd).st_size
+        os.close(self._fd)
+        if empty:
+            self.path.unlink(missing_ok=True)
+
+    def new_lines(self) -> list[str]:
+        """Return what was printed since the last time, the newest lines if it was much."""
+        size = os.fstat(self._fd).st_size
+        if size <= self._read:
+            return []
+        start = max(self._read, size - READ_BYTES)
+        text = os.pread(self._fd, size - start, start).decode("utf-8", "replace")
+        self._read = size
+        if size > MOST_BYTES:
+            os.ftruncate(self._fd, 0)
+            self._read = 0
+        return [line for line in text.splitlines() if line.strip()]

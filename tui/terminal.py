@@ -1,0 +1,154 @@
+"""The terminal as it really is: slow at times, and gone at others.
+
+Textual writes to it through a short queue and waits when that is full, reads it in a thread that
+spins at its end, and knows nothing of a hang-up. Here writing never waits, and a terminal that
+has gone is told to the app.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TextIO
+
+from textual.drivers.linux_driver import LinuxDriver
+
+if TYPE_CHECKING:
+    from textual.app import App
+
+MOST_WAITING = 1_000_000
+"""Bytes that may wait for the terminal; beyond them it counts as stalled."""
+LAST_WORDS_S = 1.0
+"""How long leaving waits for a terminal that takes nothing."""
+
+
+class Terminal:
+    """A file for Textual to write to that never makes the writer wait.
+
+    When the terminal takes nothing, what waits is dropped, and so is what comes, until it takes
+    again: then `on_caught_up` is called, for a full repaint. It is called on another thread.
+    """
+
+    def __init__(self, fd: int, on_caught_up: Callable[[], object]) -> None:
+        """Write to `fd` on a thread of its own."""
+        self._fd = fd
+        self._on_caught_up = on_caught_up
+        self._lock = threading.Condition()
+        self._waiting: deque[bytes] = deque()
+        self._size = 0
+        self._busy = False
+        self._stalled = False
+        self.gone = False
+        """Whether writing to it is no longer possible."""
+        self.leaving = False
+        """Set: nothing is dropped any more, the terminal must be left as it was found."""
+        threading.Thread(target=self._run, name="terminal-output", daemon=True).start()
+
+    def write(self, text: str) -> None:
+        """Have `text` written some time, or never if the terminal is stalled."""
+        data = text.encode("utf-8", "replace")
+        with self._lock:
+            if self.gone or (self._stalled and not self.leaving):
+                return
+            self._waiting.append(data)
+            self._size += len(data)
+            if self._size > MOST_WAITING:
+                self._stalled = True
+                self._waiting.clear()
+                self._size = 0
+            self._lock.notify_all()
+
+    def flush(self) -> None:
+        """Do nothing: what was written is on its way."""
+
+    def isatty(self) -> bool:
+        """Say that it is a terminal."""
+        return True
+
+    def fileno(self) -> int:
+        """Return the descriptor."""
+        return self._fd
+
+    def finish(self) -> None:
+        """Wait until all is out, but not for ever."""
+        with self._lock:
+            self._lock.wait_for(
+                lambda: self.gone or not (self._waiting or self._busy), LAST_WORDS_S
+            )
+
+    def _run(self) -> None:
+        while not self.gone:
+            with self._lock:
+                self._lock.wait_for(lambda: self._waiting)
+                data = b"".join(self._waiting)
+                self._waiting.clear()
+                self._size = 0
+                self._busy = True
+            self._put(data)
+            with self._lock:
+                self._busy = False
+                caught_up, self._stalled = self._stalled, False
+                self._lock.notify_all()
+            if caught_up:
+                self._on_caught_up()
+
+    def _put(self, data: bytes) -> None:
+        view = memoryview(data)
+        try:
+            while view:
+                # Another program may have left the terminal non-blocking.
+                select.select([], [self._fd], [])
+                view = view[os.write(self._fd, view[:4096]) :]
+        except OSError:
+            self.gone = True
+
+
+class DeckDriver(LinuxDriver):
+    """Textual's driver, on a terminal that may stall or go."""
+
+    def __init__(self, app: App[Any], **options: bool | tuple[int, int] | None) -> None:
+        """Write to a descriptor of its own: 1 and 2 are for others."""
+        super().__init__(app, **options)  # type: ignore[arg-type]
+        terminal = sys.__stdout__ if _is_tty(sys.__stdout__) else sys.__stderr__
+        fd = os.dup(terminal.fileno()) if terminal is not None else os.open("/dev/tty", os.O_WRONLY)
+        self._terminal = Terminal(fd, lambda: app.call_later(app.refresh, layout=True))
+        self._file = self._terminal  # type: ignore[assignment]
+
+    @property
+    def gone(self) -> bool:
+        """Whether the terminal has hung up."""
+        return self._terminal.gone or _hung_up(self.fileno)
+
+    def give_up(self) -> None:
+        """Read no more: a terminal that has hung up is always ready to be read, and empty."""
+        self.exit_event.set()
+
+    def run_input_thread(self) -> None:
+        """Read until the app ends or the terminal goes."""
+        with contextlib.suppress(OSError):
+            super().run_input_thread()
+
+    def stop_application_mode(self) -> None:
+        """Leave the terminal as it was found, a stalled one too once it takes again."""
+        self._terminal.leaving = True
+        super().stop_application_mode()
+
+    def close(self) -> None:
+        """Let the last words out."""
+        super().close()
+        self._terminal.finish()
+
+
+def _is_tty(file: TextIO | None) -> bool:
+    return file is not None and not file.closed and file.isatty()
+
+
+def _hung_up(fd: int) -> bool:
+    poll = select.poll()
+    poll.register(fd, 0)
+    return bool(poll.poll(0))

@@ -1,0 +1,117 @@
+"""The nodes of the session: state in a sign and a word, and what each costs."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING
+
+from launcher.status import NodeState
+from tui.i18n import N_, _, said
+from tui.widgets.plain import plain
+from tui.widgets.rows import Cell, Column, Row, Rows
+
+if TYPE_CHECKING:
+    from launcher.status import NodeStatus
+
+STATES = {
+    NodeState.WAITING: ("◌", N_("waiting"), "dim"),
+    NodeState.STARTING: ("◔", N_("starting"), "warn"),
+    NodeState.READY: ("●", N_("ready"), "good"),
+    NodeState.RUNNING: ("●", N_("running"), "good"),
+    NodeState.STOPPING: ("◑", N_("stopping"), "warn"),
+    NodeState.EXITED: ("○", N_("exited"), "dim"),
+    NodeState.BACKOFF: ("↻", N_("restarts"), "warn"),
+    NodeState.FAILED: ("✗", N_("failed"), "bad"),
+}
+"""State to sign, word and meaning: never the colour alone."""
+
+NARROW, WIDE = 58, 96
+"""Widths in cells at which columns come: time and cost, then why a node is in its state."""
+MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
+
+
+class NodesTable(Rows):
+    """Shows the nodes in the profile's order."""
+
+    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self._statuses: tuple[NodeStatus, ...] = ()
+        self._muted: frozenset[str] = frozenset()
+
+    def show_nodes(
+        self, nodes: Mapping[str, NodeStatus], muted: Collection[str] = frozenset()
+    ) -> None:
+        """Show these nodes; `muted` are those whose log is not shown."""
+        self._statuses, self._muted = tuple(nodes.values()), frozenset(muted)
+        self._show()
+
+    def on_resize(self) -> None:
+        """Show the columns that there is room for."""
+        self._show()
+
+    def _show(self) -> None:
+        width = self.size.width
+        if not width:
+            return
+        long = max((len(_(word)) for _sign, word, _meaning in STATES.values()), default=8)
+        columns = [
+            Column(_("Node"), 0 if width < WIDE else 26),
+            Column(_("State"), long + 2),
+        ]
+        if width >= NARROW:
+            columns += [Column(_("Pid"), 7, right=True), Column(_("Up"), 6, right=True)]
+            columns += [Column("↻", 3, right=True)]
+        columns += [Column(_("CPU"), 5, right=True), Column(_("Memory"), 7, right=True)]
+        if width >= WIDE:
+            columns.append(Column(_("Why")))
+        self.show(columns, [Row(node.name, self._cells(node, width)) for node in self._statuses])
+
+    def _cells(self, node: NodeStatus, width: int) -> tuple[Cell, ...]:
+        sign, word, meaning = STATES[node.state]
+        name = plain(node.name) + (" ⊘" if node.name in self._muted else "")
+        cells = [Cell(name), Cell(f"{sign} {_(word)}", meaning)]
+        if width >= NARROW:
+            cells += [
+                Cell("" if node.pid is None else str(node.pid), "dim"),
+                Cell(duration(node.uptime_s), "dim"),
+                Cell(str(node.restarts), "warn" if node.restarts else "dim"),
+            ]
+        cells += [Cell(percent(node.cpu_percent)), Cell(memory(node.memory_bytes))]
+        if width >= WIDE:
+            cells.append(Cell(why(node), "dim"))
+        return tuple(cells)
+
+
+def why(node: NodeStatus) -> str:
+    """Return why the node is in its state, or what is run if there is nothing to say."""
+    if node.detail:
+        return plain(said(node.detail))
+    if node.signal:
+        return _("ended by {signal}").format(signal=node.signal)
+    if node.exit_code is not None and not node.state.alive:
+        return _("exit code {code}").format(code=node.exit_code)
+    return plain(node.command)
+
+
+def duration(seconds: float | None) -> str:
+    """Return a time in the two greatest units, five cells at most: `7s`, `1m23`, `2h05`, `3d04`."""
+    if seconds is None:
+        return ""
+    whole = int(seconds)
+    if whole < MINUTE_S:
+        return _("{n}s").format(n=whole)
+    if whole < HOUR_S:
+        return _("{m}m{s:02d}").format(m=whole // MINUTE_S, s=whole % MINUTE_S)
+    if whole < DAY_S:
+        return _("{h}h{m:02d}").format(h=whole // HOUR_S, m=whole % HOUR_S // MINUTE_S)
+    return _("{d}d{h:02d}").format(d=whole // DAY_S, h=whole % DAY_S // HOUR_S)
+
+
+def percent(value: float | None) -> str:
+    """Return a share of one core."""
+    return "" if value is None else f"{value:.0f} %"
+
+
+def memory(size: int | None) -> str:
+    """Return an amount of memory in megabytes."""
+    return "" if size is None else _("{n} MB").format(n=round(size / 1_000_000))

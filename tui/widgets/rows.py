@@ -1,0 +1,260 @@
+"""A list of rows with a cursor that draws only the cells whose text has changed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+from rich.cells import cell_len, set_cell_size
+from rich.segment import Segment
+from textual.binding import Binding, BindingType
+from textual.geometry import Region, Size
+from textual.message import Message
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+if TYPE_CHECKING:
+    from rich.style import Style
+    from textual.events import Click
+
+MARK = 2
+"""Cells left of the first column, for the mark of the chosen row."""
+FAR = 1_000_000
+
+
+class Column(NamedTuple):
+    """A column as wide as `width` cells; 0 takes what the others leave."""
+
+    title: str
+    width: int = 0
+    right: bool = False
+
+
+class Cell(NamedTuple):
+    """A text, and what it means: `good`, `warn`, `bad`, `dim` or nothing."""
+
+    text: str
+    meaning: str = ""
+
+
+class Row(NamedTuple):
+    """A row with the name by which it is chosen; without one it is a heading."""
+
+    key: str
+    cells: tuple[Cell, ...]
+
+
+class Rows(ScrollView, can_focus=True):
+    """Shows rows; one of them is chosen, and stays so while others change."""
+
+    class Highlighted(Message):
+        """Another row is the chosen one."""
+
+        def __init__(self, rows: Rows, key: str) -> None:
+            super().__init__()
+            self.rows = rows
+            self.key = key
+
+        @property
+        def control(self) -> Rows:
+            """The list."""
+            return self.rows
+
+    class Opened(Highlighted):
+        """Enter was pressed on the chosen row, or it was clicked twice."""
+
+    ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "rows--header",
+        "rows--cursor",
+        "rows--good",
+        "rows--warn",
+        "rows--bad",
+        "rows--dim",
+    }
+    DEFAULT_CSS = """
+    Rows {
+        width: 1fr; height: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
+        &> .rows--header { color: $text-muted; text-style: bold; background: $panel; }
+        &> .rows--good { color: $text-success; }
+        &> .rows--warn { color: $text-warning; }
+        &> .rows--bad { color: $text-error; text-style: bold; }
+        &> .rows--dim { color: $text-muted; }
+        &> .rows--cursor { background: $block-cursor-blurred-background; }
+        &:focus > .rows--cursor {
+            color: $block-cursor-foreground; background: $block-cursor-background;
+        }
+    }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "move(-1)", show=False),
+        Binding("down,j", "move(1)", show=False),
+        Binding("pageup", "page(-1)", show=False),
+        Binding("pagedown", "page(1)", show=False),
+        Binding("home,g", f"move(-{FAR})", show=False),
+        Binding("end,G", f"move({FAR})", show=False),
+        Binding("enter", "open", show=False),
+    ]
+
+    def __init__(
+        self, *, header: bool = True, id: str | None = None, classes: str | None = None
+    ) -> None:
+        super().__init__(id=id, classes=classes)
+        self._top = 1 if header else 0
+        self._columns: tuple[Column, ...] = ()
+        self._widths: tuple[int, ...] = ()
+        self._rows: tuple[Row, ...] = ()
+        self._chosen = ""
+
+    def show(self, columns: Sequence[Column], rows: Sequence[Row]) -> None:
+        """Show these rows under these columns; texts are one line each, and harmless."""
+        before, self._rows = self._rows, tuple(rows)
+        if tuple(columns) != self._columns:
+            self._columns = tuple(columns)
+            self._widths = _widths(self._columns, self.size.width - MARK)
+            self.refresh()
+        if len(before) != len(self._rows):
+            self.virtual_size = Size(0, self._top + len(self._rows))
+            self.refresh()
+        if self._index(self._chosen) is None:
+            self._choose_near(0)
+        if self._widths:
+            self._refresh_changed(before)
+
+    @property
+    def chosen(self) -> str:
+        """Key of the chosen row, empty where there is none."""
+        return self._chosen
+
+    def choose(self, key: str) -> None:
+        """Choose a row by its key, if there is one."""
+        index = self._index(key)
+        if index is not None:
+            self._choose(index)
+
+    def render_line(self, y: int) -> Strip:
+        """The header or a row."""
+        width, base = self.size.width, self.rich_style
+        if y < self._top:
+            style = self.get_component_rich_style("rows--header")
+            return self._strip([Cell(column.title) for column in self._columns], "  ", style, width)
+        index = y - self._top + self.scroll_offset.y
+        if index >= len(self._rows):
+            return Strip.blank(width, base)
+        row = self._rows[index]
+        chosen = bool(row.key) and row.key == self._chosen
+        if chosen:
+            base += self.get_component_rich_style("rows--cursor", partial=True)
+        return self._strip(row.cells, "▶ " if chosen else "  ", base, width, plain=chosen)
+
+    def action_move(self, by: int) -> None:
+        """Choose the row so many below."""
+        at = self._index(self._chosen)
+        self._choose_near(max(0, min((at or 0) + by, len(self._rows) - 1)), -1 if by < 0 else 1)
+
+    def action_page(self, pages: int) -> None:
+        """Choose the row a page away."""
+        self.action_move(pages * max(1, self.size.height - self._top - 1))
+
+    def action_open(self) -> None:
+        """Tell that the chosen row is wanted."""
+        if self._chosen:
+            self.post_message(self.Opened(self, self._chosen))
+
+    def on_click(self, event: Click) -> None:
+        """Choose a row; twice opens it."""
+        index = event.y - self._top + self.scroll_offset.y
+        if event.y >= self._top and index < len(self._rows) and self._rows[index].key:
+            again = self._rows[index].key == self._chosen
+            self._choose(index)
+            if again and event.chain > 1:
+                self.action_open()
+
+    def on_resize(self) -> None:
+        """Place the columns anew."""
+        self._widths = _widths(self._columns, self.size.width - MARK)
+        self.refresh()
+
+    def on_focus(self) -> None:
+        """Draw the cursor as that of the focused widget."""
+        self._refresh_row(self._index(self._chosen))
+
+    def on_blur(self) -> None:
+        """Draw the cursor as that of a widget in the background."""
+        self._refresh_row(self._index(self._chosen))
+
+    def _index(self, key: str) -> int | None:
+        return next((i for i, row in enumerate(self._rows) if row.key and row.key == key), None)
+
+    def _choose_near(self, index: int, step: int = 1) -> None:
+        """Choose this row or, where it is a heading, the next that is none."""
+        places = range(index, len(self._rows)) if step > 0 else range(index, -1, -1)
+        found = next((place for place in places if self._rows[place].key), None)
+        if found is not None:
+            self._choose(found)
+        elif not any(row.key for row in self._rows):
+            self._chosen = ""
+
+    def _choose(self, index: int) -> None:
+        key = self._rows[index].key
+        if key != self._chosen:
+            self._refresh_row(self._index(self._chosen))
+            self._chosen = key
+            self._refresh_row(index)
+            self.post_message(self.Highlighted(self, key))
+        top, rows = self.scroll_offset.y, max(1, self.size.height - self._top)
+        target = min(index, max(top, index - rows + 1))
+        if target != top:
+            self.scroll_to(y=target, animate=False, immediate=True)
+
+    def _refresh_row(self, index: int | None) -> None:
+        if index is not None and index >= self.scroll_offset.y:
+            y = index + self._top - self.scroll_offset.y
+            self.refresh(Region(0, y, self.size.width, 1))
+
+    def _refresh_changed(self, before: tuple[Row, ...]) -> None:
+        top = self.scroll_offset.y
+        last = min(len(before), len(self._rows), top + self.size.height)
+        for index in range(top, last):
+            old, new = before[index], self._rows[index]
+            if old.key != new.key:
+                self._refresh_row(index)
+                continue
+            x, y = MARK, index - top + self._top
+            for width, was, now in zip(self._widths, old.cells, new.cells):  # noqa: B905
+                if was != now:
+                    self.refresh(Region(x, y, width, 1))
+                x += width + 1
+
+    def _strip(
+        self, cells: Sequence[Cell], mark: str, base: Style, width: int, *, plain: bool = False
+    ) -> Strip:
+        segments = [Segment(mark, base)]
+        for place, (column, cell) in enumerate(zip(self._columns, cells)):  # noqa: B905
+            style = base
+            if cell.meaning and not plain:
+                style = base + self.get_component_rich_style(f"rows--{cell.meaning}", partial=True)
+            segments.append(Segment(_fitted(cell.text, self._widths[place], column.right), style))
+            segments.append(Segment(" ", base))
+        return Strip(segments).adjust_cell_length(width, base)
+
+
+def _widths(columns: Sequence[Column], width: int) -> tuple[int, ...]:
+    """Share out `width` cells, one blank between columns."""
+    fixed = sum(column.width for column in columns) + max(0, len(columns) - 1)
+    free = [column for column in columns if not column.width]
+    spare = max(0, width - fixed)
+    widths: list[int] = []
+    for column in columns:
+        share = column.width or spare // len(free)
+        if free and column is free[0]:
+            share += spare % len(free)
+        widths.append(share)
+    return tuple(widths)
+
+
+def _fitted(text: str, width: int, right: bool) -> str:
+    blank = width - cell_len(text)
+    if blank < 0:
+        return set_cell_size(text, max(0, width - 1)) + "…" if width else ""
+    return " " * blank + text if right else text + " " * blank
