@@ -1,0 +1,126 @@
+"""The language on the control socket: one JSON object a line, both ways, versioned.
+
+The supervisor speaks first: `{"deck": VERSION, "session": ..., "nodes": [...], "strays": [...]}`.
+A client answers `{"deck": VERSION}`, then asks: `{"id": 1, "op": "start", "nodes": ["sonar"]}`,
+and hears `{"reply": 1, "result": ...}` or `{"reply": 1, "error": {...}}`, and in between news:
+`{"event": "status" | "log" | "strays" | "closed", ...}`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray
+from launcher.words import Words, say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+VERSION = 1
+
+MAX_REQUEST_BYTES = 1 << 20
+"""A longer line from a client is an error."""
+MAX_MESSAGE_BYTES = 64 << 20
+"""A longer line from the supervisor cannot be."""
+MAX_HISTORY_LINES = 20_000
+
+
+def encode(message: Mapping[str, Any]) -> bytes:
+    """Return a message as its line."""
+    return json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+
+
+def pack_text(text: str) -> Any:  # noqa: ANN401 - JSON
+    """Return a sentence so that it can be translated at the other end."""
+    if isinstance(text, Words) and text.values:
+        return [text.template, {key: _pack_value(value) for key, value in text.values.items()}]
+    return str(text) if not isinstance(text, Words) else [text.template, {}]
+
+
+def _pack_value(value: object) -> Any:  # noqa: ANN401 - JSON
+    if isinstance(value, str):
+        return pack_text(value)
+    return value if isinstance(value, (int, float)) or value is None else str(value)
+
+
+def unpack_text(packed: Any) -> str:  # noqa: ANN401 - JSON
+    """Return what `pack_text` was given."""
+    if isinstance(packed, str):
+        return packed
+    template, values = packed
+    unpacked = {
+        key: unpack_text(value) if isinstance(value, (str, list)) else value
+        for key, value in values.items()
+    }
+    return say(template, **unpacked)
+
+
+def pack_status(status: NodeStatus) -> dict[str, Any]:
+    """Return a node's status as JSON."""
+    return {**vars(status), "detail": pack_text(status.detail)}
+
+
+def unpack_status(fields: dict[str, Any]) -> NodeStatus:
+    """Return what `pack_status` was given."""
+    return NodeStatus(
+        **{
+            **fields,
+            "state": NodeState(fields["state"]),
+            "detail": unpack_text(fields["detail"]),
+            "needs": tuple(fields["needs"]),
+        }
+    )
+
+
+def pack_line(line: LogLine) -> list[Any]:
+    """Return a log line as JSON: short, for there are many."""
+    text = pack_text(line.text) if isinstance(line.text, Words) else line.text
+    return [line.node, line.seq, line.time_s, line.severity.rank, text, line.logger, line.source]
+
+
+_BY_RANK = {severity.rank: severity for severity in Severity}
+
+
+def unpack_line(fields: list[Any]) -> LogLine:
+    """Return what `pack_line` was given."""
+    node, seq, time_s, rank, text, logger, source = fields
+    return LogLine(node, seq, time_s, _BY_RANK[rank], unpack_text(text), logger, source)
+
+
+def pack_session(session: SessionInfo) -> dict[str, Any]:
+    """Return the session as JSON."""
+    return asdict(session)
+
+
+def unpack_session(fields: dict[str, Any]) -> SessionInfo:
+    """Return what `pack_session` was given."""
+    discovery = fields["discovery"]
+    return SessionInfo(
+        **{
+            **fields,
+            "panels": tuple(fields["panels"]),
+            "discovery": discovery if isinstance(discovery, str) else tuple(discovery),
+        }
+    )
+
+
+def pack_stray(stray: Stray) -> dict[str, Any]:
+    """Return a stray as JSON."""
+    return asdict(stray)
+
+
+def unpack_stray(fields: dict[str, Any]) -> Stray:
+    """Return what `pack_stray` was given.
+
+    Raises:
+        TypeError, ValueError: if that was something else.
+    """
+    return Stray(
+        pid=int(fields["pid"]),
+        started_s=float(fields["started_s"]),
+        node=str(fields["node"]),
+        command=str(fields["command"]),
+        run_id=str(fields["run_id"]),
+    )

@@ -1,0 +1,55 @@
+"""The Unix socket of a session, in a folder whose path may be of any length.
+
+A socket's own path is limited to 107 bytes; here it is addressed through an open descriptor of
+its folder, which is short.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+SOCKET_NAME = "control.sock"
+
+
+def listen(folder: Path) -> socket.socket:
+    """Return a socket of mode 0600 in `folder` that clients can connect to."""
+    server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    with _short_path(folder) as path:
+        (folder / SOCKET_NAME).unlink(missing_ok=True)
+        before = os.umask(0o177)
+        try:
+            server.bind(path)
+        finally:
+            os.umask(before)
+    server.listen(16)
+    server.setblocking(False)
+    return server
+
+
+def connect(folder: Path) -> socket.socket:
+    """Return a connection to the session in `folder`; raises OSError if nobody listens."""
+    client = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        with _short_path(folder) as path:
+            client.connect(path)
+    except OSError:
+        client.close()
+        raise
+    client.setblocking(False)
+    return client
+
+
+@contextlib.contextmanager
+def _short_path(folder: Path) -> Iterator[str]:
+    descriptor = os.open(folder, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        yield f"/proc/self/fd/{descriptor}/{SOCKET_NAME}"
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,132 @@
+"""Log files: one a node and run, rotated, written by a thread so that no disk delays a node."""
+
+from __future__ import annotations
+
+import os
+import queue
+import shutil
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+MAX_FILE_BYTES = 8 << 20
+MAX_OLD_FILES = 3
+"""`sonar.log.1` is the newest of them."""
+MAX_QUEUED_BYTES = 32 << 20
+"""What may wait for a slow disk; beyond it bytes are left out, with a line that counts them."""
+KEPT_RUNS = 10
+"""Runs of one profile whose logs are kept."""
+
+
+class LogFiles:
+    """The log files of one run."""
+
+    def __init__(self, folder: Path, on_error: Callable[[str], None]) -> None:
+        """`on_error` is called once, on the writing thread, when a file cannot be written."""
+        self._folder = folder
+        self._on_error = on_error
+        self._queue: queue.SimpleQueue[tuple[str, bytes] | None] = queue.SimpleQueue()
+        self._queued = 0
+        self._lost: dict[str, int] = {}
+        self._lock = threading.Lock()
+        self._files: dict[str, _RotatedFile] = {}
+        self._thread: threading.Thread | None = None
+
+    def write(self, node: str, data: bytes) -> None:
+        """Append to a node's file, soon; never waits."""
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="log-files", daemon=True)
+            self._thread.start()
+        with self._lock:
+            if self._queued + len(data) > MAX_QUEUED_BYTES:
+                self._lost[node] = self._lost.get(node, 0) + len(data)
+                return
+            lost = self._lost.pop(node, 0)
+            if lost:
+                data = b"[deck: %d bytes left out, the disk is slow]\n" % lost + data
+            self._queued += len(data)
+        self._queue.put((node, data))
+
+    def close(self, within_s: float = 3.0) -> None:
+        """Write what is queued, as far as that goes in time."""
+        if self._thread is not None:
+            self._queue.put(None)
+            self._thread.join(within_s)
+            self._thread = None
+
+    def _run(self) -> None:
+        told = False
+        while True:
+            item = self._queue.get()
+            if item is None:
+                break
+            node, data = item
+            with self._lock:
+                self._queued -= len(data)
+            try:
+                self._file_of(node).write(data)
+            except OSError as problem:
+                if not told:
+                    told = True
+                    self._on_error(problem.strerror or str(problem))
+        for file in self._files.values():
+            file.close()
+
+    def _file_of(self, node: str) -> _RotatedFile:
+        file = self._files.get(node)
+        if file is None:
+            file = self._files[node] = _RotatedFile(self._folder / f"{node}.log")
+        return file
+
+
+@dataclass
+class _RotatedFile:
+    path: Path
+    _file: BinaryIO | None = None
+    _size: int = 0
+
+    def write(self, data: bytes) -> None:
+        if self._file is None:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = self.path.open("ab", buffering=0)
+            self._size = self._file.tell()
+        if self._size and self._size + len(data) > MAX_FILE_BYTES:
+            self._rotate()
+            self.write(data)
+            return
+        self._file.write(data)
+        self._size += len(data)
+
+    def close(self) -> None:
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _rotate(self) -> None:
+        self.close()
+        for number in range(MAX_OLD_FILES - 1, 0, -1):
+            older = self.path.with_name(f"{self.path.name}.{number}")
+            if older.exists():
+                older.replace(self.path.with_name(f"{self.path.name}.{number + 1}"))
+        self.path.replace(self.path.with_name(f"{self.path.name}.1"))
+        self._size = 0
+
+
+def prune_runs(folder: Path, running: Iterable[str], keep: int = KEPT_RUNS) -> None:
+    """Delete the logs of all but the newest runs of a profile; those that run now are kept.
+
+    Args:
+        folder: holds one folder a run, whose names sort by time.
+        running: names of the runs that are not over.
+        keep: how many to keep besides.
+    """
+    if not folder.is_dir():
+        return
+    runs = sorted(entry.name for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False))
+    over = [run for run in runs if run not in set(running)]
+    for run in over[: max(len(over) - keep, 0)]:
+        shutil.rmtree(folder / run, ignore_errors=True)

@@ -1,0 +1,49 @@
+"""Bytes of a line to text that can be shown anywhere: nothing in it is ever obeyed.
+
+Colours are dropped (they tell the severity of a line that tells it no other way), and so is
+"erase to the end of the line" of progress bars. Every other escape sequence stays, visible: its
+escape character becomes the picture of it, as all control characters do. A line ends what it
+began: no sequence, finished or not, reaches into the next.
+"""
+
+from __future__ import annotations
+
+import re
+
+from launcher.status import Severity
+
+_COLOUR = re.compile(r"\x1b\[([0-9;:]*)m")
+_ERASE = re.compile(r"\x1b\[[012]?K")
+_COLOURS = {"31": Severity.ERROR, "91": Severity.ERROR, "33": Severity.WARN, "93": Severity.WARN}
+
+_PICTURES: dict[int, int | str] = {code: 0x2400 + code for code in range(0x20)}
+_PICTURES[0x7F] = 0x2421
+# The second set of control characters has no pictures; a terminal may still obey them.
+_PICTURES.update(dict.fromkeys(range(0x80, 0xA0), 0xFFFD))
+# They reorder or break what stands around them: a line could be made to say its opposite.
+_PICTURES.update(dict.fromkeys((0x2028, 0x2029, 0x061C, 0x200E, 0x200F), 0xFFFD))
+_PICTURES.update(dict.fromkeys((*range(0x202A, 0x202F), *range(0x2066, 0x206A)), 0xFFFD))
+
+
+def plain_text(data: bytes) -> tuple[str, Severity | None]:
+    """Return a line's text, and the severity that its colour suggests, if any."""
+    text = data.decode(errors="replace")
+    if text.isprintable():
+        return text, None
+    severity = None
+    if "\x1b" in text:
+        severity = _suggested(text)
+        text = _ERASE.sub("", _COLOUR.sub("", text))
+    if "\t" in text:
+        text = text.expandtabs(8)
+    return text.translate(_PICTURES), severity
+
+
+def _suggested(text: str) -> Severity | None:
+    first = _COLOUR.search(text)
+    if first is None:
+        return None
+    for part in first.group(1).replace(":", ";").split(";"):
+        if part in _COLOURS:
+            return _COLOURS[part]
+    return None

@@ -1,0 +1,110 @@
+"""Which processes belong to which node: its group, its session, and whatever has left both."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import TYPE_CHECKING
+
+from launcher.process_stop import send
+from launcher.process_table import NODE_MARK, RUN_MARK, TICKS_PER_S, processes, read_marks
+
+if TYPE_CHECKING:
+    import signal
+    from collections.abc import Mapping, Sequence
+
+    from launcher.process_spawner import Spawner
+    from launcher.process_table import Process
+
+_SETTLED_TICKS = 3 * TICKS_PER_S
+"""A process this old has its marks, if it gets any: it has exec'd, or has been named."""
+
+_NOBODY = ""
+
+
+class Members:
+    """Finds the processes of a run's nodes."""
+
+    def __init__(self, run_id: str) -> None:
+        """`run_id`: what their environment carries as `RUN_MARK`."""
+        self._run_id = run_id
+        self._leaders: dict[int, str] = {}
+        self._names: set[str] = set()
+        self._known: dict[tuple[int, int], str] = {}
+        """Process number and start to the node it belongs to, or to `_NOBODY`."""
+
+    def add(self, name: str, leader: int) -> None:
+        """A node has been started: `leader` is its process, group and session."""
+        self._leaders[leader] = name
+        self._names.add(name)
+
+    def remove(self, leader: int) -> None:
+        """Nothing is left of the group of this leader."""
+        self._leaders.pop(leader, None)
+
+    def scan(self) -> dict[str, list[Process]]:
+        """Return the living processes of each node, those that only wait to be reaped left out."""
+        table = {process.pid: process for process in processes() if not process.zombie}
+        settled = time.clock_gettime(time.CLOCK_BOOTTIME) * TICKS_PER_S - _SETTLED_TICKS
+        found: dict[str, list[Process]] = {}
+        known = {}
+        for process in table.values():
+            key = (process.pid, process.started_ticks)
+            name = self._known.get(key)
+            if name is None:
+                name = self._by_descent(process, table) or self._by_marks(process)
+                if name is None and process.started_ticks < settled:
+                    name = _NOBODY
+            if name is not None:
+                known[key] = name
+            if name:
+                found.setdefault(name, []).append(process)
+        self._known = known
+        return found
+
+    def _by_descent(self, process: Process, table: Mapping[int, Process]) -> str | None:
+        leaders = self._leaders
+        at: Process | None = process
+        for _generation in range(64):
+            if at is None:
+                return None
+            name = leaders.get(at.group) or leaders.get(at.session) or leaders.get(at.pid)
+            if name is not None:
+                return name
+            at = table.get(at.parent)
+        return None
+
+    def _by_marks(self, process: Process) -> str | None:
+        marks = read_marks(process.pid)
+        if marks is None or marks.get(RUN_MARK) != self._run_id:
+            return None
+        name = marks.get(NODE_MARK)
+        return name if name in self._names else None
+
+
+class Orphans:
+    """What is left of a run when its nodes are gone; fits `launcher.process_stop.Target`."""
+
+    def __init__(self, run_id: str, spawner: Spawner) -> None:
+        """Its spawn server is needed to the last."""
+        self._run_id = run_id
+        self._spawner = spawner
+
+    def left(self) -> Sequence[Process]:
+        """Return the processes that carry the run's mark, and the children we have adopted."""
+        us = os.getpid()
+        return [
+            process
+            for process in processes()
+            if process.pid not in (us, self._spawner.server_pid)
+            and not process.zombie
+            and (process.parent == us or self._marked(process))
+        ]
+
+    def signal(self, process: Process, number: signal.Signals) -> None:
+        """Send one of them a signal."""
+        send(process, number)
+
+    def _marked(self, process: Process) -> bool:
+        marks = read_marks(process.pid)
+        return marks is not None and marks.get(RUN_MARK) == self._run_id

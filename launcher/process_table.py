@@ -1,0 +1,112 @@
+"""The kernel's table of processes, read from /proc: who is whose child, group and session.
+
+Times are kernel ticks since boot, as /proc gives them: two processes that share a number never
+share their start.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+
+RUN_MARK = "DECK_RUN_ID"
+"""Environment variable that says which run of Deck a process belongs to."""
+NODE_MARK = "DECK_NODE"
+"""Environment variable that says which node of that run it is, or descends from."""
+
+
+@dataclass(frozen=True)
+class Process:
+    """One living process as of now."""
+
+    pid: int
+    name: str
+    """The kernel's short name, at most 15 bytes."""
+    state: str
+    """One letter: R S D Z T, see proc(5)."""
+    parent: int
+    group: int
+    session: int
+    started_ticks: int
+    cpu_ticks: int
+    """Processor time used so far, user and system."""
+
+    @property
+    def zombie(self) -> bool:
+        """Whether it has ended and only waits for its parent to notice."""
+        return self.state in "ZX"
+
+
+def read_process(pid: int) -> Process | None:
+    """Return the process with this number, None if there is none."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as file:  # noqa: PTH123 - read for every process
+            stat = file.read()
+    except (FileNotFoundError, ProcessLookupError):
+        return None
+    # The name stands in brackets and may itself hold blanks and brackets.
+    name = stat[stat.index(b"(") + 1 : stat.rindex(b")")]
+    fields = stat[stat.rindex(b")") + 2 :].split(None, 20)
+    return Process(
+        pid=pid,
+        name=name.decode(errors="replace"),
+        state=chr(fields[0][0]),
+        parent=int(fields[1]),
+        group=int(fields[2]),
+        session=int(fields[3]),
+        started_ticks=int(fields[19]),
+        cpu_ticks=int(fields[11]) + int(fields[12]),
+    )
+
+
+def processes() -> Iterator[Process]:
+    """Yield every process that this user can see."""
+    for entry in os.listdir("/proc"):  # noqa: PTH208 - Path objects cost more than the rest
+        if entry.isdigit():
+            process = read_process(int(entry))
+            if process is not None:
+                yield process
+
+
+def read_marks(pid: int) -> Mapping[str, str] | None:
+    """Return Deck's marks in a process's environment; None if that may not be read."""
+    try:
+        with open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123
+            environ = file.read()
+    except OSError:
+        return None
+    if b"DECK_" not in environ:
+        return {}
+    found = {}
+    for entry in environ.split(b"\0"):
+        name, _, value = entry.partition(b"=")
+        if name in _MARKS:
+            found[name.decode()] = value.decode(errors="replace")
+    return found
+
+
+_MARKS = frozenset((RUN_MARK.encode(), NODE_MARK.encode()))
+
+
+def command_line(pid: int) -> str:
+    """Return what `ps` shows as the command, empty if the process has gone."""
+    try:
+        with open(f"/proc/{pid}/cmdline", "rb") as file:  # noqa: PTH123
+            return file.read(4096).replace(b"\0", b" ").decode(errors="replace").strip()
+    except OSError:
+        return ""
+
+
+def boot_time_s() -> float:
+    """Return when the machine was booted, unix time to the second."""
+    with open("/proc/stat", "rb") as file:  # noqa: PTH123
+        for line in file:
+            if line.startswith(b"btime "):
+                return float(line.split()[1])
+    raise RuntimeError("/proc/stat has no btime")

@@ -1,0 +1,57 @@
+"""What ties the life of one process to another's: prctl(2) and its kin.
+
+A supervisor adopts every descendant whose parent ends (`become_subreaper`), and a node dies with
+the supervisor (`die_with_parent`).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import time
+
+_PR_SET_PDEATHSIG = 1
+_PR_SET_NAME = 15
+_PR_SET_CHILD_SUBREAPER = 36
+
+_libc = ctypes.CDLL(None, use_errno=True)
+
+
+def _prctl(option: int, value: int) -> None:
+    if _libc.prctl(ctypes.c_int(option), ctypes.c_ulong(value), 0, 0, 0) != 0:
+        code = ctypes.get_errno()
+        raise OSError(code, os.strerror(code))
+
+
+def become_subreaper() -> None:
+    """Become the parent of every descendant whose own parent ends."""
+    _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+
+
+def die_with_parent(parent: int, within_s: float = 10.0) -> bool:
+    """Wait until `parent` is the parent of this process, then die when it does.
+
+    Call it in a process whose real parent is about to exit and leave it to its subreaper. The
+    kernel sends nothing for a parent that died before the call, hence the look afterwards.
+
+    Returns:
+        False if it is an orphan: `parent` has gone already.
+    """
+    at_first = os.getppid()
+    deadline = time.monotonic() + within_s
+    while True:
+        now = os.getppid()
+        if now == parent:
+            break
+        if now != at_first or time.monotonic() > deadline:
+            return False
+        time.sleep(0.0005)
+    _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    return os.getppid() == parent
+
+
+def set_short_name(name: str) -> None:
+    """Set the name that `top` and `ps -o comm` show, cut to 15 bytes."""
+    short = ctypes.create_string_buffer(name.encode()[:15])
+    _libc.prctl(ctypes.c_int(_PR_SET_NAME), short, 0, 0, 0)

@@ -1,0 +1,139 @@
+"""Waiting until a node can be used: its name, a topic or a service is in the ROS graph.
+
+The graph is watched by a probe process (`launcher.spawn_server_probe`) that lives only while
+somebody waits.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import signal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from launcher.process_spawner import SpawnError, SpawnRequest
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from launcher.process_exit import Reaper
+    from launcher.process_spawner import Spawner
+
+MAX_PROBES = 3
+"""So many probes may die in a row before the graph counts as one that cannot be watched."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What must be in the ROS graph."""
+
+    kind: str
+    """`node`, `topic` (a publisher of it) or `service`."""
+    name: str
+
+
+class UnwatchableError(Exception):
+    """The graph cannot be watched: there is no rclpy here, or it does not start."""
+
+
+class Readiness:
+    """Tells when conditions hold, all of them known from the start."""
+
+    def __init__(
+        self,
+        conditions: Sequence[Condition],
+        spawner: Spawner,
+        reaper: Reaper,
+        env: Mapping[str, str | None],
+    ) -> None:
+        """`env`: what the probe needs to look at the right domain."""
+        self._conditions = list(dict.fromkeys(conditions))
+        self._spawner = spawner
+        self._reaper = reaper
+        self._env = env
+        self._waiters: dict[asyncio.Future[None], Condition] = {}
+        self._task: asyncio.Task[None] | None = None
+
+    async def until(self, condition: Condition) -> None:
+        """Return once `condition` holds.
+
+        Raises:
+            UnwatchableError: if that cannot be found out.
+        """
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters[future] = condition
+        if self._task is None:
+            self._task = asyncio.create_task(self._watch())
+        try:
+            await future
+        finally:
+            self._waiters.pop(future, None)
+            if not self._waiters:
+                self.renew()
+
+    def renew(self) -> None:
+        """Forget what is known: a dead node lingers in the view of whoever has seen it alive."""
+        if self._task is not None:
+            self._task.cancel()
+            self._task = asyncio.create_task(self._watch()) if self._waiters else None
+
+    async def _watch(self) -> None:
+        for _attempt in range(MAX_PROBES):
+            with contextlib.suppress(SpawnError):
+                await self._one_probe()
+        for future in self._waiters:
+            if not future.done():
+                future.set_exception(UnwatchableError)
+        self._task = None
+
+    async def _one_probe(self) -> None:
+        """Start a probe and listen to it until it ends."""
+        hold_read, hold = os.pipe()
+        report, report_write = os.pipe()
+        pid = 0
+        try:
+            try:
+                pid = await self._spawner.spawn(self._request(), (hold_read, report_write, 2))
+            finally:
+                os.close(hold_read)
+                os.close(report_write)
+            await self._listen(report)
+        finally:
+            # The probe ends at the end of its stdin, politely: it says goodbye to the graph.
+            os.close(hold)
+            os.close(report)
+            if pid:
+                _ = asyncio.create_task(self._see_off(pid))  # noqa: RUF006 - ends by itself
+
+    async def _listen(self, fd: int) -> None:
+        reader = asyncio.StreamReader()
+        transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(os.dup(fd), "rb", 0)
+        )
+        try:
+            async for line in reader:
+                self._learn(frozenset(self._conditions[i] for i in json.loads(line)))
+        finally:
+            transport.close()
+
+    def _learn(self, holding: frozenset[Condition]) -> None:
+        for future, condition in self._waiters.items():
+            if condition in holding and not future.done():
+                future.set_result(None)
+
+    def _request(self) -> SpawnRequest:
+        wanted = json.dumps([[condition.kind, condition.name] for condition in self._conditions])
+        return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
+
+    async def _see_off(self, pid: int, within_s: float = 3.0) -> None:
+        ended = self._reaper.exit_of(pid)
+        try:
+            await asyncio.wait_for(asyncio.shield(ended), within_s)
+        except asyncio.TimeoutError:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+            await ended
+        await self._spawner.forget(pid)

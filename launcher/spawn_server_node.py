@@ -1,0 +1,184 @@
+"""How a freshly forked process becomes a node: its session, its descriptors, its program."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import io
+import os
+import runpy
+import signal
+import sys
+import traceback
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from launcher.process_marks import show_as
+from launcher.process_table import NODE_MARK
+from launcher.process_ties import die_with_parent
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+NOT_EXECUTABLE = 126
+NOT_FOUND = 127
+"""Exit codes as a shell gives them."""
+
+
+@dataclass(frozen=True)
+class Birth:
+    """All that a forked process needs to know to become its node."""
+
+    kind: str
+    """`module`: run here, in the warm interpreter; `exec`: a program; `probe`: the graph probe."""
+    name: str
+    title: str
+    argv: tuple[str, ...]
+    """For `module` the module and its arguments, for `exec` the command line."""
+    env: dict[str, str | None]
+    """What differs from the server's environment; None unsets."""
+    cwd: str
+    fds: tuple[int, ...]
+    """Stdout and stderr, or stdin, stdout and stderr."""
+    supervisor: int
+
+    @classmethod
+    def from_request(
+        cls, request: dict[str, Any], fds: list[int], supervisor: int, broken: str
+    ) -> Birth:
+        """Read a request; where the imports failed, `broken` says how, modules start cold."""
+        kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
+        if kind == "module" and broken:
+            kind, argv = "exec", (sys.executable, "-m", *argv)
+        return cls(
+            kind=kind,
+            name=request["name"],
+            title=request["title"],
+            argv=argv,
+            env=dict(request["env"]),
+            cwd=request["cwd"],
+            fds=tuple(fds),
+            supervisor=supervisor,
+        )
+
+
+def become(birth: Birth) -> None:
+    """Be the node, to its end; an exception of the node's ends this process as it ought to."""
+    os.setsid()
+    if not die_with_parent(birth.supervisor):
+        os._exit(1)
+    _reset_signals()
+    _take_descriptors(birth.fds)
+    _set_environment(birth)
+    try:
+        os.chdir(birth.cwd)
+    except OSError as problem:
+        _give_up(f"cannot enter {birth.cwd}: {problem.strerror}", NOT_EXECUTABLE)
+    if birth.kind == "exec":
+        _execute(birth)
+    show_as(birth.name, birth.title)
+    _renew_streams()
+    if birth.kind == "probe":
+        from launcher.spawn_server_probe import probe
+
+        probe(birth.argv)
+    else:
+        _run_module(birth.argv)
+
+
+def _reset_signals() -> None:
+    """Undo what this process was forked with, ignored signals above all: exec would keep them."""
+    for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}:
+        if signal.getsignal(number) is not signal.SIG_DFL:
+            with contextlib.suppress(OSError, ValueError):
+                signal.signal(number, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())
+
+
+def _set_environment(birth: Birth) -> None:
+    os.environ[NODE_MARK] = birth.name
+    for name, value in birth.env.items():
+        if value is None:
+            os.environ.pop(name, None)
+        else:
+            os.environ[name] = value
+
+
+def _take_descriptors(fds: tuple[int, ...]) -> None:
+    if len(fds) == 2:
+        fds = (os.open(os.devnull, os.O_RDONLY), *fds)
+    for target, fd in enumerate(fds):
+        os.dup2(fd, target)
+    for entry in os.listdir("/proc/self/fd"):  # noqa: PTH208
+        if int(entry) > 2:
+            with contextlib.suppress(OSError):
+                os.close(int(entry))
+
+
+def _execute(birth: Birth) -> None:
+    try:
+        os.execvp(birth.argv[0], birth.argv)
+    except FileNotFoundError:
+        _give_up(f"command not found: {birth.argv[0]}", NOT_FOUND)
+    except OSError as problem:
+        _give_up(f"cannot execute {birth.argv[0]}: {problem.strerror}", NOT_EXECUTABLE)
+
+
+def _give_up(word: str, code: int) -> None:
+    os.write(2, f"deck: {word}\n".encode(errors="backslashreplace"))
+    os._exit(code)
+
+
+def _renew_streams() -> None:
+    """Make stdin, stdout and stderr anew, unbuffered as under `python -u`."""
+    stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115
+    sys.stdin = sys.__stdin__ = stdin  # type: ignore[misc]
+    sys.stdout = sys.__stdout__ = _unbuffered(1)  # type: ignore[misc]
+    sys.stderr = sys.__stderr__ = _unbuffered(2)  # type: ignore[misc]
+
+
+def _unbuffered(fd: int) -> io.TextIOWrapper:
+    raw = io.FileIO(fd, "w", closefd=False)
+    return io.TextIOWrapper(
+        raw,
+        encoding="utf-8",
+        errors="backslashreplace",
+        write_through=True,
+    )
+
+
+def _run_module(argv: tuple[str, ...]) -> None:
+    """Do what `python -m` does."""
+    # Python's own defaults at start, undone by `_reset_signals`.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    sys.argv = list(argv)
+    sys.orig_argv = [sys.executable, "-m", *argv]
+    if not getattr(sys.flags, "safe_path", False):
+        sys.path[0] = os.getcwd()  # noqa: PTH109
+    sys.path[1:1] = [
+        folder
+        for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep)
+        if folder and folder not in sys.path
+    ]
+    sys.excepthook = _report
+    importlib.invalidate_caches()
+    if "numpy.random" in sys.modules:
+        # `random` reseeds itself after a fork, numpy's old global generator does not.
+        sys.modules["numpy.random"].seed()
+    runpy.run_module(argv[0], run_name="__main__", alter_sys=True)
+
+
+def _report(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Print an uncaught exception without the frames that belong to the launcher."""
+    while trace is not None and _is_ours(trace.tb_frame.f_code.co_filename):
+        trace = trace.tb_next
+    traceback.print_exception(kind, error, trace)
+
+
+def _is_ours(file: str) -> bool:
+    return file.startswith("<frozen runpy") or os.path.basename(file) in _OUR_FILES  # noqa: PTH119
+
+
+_OUR_FILES = frozenset(("spawn_server.py", "spawn_server_node.py", "runpy.py"))

@@ -1,0 +1,87 @@
+"""What the spawn server imports before nodes are forked from it, so that they need not.
+
+No context, no node, no thread of ours: a fork copies only the thread that forks.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import gc
+import importlib
+import os
+import warnings
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_FIRST = ("rclpy", "rclpy.node", "rclpy.executors", "rclpy.action", "rclpy.signals")
+_INTERFACES = (
+    "rcl_interfaces.msg",
+    "rcl_interfaces.srv",
+    "type_description_interfaces.msg",
+    "type_description_interfaces.srv",
+    "rosgraph_msgs.msg",
+    "builtin_interfaces.msg",
+    "action_msgs.msg",
+    "std_msgs.msg",
+    "sensor_msgs.msg",
+    "geometry_msgs.msg",
+    "nav_msgs.msg",
+    "diagnostic_msgs.msg",
+    "ackermann_msgs.msg",
+    "tf2_msgs.msg",
+    "example_interfaces.srv",
+)
+
+
+class Preload:
+    """The imports, one step at a time, so that the server can answer in between."""
+
+    def __init__(self, *, cold: bool) -> None:
+        """`cold`: there is nothing to be imported."""
+        self.done = cold
+        self.broken = "" if not cold else "cold"
+        """Why warm nodes cannot be forked; empty if they can."""
+        self._steps = self._all_steps()
+
+    def step(self) -> None:
+        """Import the next thing."""
+        try:
+            if next(self._steps, None) is None:
+                self.done = True
+        except Exception as problem:  # noqa: BLE001 - the imports are not ours
+            self.done, self.broken = True, f"{type(problem).__name__}: {problem}"
+
+    def _all_steps(self) -> Iterator[str]:
+        for name in _FIRST:
+            importlib.import_module(name)
+            yield name
+        importlib.import_module("rclpy").get_rmw_implementation_identifier()
+        for name in _INTERFACES:
+            # Not every installation has every package.
+            with contextlib.suppress(ImportError):
+                _load_types(name)
+            yield name
+        # The libraries below rclpy have threads of their own, which a node does not miss.
+        warnings.filterwarnings("ignore", message=".*multi-threaded.*fork", append=False)
+        gc.collect()
+        gc.freeze()
+        yield "frozen"
+
+
+def _load_types(module_name: str) -> None:
+    """Import a module of interfaces with the libraries that rcl and Fast DDS load for them.
+
+    They are loaded and relocated once, in pages that all nodes then share.
+    """
+    module = importlib.import_module(module_name)
+    for interface in tuple(vars(module).values()):
+        load = getattr(interface, "__import_type_support__", None)
+        if load is not None:
+            load()
+    package = module_name.partition(".")[0]
+    for kind in ("fastrtps_c", "introspection_c"):
+        with contextlib.suppress(OSError):
+            ctypes.CDLL(f"lib{package}__rosidl_typesupport_{kind}.so", mode=os.RTLD_NOW)

@@ -1,0 +1,30 @@
+"""The supervisor: starts a session's nodes, watches them, and ends them.
+
+`python -m launcher.supervisor` is started by `launcher.client.launch`. Its plan comes as one line
+on stdin, which then stays open as long as the client lives: in the foreground, its end is the
+end of the session. It answers with one line on stdout: where to connect, or why not.
+"""
+
+from __future__ import annotations
+
+from launcher.process_ties import become_subreaper
+from launcher.spawn_server_start import start_spawn_server
+from launcher.supervisor_id import new_run_id
+
+
+def main() -> None:
+    """Run one session."""
+    become_subreaper()
+    run_id = new_run_id()
+    # First of all: what it imports takes longer than all that is done here meanwhile.
+    spawn_server = start_spawn_server(run_id, warm=True)
+
+    import asyncio
+
+    from launcher.supervisor_run import run
+
+    asyncio.run(run(run_id, spawn_server))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,33 @@
+"""Time as the supervisor sees it, so that a test need not wait for a backoff of half a minute."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """A monotonic clock that one can wait on."""
+
+    def now(self) -> float:
+        """Return monotonic seconds."""
+
+    async def wait(self, event: asyncio.Event, within_s: float) -> bool:
+        """Wait for `event`, at most so long; return whether it came."""
+
+
+class MonotonicClock:
+    """The machine's own."""
+
+    def now(self) -> float:
+        """Return monotonic seconds."""
+        return time.monotonic()
+
+    async def wait(self, event: asyncio.Event, within_s: float) -> bool:
+        """Wait for `event`, at most so long; return whether it came."""
+        try:
+            await asyncio.wait_for(event.wait(), within_s)
+        except asyncio.TimeoutError:
+            return False
+        return True

@@ -1,0 +1,348 @@
+"""One node's life: waiting, starting, ready or running, stopping, and what comes after.
+
+All of it happens in one task, so that nothing can start it twice.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from launcher.process_exit import Exit
+from launcher.process_spawner import SpawnError
+from launcher.process_stop import PATIENT, QUICK, Stop, Target
+from launcher.readiness import UnwatchableError
+from launcher.status import NodeState, NodeStatus, Severity
+from launcher.supervisor_policy import Again, Finished, GivenUp, RestartPolicy
+from launcher.words import say
+
+if TYPE_CHECKING:
+    import signal
+    from collections.abc import Sequence
+
+    from launcher.process_table import Process
+    from launcher.process_usage import Usage
+    from launcher.readiness import Condition
+    from launcher.supervisor_clock import Clock
+    from launcher.supervisor_plan import NodePlan
+
+LATE_S = 60.0
+"""For so long after its time was up a node may still become ready."""
+_NO_SUCH_COMMAND = (126, 127)
+
+
+class RunningProcess(Target, Protocol):
+    """A process that was started for a node, with all that descends from it."""
+
+    pid: int
+    ended: asyncio.Future[Exit]
+
+    async def close(self) -> None:
+        """Nothing of it is left: read what it has still written, and let go of it."""
+
+
+class Surroundings(Protocol):
+    """What a node's life needs of the session around it."""
+
+    clock: Clock
+
+    async def launch(self, plan: NodePlan) -> RunningProcess:
+        """Start the node's process; raises `SpawnError`."""
+
+    async def ready(self, condition: Condition) -> None:
+        """Return when the condition holds; raises `UnwatchableError`."""
+
+    def missing(self, plan: NodePlan) -> str:
+        """Say which needed nodes are not there yet; empty if all are."""
+
+    def last_words(self, name: str) -> str:
+        """Return what the node said last."""
+
+    def say(self, name: str, severity: Severity, words: str) -> None:
+        """Add a line about the node to its log."""
+
+    def changed(self, node: Node) -> None:
+        """The node's status has changed."""
+
+
+@dataclass
+class _Now:
+    """What there is only while a process runs."""
+
+    process: RunningProcess
+    started: float
+    stop: Stop | None = None
+
+
+class Node:
+    """One node of the session."""
+
+    def __init__(self, plan: NodePlan, around: Surroundings) -> None:
+        """`around`: the session it lives in."""
+        self.plan = plan
+        self.state = NodeState.WAITING
+        self.detail = ""
+        self.serves = False
+        """Whether those that need it may start."""
+        self.usage: Usage | None = None
+        self._around = around
+        self._policy = RestartPolicy(plan.restart)
+        self._restarts = 0
+        self._last: Exit | None = None
+        self._now: _Now | None = None
+        self._task: asyncio.Task[None] | None = None
+        self._nudge = asyncio.Event()
+        self._down = False
+        self._again = False
+        self._forced = False
+        self._hurried = False
+
+    @property
+    def at_work(self) -> bool:
+        """Whether anything of it is under way: it runs, waits, or is to be started again."""
+        return self._task is not None and not self._task.done()
+
+    def status(self) -> NodeStatus:
+        """Return its status as of now."""
+        now, last, usage = self._now, self._last, self.usage
+        return NodeStatus(
+            name=self.plan.name,
+            command=self.plan.command,
+            state=self.state,
+            detail=self.detail,
+            pid=now.process.pid if now else None,
+            uptime_s=self._around.clock.now() - now.started if now else None,
+            restarts=self._restarts,
+            exit_code=last.code if last and not now else None,
+            signal=last.signal if last and not now else None,
+            cpu_percent=usage.cpu_percent if usage and now else None,
+            memory_bytes=usage.memory_bytes if usage and now else None,
+            needs=self.plan.needs,
+        )
+
+    def start(self) -> None:
+        """Start it; a node that waits for others or for its next try starts at once."""
+        if not self.at_work:
+            self._down = self._again = self._forced = self._hurried = False
+            self._policy.reset()
+            self._task = asyncio.create_task(self._live())
+        elif self._down:
+            self._again = True
+        elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
+            self._forced = True
+            self._nudge.set()
+
+    async def stop(self, *, now: bool = False) -> None:
+        """Stop it and return when nothing of it is left; `now` skips the waiting between stages."""
+        self._again = False
+        if self.at_work and self._task is not None:
+            self._go_down(now=now)
+            await asyncio.wait([self._task])
+        elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
+            self._become(NodeState.EXITED, say("stopped"))
+
+    def restart(self) -> None:
+        """Stop and start it; one that is to be started again already is not started twice."""
+        if self.at_work:
+            self._again = True
+            self._go_down(now=False)
+        else:
+            self.start()
+
+    def needs_changed(self) -> None:
+        """Look again whether all that it needs is there."""
+        if self.state is NodeState.WAITING:
+            self._nudge.set()
+
+    def _go_down(self, *, now: bool) -> None:
+        self._down = True
+        self._hurried = self._hurried or now
+        self.serves = False
+        if now and self._now is not None and self._now.stop is not None:
+            self._now.stop.hurry()
+        self._nudge.set()
+
+    def _become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
+        self.state, self.detail, self.serves = state, detail, serves and not self._down
+        self._around.changed(self)
+
+    async def _live(self) -> None:
+        while True:
+            await self._wait_for_needs()
+            if not self._down:
+                again = await self._one_process()
+                if not again and not self._down:
+                    return
+            if self._down:
+                if not self._again:
+                    self._become(NodeState.EXITED, self._stopped_words())
+                    return
+                self._again = self._down = self._hurried = False
+                self._policy.reset()
+
+    def _stopped_words(self) -> str:
+        last = self._last
+        if last is not None and last.signal is not None:
+            return say("stopped by {signal}", signal=last.signal)
+        if last is not None and last.code:
+            return say("stopped, exit code {code}", code=last.code)
+        return say("stopped")
+
+    async def _wait_for_needs(self) -> None:
+        while not self._down and not self._forced:
+            missing = self._around.missing(self.plan)
+            if not missing:
+                break
+            if (self.state, self.detail) != (NodeState.WAITING, missing):
+                self._become(NodeState.WAITING, missing)
+            await self._nudge.wait()
+            self._nudge.clear()
+        self._forced = False
+
+    async def _one_process(self) -> bool:
+        """Start a process and see it to its end; return whether to start another."""
+        self._become(NodeState.STARTING)
+        try:
+            process = await self._around.launch(self.plan)
+        except SpawnError as problem:
+            end = Exit(None)
+            lasted = 0.0
+            why: str = say("cannot be started: {reason}", reason=problem)
+        else:
+            end, lasted = await self._see_through(process)
+            why = self._end_words(end)
+        if self._down:
+            return False
+        return await self._after(end, lasted, why)
+
+    async def _see_through(self, process: RunningProcess) -> tuple[Exit, float]:
+        clock = self._around.clock
+        self._now = now = _Now(process, clock.now())
+        self._last = None
+        self._around.say(self.plan.name, Severity.INFO, say("started, pid {pid}", pid=process.pid))
+        process.ended.add_done_callback(lambda _ended: self._nudge.set())
+        ready = asyncio.create_task(self._become_ready())
+        while not process.ended.done() and not self._down:
+            self._nudge.clear()
+            await self._nudge.wait()
+        ready.cancel()
+        lasted = clock.now() - now.started
+        if self._down:
+            self._become(NodeState.STOPPING)
+        await self._end_all_of_it(now)
+        end = await process.ended
+        await process.close()
+        self._now, self._last = None, end
+        self._around.say(
+            self.plan.name,
+            Severity.INFO if end.clean or self._down else Severity.ERROR,
+            self._end_words(end),
+        )
+        return end, lasted
+
+    async def _end_all_of_it(self, now: _Now) -> None:
+        """Stop what is left: all of it if it is to go down, else what its end has left behind."""
+        now.stop = Stop(
+            now.process, self._around.clock, self._held_up, QUICK if self._hurried else PATIENT
+        )
+        if now.process.ended.done() and not self._down:
+            left = now.process.left()
+            if not left:
+                return
+            self._become(NodeState.STOPPING, say("it ended, and left {who}", who=_who(left)))
+        stop = now.stop
+        now.process.ended.add_done_callback(lambda _ended: stop.look())
+        await stop.run()
+
+    def _held_up(self, left: Sequence[Process], number: signal.Signals) -> None:
+        words = say("{signal} sent, waits for {who}", signal=number.name, who=_who(left))
+        self._become(NodeState.STOPPING, words)
+        if number.name != "SIGINT":
+            self._around.say(self.plan.name, Severity.WARN, words)
+
+    async def _become_ready(self) -> None:
+        plan = self.plan
+        if plan.ready is None:
+            self._become(NodeState.RUNNING, serves=True)
+            return
+        self._become(NodeState.STARTING, say("waits for {what}", what=_what(plan.ready)))
+        ready = asyncio.ensure_future(self._around.ready(plan.ready))
+        try:
+            done, _ = await asyncio.wait([ready], timeout=plan.within_s)
+            if not done:
+                words = say(
+                    "not ready within {seconds:g} s: no {what}",
+                    seconds=plan.within_s,
+                    what=_what(plan.ready),
+                )
+                self._become(NodeState.RUNNING, words)
+                self._around.say(plan.name, Severity.WARN, words)
+                done, _ = await asyncio.wait([ready], timeout=LATE_S)
+            if done:
+                ready.result()
+                self._become(NodeState.READY, serves=True)
+        except UnwatchableError:
+            self._become(NodeState.RUNNING, say("whether it is ready cannot be seen"), serves=True)
+        finally:
+            ready.cancel()
+
+    async def _after(self, end: Exit, lasted: float, why: str) -> bool:
+        """Do what the restart policy says; return whether to start it again."""
+        clock = self._around.clock
+        hopeless = end.code in _NO_SUCH_COMMAND and not self.plan.module
+        verdict = (
+            GivenUp(1)
+            if hopeless
+            else self._policy.after(clean=end.clean, lasted_s=lasted, now=clock.now())
+        )
+        if isinstance(verdict, Again):
+            words = say("{why}; again in {seconds:g} s", why=why, seconds=verdict.delay_s)
+            self._become(NodeState.BACKOFF, words)
+            self._nudge.clear()
+            await clock.wait(self._nudge, verdict.delay_s)
+            self._forced = False
+            if not self._down:
+                self._restarts += 1
+            return not self._down
+        if isinstance(verdict, Finished) or self.plan.optional:
+            self._become(NodeState.EXITED, why)
+            return False
+        if verdict.crashes > 1:
+            why = say(
+                "given up after {count} ends in {seconds:.0f} s: {why}",
+                count=verdict.crashes,
+                seconds=verdict.within_s,
+                why=why,
+            )
+        self._become(NodeState.FAILED, why)
+        self._around.say(self.plan.name, Severity.ERROR, why)
+        return False
+
+    def _end_words(self, end: Exit) -> str:
+        if end.clean:
+            return say("ended")
+        last = self._around.last_words(self.plan.name)
+        how = (
+            say("killed by {signal}", signal=end.signal)
+            if end.signal is not None
+            else say("exit code {code}", code=end.code)
+        )
+        return say("{how}: {last}", how=how, last=_short(last)) if last and not self._down else how
+
+
+def _what(condition: Condition) -> str:
+    if condition.kind == "topic":
+        return say("publisher of {name}", name=condition.name)
+    if condition.kind == "service":
+        return say("service {name}", name=condition.name)
+    return say("node {name} in the graph", name=condition.name)
+
+
+def _who(left: Sequence[Process], most: int = 3) -> str:
+    names = ", ".join(f"{process.pid} ({process.name})" for process in left[:most])
+    return names if len(left) <= most else f"{names} …"
+
+
+def _short(text: str, most: int = 160) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"

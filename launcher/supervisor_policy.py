@@ -1,0 +1,65 @@
+"""When a node that ended is started again, and when that is given up."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+FIRST_DELAY_S = 1.0
+LAST_DELAY_S = 30.0
+STABLE_S = 20.0
+"""A node that ran for so long has nothing to do with the crashes before."""
+MAX_CRASHES = 5
+CRASH_WINDOW_S = 60.0
+
+
+@dataclass(frozen=True)
+class Again:
+    """Start it again after a while."""
+
+    delay_s: float
+
+
+@dataclass(frozen=True)
+class Finished:
+    """It ended as it should."""
+
+
+@dataclass(frozen=True)
+class GivenUp:
+    """It will not be started again."""
+
+    crashes: int
+    """How many there were in a row; 1 if the policy is not to start it again at all."""
+    within_s: float = 0.0
+
+
+class RestartPolicy:
+    """One node's `restart:` and what has happened to it so far. Times are monotonic seconds."""
+
+    def __init__(self, kind: str) -> None:
+        """`kind`: `never`, `on-failure` or `always`."""
+        self._kind = kind
+        self._delay_s = FIRST_DELAY_S
+        self._crashes: deque[float] = deque(maxlen=MAX_CRASHES)
+
+    def reset(self) -> None:
+        """Forget: somebody has started it by hand."""
+        self._delay_s = FIRST_DELAY_S
+        self._crashes.clear()
+
+    def after(self, *, clean: bool, lasted_s: float, now: float) -> Again | Finished | GivenUp:
+        """Decide after the node ended by itself, `clean` if with exit code 0."""
+        if clean and self._kind != "always":
+            return Finished()
+        if self._kind == "never":
+            return GivenUp(1)
+        if lasted_s >= STABLE_S:
+            self.reset()
+        self._crashes.append(now)
+        within_s = now - self._crashes[0]
+        if len(self._crashes) == MAX_CRASHES and within_s <= CRASH_WINDOW_S:
+            return GivenUp(MAX_CRASHES, within_s)
+        delay_s = self._delay_s
+        self._delay_s = min(2 * delay_s, LAST_DELAY_S)
+        return Again(delay_s)

@@ -1,0 +1,281 @@
+"""One run of the supervisor, from its plan to its last word."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.control_protocol import MAX_MESSAGE_BYTES, encode, pack_session
+from launcher.control_server import ControlServer
+from launcher.control_socket import listen
+from launcher.logs_book import DECK, LogBook
+from launcher.logs_files import LogFiles, prune_runs
+from launcher.process_exit import Reaper
+from launcher.process_members import Members, Orphans
+from launcher.process_spawner import Spawner
+from launcher.process_stop import QUICK, Stop
+from launcher.status import SessionInfo, Severity, Stray
+from launcher.strays import end_strays, find_strays, forget_ended_runs
+from launcher.supervisor_plan import Plan
+from launcher.supervisor_process import ProcessLauncher, ProcessScan
+from launcher.supervisor_record import RunRecord, exclusively, read_records, rival
+from launcher.supervisor_session import Session
+from launcher.words import Words, say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from launcher.logs_ring import LogRing
+    from launcher.spawn_server_start import SpawnServerHandle
+    from launcher.status import LogLine, NodeStatus
+
+STRAYS_AGAIN_S = 3.0
+"""What is left of a run that ended a moment ago may just be ending."""
+
+
+async def run(run_id: str, spawn_server: SpawnServerHandle) -> None:
+    """Read the plan, carry it out, and clean up."""
+    stdin = await _open_stdin()
+    line = await stdin.readline()
+    if not line.endswith(b"\n"):
+        return  # The profile was no good, or the client has gone: there is nothing to do.
+    plan = Plan.from_json(line)
+    record = _claim(plan, run_id)
+    if record is None:
+        return
+    _keep_last_words(Path(record.session.log_dir))
+    supervisor = Supervisor(plan, record, spawn_server)
+    try:
+        await supervisor.run(stdin)
+    finally:
+        record.remove()
+
+
+async def _open_stdin() -> asyncio.StreamReader:
+    reader = asyncio.StreamReader(limit=MAX_MESSAGE_BYTES)
+    await asyncio.get_running_loop().connect_read_pipe(
+        lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(os.dup(0), "rb", 0)
+    )
+    return reader
+
+
+def _claim(plan: Plan, run_id: str) -> RunRecord | None:
+    """Write the record of this run, unless another has these nodes in this domain."""
+    run_dir = Path(plan.run_dir)
+    log_dir = Path(plan.log_dir) / plan.name / run_id
+    session = SessionInfo(
+        run_id=run_id,
+        profile=plan.profile,
+        name=plan.name,
+        title=plan.title,
+        lesson=plan.lesson,
+        domain=plan.domain,
+        discovery=plan.discovery,
+        hardware=plan.hardware,
+        panels=plan.panels,
+        supervisor_pid=os.getpid(),
+        log_dir=str(log_dir),
+        foreground=plan.foreground,
+    )
+    nodes = tuple(node.name for node in plan.nodes)
+    record = RunRecord(run_dir / run_id, session, nodes, {})
+    with exclusively(run_dir):
+        other = rival(read_records(run_dir), nodes, plan.domain)
+        if other is not None:
+            _answer({"running": pack_session(other.session)})
+            return None
+        record.write()
+    return record
+
+
+def _answer(message: Mapping[str, object]) -> None:
+    """Say the one line on stdout, and let go of it: nobody reads there any more."""
+    with contextlib.suppress(BrokenPipeError):
+        os.write(1, encode(message))
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
+
+
+def _say_nothing(*_: object) -> None:
+    pass
+
+
+def _keep_last_words(folder: Path) -> None:
+    """Send stderr to a file: the client that started this process may be gone long before."""
+    folder.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(folder / "supervisor.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+    os.dup2(descriptor, 2)
+    os.close(descriptor)
+
+
+class Supervisor:
+    """Fits `Controlled`: what clients ask for ends here."""
+
+    def __init__(self, plan: Plan, record: RunRecord, spawn_server: SpawnServerHandle) -> None:
+        self.info = record.session
+        self.strays: tuple[Stray, ...] = ()
+        self._plan = plan
+        self._record = record
+        self._loop = asyncio.get_running_loop()
+        self._reaper = Reaper()
+        self._spawner = Spawner(self.info.run_id, spawn_server, self._spawn_server_died)
+        if not plan.warm:
+            self._spawner.go_cold()
+        self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
+        self.control = ControlServer(self)
+        self._book = LogBook(
+            (node.name for node in plan.nodes), self._files, self.control.lines_came
+        )
+        scan = ProcessScan(Members(self.info.run_id))
+        launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._book)
+        self._session = Session(plan, launcher, self._book, self._status_changed)
+        self._end = asyncio.Event()
+        self._hurry = asyncio.Event()
+        self._reason = ""
+        self._pids: dict[str, int | None] = {}
+
+    async def run(self, stdin: asyncio.StreamReader) -> None:
+        """Run the session to its end."""
+        self._reaper.install(self._loop)
+        self._install_signals()
+        await self.control.serve(listen(self._record.folder))
+        self._session.start()
+        _answer({"folder": str(self._record.folder)})
+        helpers = [
+            asyncio.create_task(self._session.measure()),
+            asyncio.create_task(self._look_for_strays()),
+            asyncio.create_task(self._watch_owner(stdin)),
+        ]
+        await self._end.wait()
+        await self._stop_all()
+        for helper in helpers:
+            helper.cancel()
+        await self.control.close(self._reason)
+        self._spawner.close()
+        self._files.close()
+
+    # What clients ask.
+
+    def statuses(self) -> Mapping[str, NodeStatus]:
+        """Return every node as of now."""
+        return {name: node.status() for name, node in self._session.nodes.items()}
+
+    def rings(self) -> Mapping[str, LogRing]:
+        """Return every node's log."""
+        return self._book.rings
+
+    def history(self, node: str | None, limit: int) -> Sequence[LogLine]:
+        """Return the newest lines of one node or of all."""
+        return self._book.newest(node, limit)
+
+    def start(self, names: Iterable[str]) -> None:
+        """Start nodes; raises `UnknownNodeError`."""
+        if not self._end.is_set():
+            self._session.start(names)
+
+    async def stop(self, names: Iterable[str], *, now: bool) -> None:
+        """Stop nodes; raises `UnknownNodeError`."""
+        await self._session.stop(names, now=now)
+
+    def restart(self, names: Iterable[str]) -> None:
+        """Restart nodes; raises `UnknownNodeError`."""
+        if not self._end.is_set():
+            self._session.restart(names)
+
+    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+        """End what an earlier run has left."""
+        await end_strays(strays)
+        self._find_strays()
+
+    def shut_down(self, *, now: bool) -> None:
+        """Begin to stop everything, and then the supervisor."""
+        self._finish(say("stopped"), now=now)
+
+    # What happens.
+
+    def _finish(self, reason: Words, *, now: bool) -> None:
+        if not self._end.is_set():
+            self._reason = reason
+            self._end.set()
+        if now:
+            self._hurry.set()
+
+    async def _stop_all(self) -> None:
+        stopping = asyncio.create_task(self._session.stop(now=self._hurry.is_set()))
+        hurry = asyncio.create_task(self._hurry.wait())
+        await asyncio.wait([stopping, hurry], return_when=asyncio.FIRST_COMPLETED)
+        if not stopping.done():
+            await self._session.stop(now=True)
+        await stopping
+        hurry.cancel()
+        # What has left its node behind so well that it could not be told whose it was.
+        orphans = Orphans(self.info.run_id, self._spawner)
+        await Stop(orphans, self._session.clock, _say_nothing, QUICK).run()
+
+    def _install_signals(self) -> None:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if number == signal.SIGHUP and not self.info.foreground:
+                signal.signal(number, signal.SIG_IGN)
+            else:
+                self._loop.add_signal_handler(number, self._on_signal, number)
+
+    def _on_signal(self, number: signal.Signals) -> None:
+        self._finish(say("{signal} received", signal=number.name), now=self._end.is_set())
+
+    async def _watch_owner(self, stdin: asyncio.StreamReader) -> None:
+        """In the foreground, the session ends with the client that started it."""
+        while await stdin.read(65536):
+            pass
+        if self.info.foreground:
+            self._finish(say("the screen that started it is gone"), now=True)
+
+    def _status_changed(self, name: str) -> None:
+        status = self._session.nodes[name].status()
+        if self._pids.get(name) != status.pid:
+            self._pids[name] = status.pid
+            self._write_record()
+        self.control.status_changed(name)
+
+    def _write_record(self) -> None:
+        """Note which processes there are, for whoever comes after a sudden end."""
+        RunRecord(
+            self._record.folder,
+            self.info,
+            self._record.nodes,
+            self._session.processes,
+        ).write()
+
+    def _spawn_server_died(self, pid: int) -> None:
+        self._book.say(
+            DECK,
+            Severity.WARN,
+            say("the spawn server (pid {pid}) ended; the next starts use a new one", pid=pid),
+        )
+
+    def _log_failed(self, reason: str) -> None:
+        words = say("{folder}: {reason}", folder=self.info.log_dir, reason=reason)
+        self._loop.call_soon_threadsafe(self._book.say, DECK, Severity.ERROR, words)
+
+    async def _look_for_strays(self) -> None:
+        self._find_strays()
+        await asyncio.to_thread(self._prune_logs)
+        if self.strays:
+            await asyncio.sleep(STRAYS_AGAIN_S)
+            self._find_strays()
+
+    def _find_strays(self) -> None:
+        run_dir = self._record.folder.parent
+        strays = find_strays(run_dir)
+        forget_ended_runs(run_dir, strays)
+        if strays != self.strays:
+            self.strays = strays
+            self.control.strays_changed()
+
+    def _prune_logs(self) -> None:
+        running = {record.session.run_id for record in read_records(self._record.folder.parent)}
+        prune_runs(Path(self._plan.log_dir) / self._plan.name, running)

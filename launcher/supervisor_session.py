@@ -1,0 +1,145 @@
+"""The session: all nodes of a profile, what they cost, and what can be asked of them."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from launcher.errors import UnknownNodeError
+from launcher.process_usage import UsageMeter
+from launcher.readiness import Readiness
+from launcher.status import NodeState, Severity
+from launcher.supervisor_clock import MonotonicClock
+from launcher.supervisor_node import Node
+from launcher.supervisor_order import needed_by, stop_waves
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from launcher.logs_book import LogBook
+    from launcher.readiness import Condition
+    from launcher.supervisor_clock import Clock
+    from launcher.supervisor_plan import NodePlan, Plan
+    from launcher.supervisor_process import NodeProcess, ProcessLauncher
+
+USAGE_EVERY_S = 2.0
+
+
+class Session:
+    """Fits `Surroundings`: each node asks here for what it needs."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        launcher: ProcessLauncher,
+        book: LogBook,
+        on_change: Callable[[str], None],
+    ) -> None:
+        """`on_change` is called with the name of a node whose status has changed."""
+        self.clock: Clock = MonotonicClock()
+        self.plan = plan
+        self.book = book
+        self.nodes = {node.name: Node(node, self) for node in plan.nodes}
+        self._launcher = launcher
+        self._on_change = on_change
+        self._meter = UsageMeter()
+        self._readiness = Readiness(
+            [node.ready for node in plan.nodes if node.ready is not None],
+            launcher.spawner,
+            launcher.reaper,
+            plan.env,
+        )
+        self.processes: dict[str, tuple[int, int]] = {}
+        """Node to the number and the start, in ticks, of its newest process."""
+        self._hurry = asyncio.Event()
+
+    # What is asked of it.
+
+    def start(self, names: Iterable[str] = ()) -> None:
+        """Start these nodes with all that they need; all if none is named."""
+        chosen = self._chosen(names)
+        for name in needed_by(chosen, self.plan.needs):
+            if name in chosen or not self.nodes[name].at_work:
+                self.nodes[name].start()
+
+    async def stop(self, names: Iterable[str] = (), *, now: bool = False) -> None:
+        """Stop these nodes, dependants first; all if none is named."""
+        chosen = self._chosen(names)
+        if now:
+            self._hurry.set()
+            await asyncio.gather(*(self.nodes[name].stop(now=True) for name in chosen))
+            return
+        self._hurry.clear()
+        for wave in stop_waves(chosen, self.plan.needs):
+            in_a_hurry = self._hurry.is_set()
+            await asyncio.gather(*(self.nodes[name].stop(now=in_a_hurry) for name in wave))
+
+    def restart(self, names: Iterable[str] = ()) -> None:
+        """Stop and start these nodes; all if none is named."""
+        for name in self._chosen(names):
+            self.nodes[name].restart()
+
+    def _chosen(self, names: Iterable[str]) -> list[str]:
+        names = list(names)
+        for name in names:
+            if name not in self.nodes:
+                raise UnknownNodeError(name, self.nodes)
+        return names or list(self.nodes)
+
+    async def measure(self) -> None:
+        """Measure what the nodes cost, again and again."""
+        while True:
+            await asyncio.sleep(USAGE_EVERY_S)
+            if not any(node.state.alive for node in self.nodes.values()):
+                continue
+            usages = self._meter.measure(self._launcher.scan.look(0.0), self.clock.now())
+            for name, node in self.nodes.items():
+                if node.state.alive:
+                    node.usage = usages.get(name)
+                    self._on_change(name)
+
+    # What the nodes ask of it.
+
+    async def launch(self, plan: NodePlan) -> NodeProcess:
+        """Start a node's process; raises `SpawnError`."""
+        if plan.name in self.processes:
+            # It may have died without a goodbye, and whoever saw it alive sees it still.
+            self._readiness.renew()
+        process = await self._launcher.launch(plan)
+        self.processes[plan.name] = (process.pid, process.started_ticks)
+        return process
+
+    async def ready(self, condition: Condition) -> None:
+        """Return when the condition holds; raises `UnwatchableError`."""
+        await self._readiness.until(condition)
+
+    def missing(self, plan: NodePlan) -> str:
+        """Say which needed nodes are not there yet; empty if all are."""
+        absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
+        if not absent:
+            return ""
+        return say("waits for {nodes}", nodes=", ".join(map(_with_state, absent)))
+
+    def last_words(self, name: str) -> str:
+        """Return what the node said last."""
+        return self.book.last_words(name)
+
+    def say(self, name: str, severity: Severity, words: str) -> None:
+        """Add a line about the node to its log."""
+        self.book.say(name, severity, words)
+
+    def changed(self, node: Node) -> None:
+        """Tell the clients, and those nodes that need this one."""
+        self._on_change(node.plan.name)
+        for other in self.nodes.values():
+            if node.plan.name in other.plan.needs:
+                other.needs_changed()
+
+
+def _with_state(node: Node) -> str:
+    if node.state in (NodeState.STARTING, NodeState.WAITING):
+        return node.plan.name
+    if node.state is NodeState.RUNNING:
+        return say("{name} (not ready)", name=node.plan.name)
+    return f"{node.plan.name} ({node.state.value})"
