@@ -1,0 +1,51 @@
+"""What the brain decides: never forward into what it does not see."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot.brain import Decision, decide, spoken
+from robot.safety import Sight
+from robot.words import STOP, DriveSetpoint, parse_word
+
+FORWARD = DriveSetpoint(0.5, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("front", "decision"),
+    [
+        (Sight.FREE, Decision.LOOK_AND_GO),
+        (Sight.CLOSE, Decision.OBSTACLE),
+        (Sight.INVALID, Decision.BLIND),
+        (Sight.SILENT, Decision.BLIND),
+    ],
+)
+def test_a_request_is_answered_by_what_is_ahead(front: Sight, decision: Decision) -> None:
+    assert decide(None, front) == decision
+
+
+@given(st.sampled_from(Sight))
+def test_stop_and_back_are_always_obeyed(front: Sight) -> None:
+    assert decide(STOP, front) == Decision.OBEY
+    assert decide(parse_word("назад"), front) == Decision.OBEY
+
+
+@given(st.sampled_from(Sight))
+def test_forward_is_obeyed_only_where_the_way_is_free(front: Sight) -> None:
+    assert (decide(FORWARD, front) == Decision.OBEY) == (front == Sight.FREE)
+
+
+@pytest.mark.parametrize(
+    ("sound", "words"),
+    [
+        (b"VOICE_COMMAND: Look around", "Look around"),
+        (" voice_command:  Стоп \n".encode(), "Стоп"),
+        (b"left", "left"),
+        (b"\xff\xfe", "��"),
+        (b"", ""),
+    ],
+)
+def test_the_words_are_taken_from_the_bytes(sound: bytes, words: str) -> None:
+    assert spoken(sound) == words
