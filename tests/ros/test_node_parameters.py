@@ -1,0 +1,179 @@
+"""Parameters: what is taken, what is refused, and how the refusal reads, at the start and later."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
+
+from nodes._node import LessonNode
+from nodes._parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import Peer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+RATE = Number("rate", 1.0, "Readings a second", low=0.1, high=200.0, unit="Hz")
+MODULES = (
+    "hello", "mock_sonar", "safety_stop", "head_controller", "ai_driver", "electronic_differential",
+    "camera_tf", "mock_camera", "vlm_agent_stub", "mock_audio", "ai_brain", "llm_parser",
+)  # fmt: skip
+
+
+def all_settings() -> list[tuple[str, Setting]]:
+    found = []
+    for name in MODULES:
+        module = importlib.import_module(f"nodes.{name}")
+        for item in vars(module).values():
+            if isinstance(item, type) and issubclass(item, LessonNode) and item is not LessonNode:
+                found += [(name, setting) for setting in item.SETTINGS]
+    return found
+
+
+@pytest.mark.parametrize(("module", "setting"), all_settings(), ids=lambda item: str(item)[:40])
+def test_every_parameter_is_described_and_takes_its_own_default(
+    module: str, setting: Setting
+) -> None:
+    assert setting.about, module
+    assert setting.accept(setting.default) == setting.default
+    if isinstance(setting, (Number, Whole)):
+        assert setting.low < setting.high
+    descriptor = setting.descriptor()
+    assert descriptor.description == setting.about
+
+
+@given(st.floats() | st.integers() | st.booleans() | st.text() | st.none())
+def test_a_number_is_inside_its_range_or_refused(value: object) -> None:
+    try:
+        taken = RATE.accept(value)
+    except BadValueError:
+        return
+    assert 0.1 <= taken <= 200.0
+    assert not isinstance(value, bool)
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [
+        (RATE, math.nan),
+        (RATE, True),
+        (RATE, "1.0"),
+        (Whole("queue", 4, "", low=0, high=8), 2.5),
+        (Whole("queue", 4, "", low=0, high=8), 9),
+        (Whole("queue", 4, "", low=0, high=8), True),
+        (Switch("gate", False, ""), 1),
+        (Text("topic", "/a", ""), ""),
+        (Text("topic", "/a", ""), 5),
+        (Choice("pattern", "a", "", choices=("a", "b")), "c"),
+    ],
+)
+def test_nonsense_is_refused(setting: Setting, value: object) -> None:
+    with pytest.raises(BadValueError):
+        setting.accept(value)
+
+
+BAD_STARTS = [
+    ("mock_sonar", {"rate": 0.0}, "parameter rate is 0.0, but must be a number from 0.1 to 200 Hz"),
+    ("mock_sonar", {"rate": "fast"}, "parameter rate is 'fast', but must be a number"),
+    ("mock_sonar", {"pattern": "square"}, "must be one of: random, sweep, constant"),
+    ("mock_sonar", {"rte": 2.0}, "there is no parameter rte; did you mean rate?"),
+    ("mock_sonar", {"min_distance": 5.0}, "must be below max_distance"),
+    ("mock_sonar", {"topic": "/a b"}, "/a b"),
+    ("electronic_differential", {"wheelbase": -0.25}, "parameter wheelbase is -0.25"),
+    ("head_controller", {"queue": 1.5}, "a whole number from 0 to 64"),
+    ("safety_stop", {"gate": 1}, "parameter gate is 1, but must be true or false"),
+    ("camera_tf", {"child": "base_link"}, "must differ"),
+]
+
+
+def test_a_bad_parameter_ends_the_start_with_one_line_and_code_2(module_domain: int) -> None:
+    """All at once: each is a process of its own."""
+    started = [NodeProcess(f"nodes.{name}", module_domain, params=p) for name, p, _ in BAD_STARTS]
+    for process, (_, _, words) in zip(started, BAD_STARTS, strict=True):
+        with process:
+            assert process.wait() == 2
+            assert words in process.output
+            assert process.output.count("\n") == 1
+            assert "Traceback" not in process.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [(("5",), "не знает 5"), (("--ros-args", "-p", "rate"), "Couldn't parse")],
+)
+def test_arguments_that_make_no_sense_end_with_code_2(
+    module_domain: int, arguments: tuple[str, ...], words: str
+) -> None:
+    with NodeProcess("nodes.mock_sonar", module_domain, arguments=arguments, lang="ru") as process:
+        assert process.wait() == 2
+        assert words in process.output
+        assert "Traceback" not in process.output
+
+
+def test_the_help_tells_every_parameter(module_domain: int) -> None:
+    with NodeProcess("nodes.mock_sonar", module_domain, arguments=("--help",)) as process:
+        assert process.wait() == 0
+        assert "python -m nodes.mock_sonar --ros-args" in process.output
+        assert "rate = 1.0  (0.1 .. 200 Hz)" in process.output
+
+
+@pytest.fixture(scope="module")
+def peer(module_domain: int) -> Iterator[Peer]:
+    with Peer(module_domain) as peer, NodeProcess("nodes.mock_sonar", module_domain):
+        yield peer
+
+
+NODE = "/mock_sonar_front"
+
+
+def set_parameter(peer: Peer, name: str, value: ParameterValue) -> tuple[bool, str]:
+    request = SetParameters.Request(parameters=[Parameter(name=name, value=value)])
+    (result,) = peer.ask(f"{NODE}/set_parameters", SetParameters, request).results
+    return result.successful, result.reason
+
+
+def a_double(value: float) -> ParameterValue:
+    return ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value)
+
+
+def test_ros_tools_see_description_and_range(peer: Peer) -> None:
+    request = DescribeParameters.Request(names=["rate", "pattern"])
+    rate, pattern = peer.ask(f"{NODE}/describe_parameters", DescribeParameters, request).descriptors
+    assert rate.description == "Readings a second"
+    assert rate.floating_point_range[0].from_value == 0.1
+    assert rate.floating_point_range[0].to_value == 200.0
+    assert pattern.additional_constraints == "random, sweep, constant"
+
+
+@pytest.mark.parametrize("value", [0.0, 1000.0, math.nan, math.inf])
+def test_nonsense_is_refused_at_run_time_too(peer: Peer, value: float) -> None:
+    taken, reason = set_parameter(peer, "rate", a_double(value))
+    assert not taken
+    assert "rate" in reason
+
+
+def test_what_is_fixed_at_the_start_stays(peer: Peer) -> None:
+    text = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="/elsewhere")
+    taken, _reason = set_parameter(peer, "topic", text)
+    assert not taken
+
+
+def test_a_whole_number_is_taken_for_one_with_a_point(peer: Peer) -> None:
+    whole = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=50)
+    assert set_parameter(peer, "rate", whole) == (True, "")
+    request = GetParameters.Request(names=["rate"])
+    (value,) = peer.ask(f"{NODE}/get_parameters", GetParameters, request).values
+    assert (value.type, value.double_value) == (ParameterType.PARAMETER_DOUBLE, 50.0)
+
+
+def test_values_that_contradict_each_other_are_refused(peer: Peer) -> None:
+    taken, reason = set_parameter(peer, "min_distance", a_double(50.0))
+    assert not taken
+    assert "max_distance" in reason
