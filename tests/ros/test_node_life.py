@@ -1,0 +1,128 @@
+"""How nodes begin and end: every one of them, on both signals, at any moment."""
+
+from __future__ import annotations
+
+import signal
+from typing import TYPE_CHECKING
+
+import pytest
+from example_interfaces.srv import AddTwoInts
+
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+NODES = {
+    "hello": "hello_node",
+    "mock_sonar": "mock_sonar_front",
+    "safety_stop": "safety_node",
+    "head_controller": "head_controller",
+    "ai_driver": "ai_driver_translator",
+    "electronic_differential": "electronic_differential",
+    "camera_tf": "camera_tf",
+    "mock_camera": "mock_camera",
+    "vlm_agent_stub": "vlm_agent",
+    "mock_audio": "audio_system",
+    "ai_brain": "ai_brain",
+    "llm_parser": "llm_parser",
+}
+"""Module to the name in the graph that the course gave it."""
+BOTH = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+
+
+@pytest.fixture(scope="module")
+def peer(module_domain: int) -> Iterator[Peer]:
+    with Peer(module_domain) as peer:
+        yield peer
+
+
+def assert_ended_well(process: NodeProcess) -> None:
+    assert process.wait() == 0, process.output
+    assert "Traceback" not in process.output
+    assert "rror" not in process.output
+
+
+@BOTH
+def test_every_node_ends_with_code_0_and_no_traceback(
+    peer: Peer, module_domain: int, number: signal.Signals
+) -> None:
+    params = {"safety_stop": {"gate": True}, "mock_sonar": {"rate": 100}}
+    started = [
+        NodeProcess(f"nodes.{module}", module_domain, params=params.get(module, {}))
+        for module in NODES
+    ]
+    try:
+        for process, name in zip(started, NODES.values(), strict=True):
+            wait_until(lambda name=name: peer.sees(name), f"{name} in the graph")  # type: ignore[misc]
+            process.wait_for_words(f"[{name}]")
+            process.send(number)
+        for process in started:
+            assert_ended_well(process)
+    finally:
+        for process in started:
+            process.close()
+    for name in NODES.values():
+        wait_until(lambda name=name: not peer.sees(name), f"{name} gone")  # type: ignore[misc]
+
+
+@BOTH
+def test_a_callback_that_does_not_come_back_is_not_waited_for(
+    module_domain: int, number: signal.Signals
+) -> None:
+    with NodeProcess("tests.ros.sleepy_node", module_domain) as process:
+        process.wait_for_words("asleep")
+        process.send(number)
+        assert_ended_well(process)
+
+
+@BOTH
+def test_the_head_ends_in_the_middle_of_a_movement(
+    peer: Peer, module_domain: int, number: signal.Signals
+) -> None:
+    params: dict[str, object] = {"move_time": 30.0}
+    with NodeProcess("nodes.head_controller", module_domain, params=params) as process:
+        client = peer.node.create_client(AddTwoInts, "set_head_position")
+        wait_until(client.service_is_ready, "the head's service")
+        client.call_async(AddTwoInts.Request(a=45, b=15))
+        process.wait_for_words("Turning the head")
+        process.send(number)
+        assert_ended_well(process)
+        peer.node.destroy_client(client)
+
+
+@BOTH
+def test_a_signal_while_the_node_is_still_loading_leaves_no_traceback(
+    module_domain: int, number: signal.Signals
+) -> None:
+    """The signal comes at once; Python itself may not have started yet, then it is just killed."""
+    for _ in range(3):
+        with NodeProcess("nodes.mock_sonar", module_domain) as process:
+            wait_until(
+                lambda process=process: has_imported_nodes(process),  # type: ignore[misc]
+                "the package nodes imported",
+                every_s=0.001,
+            )
+            process.send(number)
+            assert_ended_well(process)
+
+
+def has_imported_nodes(process: NodeProcess) -> bool:
+    """Whether the process handles SIGINT by now, as the package nodes has it do."""
+    with open(f"/proc/{process.process.pid}/status") as status:  # noqa: PTH123
+        caught = next(line for line in status if line.startswith("SigCgt"))
+    return bool(int(caught.split()[1], 16) >> (signal.SIGTERM - 1) & 1)
+
+
+def test_a_node_takes_a_second_name_and_remapped_topics(peer: Peer, module_domain: int) -> None:
+    remap = ("--ros-args", "-r", "/audio/mic_raw:=/elsewhere")
+    with NodeProcess("nodes.mock_audio", module_domain, name="ears", arguments=remap):
+        wait_until(lambda: peer.sees("ears"), "ears in the graph")
+        wait_until(lambda: peer.node.count_publishers("/elsewhere") == 1, "the remapped topic")
+
+
+def test_nodes_speak_russian_when_asked(module_domain: int) -> None:
+    with NodeProcess("nodes.hello", module_domain, lang="ru", params={"period": 0.1}) as process:
+        process.wait_for_words("Привет, ROS 2! Робот проснулся!", "Работаю уже 0.2 с.")
