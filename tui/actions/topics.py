@@ -1,4 +1,4 @@
-"""What can be done on the screen of topics."""
+"""What can be done on the screen of topics; each letter also under its Cyrillic key."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Filter(TopicsAction):
     """Narrow the list down."""
 
     id = "topics.filter"
-    key = "slash"
+    key = "slash,ctrl+f"
     title = N_("Filter")
     tooltip = N_("Show only topics whose name or type has the words that you type.")
     footer = True
@@ -34,7 +34,7 @@ class Pause(TopicsAction):
     """Hold the message still."""
 
     id = "topics.pause"
-    key = "p"
+    key = "p,з"
     title = N_("Pause")
     tooltip = N_("Hold the message still, or go on with the newest one.")
     footer = True
@@ -49,7 +49,7 @@ class CopyMessage(TopicsAction):
     """The message for the clipboard."""
 
     id = "topics.copy"
-    key = "y,c"
+    key = "y,c,н,с"
     title = N_("Copy")
     tooltip = N_("Copy the message as YAML, as `ros2 topic pub` takes it.")
     footer = True
@@ -64,9 +64,10 @@ class PictureOrTree(TopicsAction):
     """An image as a picture, or as its fields."""
 
     id = "topics.picture"
-    key = "i"
+    key = "i,ш"
     title = N_("Picture")
     tooltip = N_("Show an image as a picture, or as a tree of its fields.")
+    footer = True
 
     @classmethod
     def possible(cls, target: TopicsScreen) -> bool | None:
@@ -83,7 +84,7 @@ class SortByNext(TopicsAction):
     """Another column to sort by."""
 
     id = "topics.sort"
-    key = "s"
+    key = "s,ы"
     title = N_("Sort")
     tooltip = N_("Sort by the next column; a click on a title sorts by that one.")
     footer = True
@@ -98,7 +99,7 @@ class Reverse(TopicsAction):
     """The order turned round."""
 
     id = "topics.reverse"
-    key = "r"
+    key = "r,к"
     title = N_("Reverse")
     tooltip = N_("Turn the order of the topics round.")
 
@@ -113,7 +114,7 @@ class Housekeeping(TopicsAction):
     """Topics of ROS itself."""
 
     id = "topics.housekeeping"
-    key = "a"
+    key = "a,ф"
     title = N_("All")
     tooltip = N_("Show or hide topics of ROS itself: /rosout, /parameter_events.")
     footer = True
@@ -128,8 +129,8 @@ TOPICS_ACTIONS = (
     Filter,
     Pause,
     CopyMessage,
+    PictureOrTree,
     SortByNext,
     Reverse,
     Housekeeping,
-    PictureOrTree,
 )

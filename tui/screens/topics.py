@@ -12,7 +12,7 @@ from textual.widgets import Input, Static
 from graph import images
 from tui.actions import bindings
 from tui.actions.topics import TOPICS_ACTIONS
-from tui.i18n import _, ngettext
+from tui.i18n import N_, _, ngettext
 from tui.screens.base import DeckScreen
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.echo_yaml import yaml_text
@@ -40,6 +40,11 @@ class TopicsScreen(DeckScreen):
     """A table of topics and, of the chosen one, the newest message as a tree or a picture."""
 
     tab: ClassVar[str] = "topics"
+    about: ClassVar[str] = N_(
+        "Every topic of the robot with its type, who publishes and who listens, its rate and "
+        "bandwidth, and how old its newest message is. The chosen one is shown live below or "
+        "beside: as a tree that folds, an image as a picture. Where nothing comes, it says why."
+    )
     measure_all = True
     BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS)
     DEFAULT_CSS = """

@@ -42,9 +42,9 @@ class TopicHead(Widget):
     def render(self) -> Content:
         """Draw the lines."""
         name, type_name, state, below = self._lines
-        return Content.assemble(
-            (name, "bold"), "  ", (type_name, "dim"), "\n", state, "\n", (below, "dim")
-        )
+        lines = [Content.assemble((name, "bold"), "  ", (type_name, "dim"))]
+        lines += [Content(text) for text in (state, below) if text]
+        return Content("\n").join(lines)
 
 
 class TopicDetail(Vertical):
@@ -93,7 +93,10 @@ class TopicDetail(Vertical):
 
     def show_message(self, sample: Sample) -> None:
         """Show a new message of the topic that is shown."""
+        resized = self._sample is None or self._sample.size_bytes != sample.size_bytes
         self._sample = sample
+        if resized:
+            self._say()
         self.echo.show(sample.topic, sample.value)
 
     def show_picture(self, rgb: Pixels, caption: str) -> None:

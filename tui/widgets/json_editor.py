@@ -1,0 +1,116 @@
+"""A text field for JSON: coloured by hand, with the places that are wrong underlined and marked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+from rich.segment import Segment
+from textual.geometry import Offset
+from textual.strip import Strip
+from textual.widgets import TextArea
+
+from tui.widgets.json_tokens import token_at, tokens
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rich.style import Style
+    from rich.text import Text
+
+MARK = "✗"
+MARGIN = 2
+"""Cells that `TextArea` leaves between a line's number and its text."""
+
+
+class Place(NamedTuple):
+    """Where something is wrong, counted from 1."""
+
+    line: int
+    column: int
+
+
+class JsonEditor(TextArea):
+    """Edits JSON; Enter is a new line, and nothing here sends anything.
+
+    Highlighting hangs on `get_line`, which is there to be extended, and not on tree-sitter.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "json-editor--key",
+        "json-editor--string",
+        "json-editor--number",
+        "json-editor--word",
+        "json-editor--mark",
+        "json-editor--bad",
+        "json-editor--problem",
+    }
+    DEFAULT_CSS = """
+    JsonEditor {
+        border: none; padding: 0; height: 1fr; scrollbar-size: 1 1;
+        &:focus { border: none; }
+        & .json-editor--key { color: $text-primary; }
+        & .json-editor--string { color: $text-success; }
+        & .json-editor--number { color: $text-warning; }
+        & .json-editor--word { color: $text-accent; }
+        & .json-editor--mark { color: $text-muted; }
+        & .json-editor--bad { color: $text-error; }
+        & .json-editor--problem { color: $text-error; text-style: bold underline; }
+    }
+    """
+
+    def __init__(self, text: str = "", *, id: str | None = None) -> None:
+        super().__init__(
+            text, id=id, soft_wrap=True, show_line_numbers=True, tab_behavior="focus", compact=True
+        )
+        self.indent_width = 2
+        # A blink is bytes over the line twice a second, for as long as the screen is open.
+        self.cursor_blink = False
+        self._places: tuple[Place, ...] = ()
+
+    def show_problems(self, places: Iterable[Place]) -> None:
+        """Underline what stands at these places and mark their lines; none clears the marks."""
+        shown = tuple(places)
+        if shown != self._places:
+            self._places = shown
+            self.notify_style_update()
+            self.refresh()
+
+    def go_to(self, place: Place) -> None:
+        """Put the cursor to a place, as near as the text allows."""
+        row = max(0, min(place.line - 1, self.document.line_count - 1))
+        column = max(0, min(place.column - 1, len(self.document.get_line(row))))
+        self.move_cursor((row, column), center=True)
+        self.focus()
+
+    def replace_all(self, text: str) -> None:
+        """Put another text in place of this one, in a way that can be undone."""
+        self.replace(text, self.document.start, self.document.end)
+        self.move_cursor((0, 0))
+
+    def get_line(self, line_index: int) -> Text:
+        """The line with its tokens coloured and control characters harmless."""
+        line = super().get_line(line_index)
+        source = line.plain
+        if not source.isprintable():
+            line.plain = "\t".join(plain(part) for part in source.split("\t"))
+        for token in tokens(source):
+            line.stylize(self._style(token.kind), token.start, token.end)
+        for place in self._places:
+            if place.line - 1 == line_index:
+                line.stylize(self._style("problem"), *token_at(source, place.column - 1))
+        return line
+
+    def render_line(self, y: int) -> Strip:
+        """The line with a mark between its number and its text where something is wrong in it."""
+        strip = super().render_line(y)
+        row, column = self.wrapped_document.offset_to_location(Offset(0, y + self.scroll_offset.y))
+        beyond = y + self.scroll_offset.y >= self.wrapped_document.height
+        if column or beyond or not any(place.line - 1 == row for place in self._places):
+            return strip
+        before, after = self.gutter_width - MARGIN, self.gutter_width - MARGIN + 1
+        mark = Strip([Segment(MARK, self._style("problem"))], 1)
+        return Strip.join([strip.crop(0, before), mark, strip.crop(after)])
+
+    def _style(self, kind: str) -> Style:
+        return self.get_component_rich_style(f"json-editor--{kind}", partial=True)
