@@ -1,0 +1,204 @@
+"""A panel drawn from values: only the cells that changed are drawn again.
+
+It shows why there is nothing to draw, and greys what is no longer true.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, NamedTuple
+
+from rich.cells import cell_len, set_cell_size
+from rich.segment import Segment
+from rich.style import Style
+from textual.geometry import Region
+from textual.strip import Strip
+from textual.widget import Widget
+
+from graph.data import Trouble
+from tui.i18n import _
+from tui.widgets.plain import plain
+from tui.widgets.trouble import no_data_words, trouble_words
+from tui.widgets.words import word_strips
+
+LOOKS = ("muted", "good", "warn", "bad", "stop", "accent", "second", "strong", "alert")
+
+
+class Ink(NamedTuple):
+    """A text and how it looks: one of `LOOKS`, or plain. Only `alert` is not greyed when stale."""
+
+    text: str
+    look: str = ""
+
+
+Line = list[Ink]
+
+
+class Drawing(Widget):
+    """Base of panels: a subclass draws lines of `Ink` and calls `redraw` when its values change."""
+
+    ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"drawing--{look}" for look in LOOKS}
+    DEFAULT_CSS = """
+    Drawing {
+        height: 1fr;
+        width: 1fr;
+        min-height: 1;
+        .drawing--muted { color: $foreground 55%; }
+        .drawing--good { color: $text-success; text-style: bold; }
+        .drawing--warn { color: $text-warning; text-style: bold; }
+        .drawing--bad { color: $text-error; text-style: bold; }
+        .drawing--stop { background: $error; color: $background; text-style: bold; }
+        .drawing--accent { color: $text-accent; text-style: bold; }
+        .drawing--second { color: $text-primary; text-style: bold; }
+        .drawing--strong { text-style: bold; }
+        .drawing--alert { color: $text-warning; text-style: bold; }
+    }
+    """
+
+    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
+        """Begin with nothing to draw."""
+        super().__init__(id=id, classes=classes)
+        self._lines: list[Line] = []
+        self._trouble: Trouble | None = None
+        self._detail = ""
+        self._age_s: float | None = None
+
+    @property
+    def has_value(self) -> bool:
+        """Whether there is anything to draw."""
+        raise NotImplementedError
+
+    def draw(self, width: int, height: int) -> list[Line]:
+        """Draw the values into so many cells; lines that are missing stay blank."""
+        raise NotImplementedError
+
+    def show_trouble(
+        self, trouble: Trouble | None, detail: str = "", age_s: float | None = None
+    ) -> None:
+        """Tell why nothing comes (None: all is well), and the age of the newest message."""
+        state = (trouble, detail, age_s)
+        if state != (self._trouble, self._detail, self._age_s):
+            self._trouble, self._detail, self._age_s = state
+            self.redraw()
+
+    @property
+    def stale(self) -> bool:
+        """Whether the values drawn are no longer those of the moment."""
+        return self._trouble is not None and self.has_value
+
+    @property
+    def stale_words(self) -> str:
+        """For how long nothing has come, or why; empty while all is well."""
+        if self._trouble is None:
+            return ""
+        if self._age_s is not None:
+            return no_data_words(self._age_s)
+        return trouble_words(self._trouble)
+
+    def redraw(self) -> None:
+        """Draw what has changed."""
+        width, height = self.size
+        if not self.is_mounted or width < 1 or height < 1:
+            return
+        had, self._lines = self._lines, self._drawn(width, height)
+        regions = [
+            region
+            for y in range(height)
+            if (region := _difference(_at(had, y), _at(self._lines, y), y, width)) is not None
+        ]
+        if regions:
+            self.refresh(*regions)
+
+    def _drawn(self, width: int, height: int) -> list[Line]:
+        if not self.has_value:
+            return []
+        lines = self.draw(width, height)[:height]
+        return [_greyed(line) for line in lines] if self.stale else lines
+
+    def on_resize(self) -> None:
+        """Draw at the new size."""
+        width, height = self.size
+        self._lines = self._drawn(width, height) if width and height else []
+        self.refresh()
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        self.on_resize()
+
+    def render_line(self, y: int) -> Strip:
+        """One line: of the drawing, or of words in place of it."""
+        width, base = self.size.width, self.rich_style
+        if not self.has_value:
+            return self._words(y, width)
+        segments = [Segment(ink.text, self._style(ink.look)) for ink in _at(self._lines, y)]
+        return Strip(segments).adjust_cell_length(width, base)
+
+    def _style(self, look: str) -> Style:
+        return self.get_component_rich_style(f"drawing--{look}") if look else self.rich_style
+
+    def _words(self, y: int, width: int) -> Strip:
+        headline = _("waiting for the first message")
+        if self._trouble is not None:
+            headline = trouble_words(self._trouble, self._age_s)
+        words = (headline, plain(self._detail, 400))
+        strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)
+        line = y - max(0, (self.size.height - len(strips)) // 2)
+        blank = Strip.blank(width, self.rich_style)
+        return strips[line] if 0 <= line < len(strips) else blank
+
+
+def _at(lines: Sequence[Line], y: int) -> Line:
+    return lines[y] if y < len(lines) else []
+
+
+def _greyed(line: Line) -> Line:
+    return [ink if ink.look == "alert" else Ink(ink.text, "muted") for ink in line]
+
+
+def _difference(before: Line, after: Line, y: int, width: int) -> Region | None:
+    """The cells of a line that look different, from the first to the last of them."""
+    if before == after:
+        return None
+    old, new = _cells(before, width), _cells(after, width)
+    differ = [x for x in range(width) if old[x] != new[x]]
+    return Region(differ[0], y, differ[-1] - differ[0] + 1, 1) if differ else None
+
+
+def _cells(line: Line, width: int) -> list[tuple[str, str]]:
+    """(character, look) of each cell; the second cell of a wide character is empty."""
+    cells: list[tuple[str, str]] = []
+    for text, look in line:
+        for char in text:
+            cells.append((char, look))
+            cells.extend([("", look)] * (cell_len(char) - 1))
+    cells.extend([(" ", "")] * (width - len(cells)))
+    return cells
+
+
+def cells_of(line: Line) -> int:
+    """Cells that a line takes."""
+    return sum(cell_len(ink.text) for ink in line)
+
+
+def fit(text: str, width: int) -> str:
+    """The text in exactly so many cells, an ellipsis at its end where it is cut."""
+    if cell_len(text) > width > 0:
+        return set_cell_size(text, width - 1) + "…"
+    return set_cell_size(text, max(0, width))
+
+
+def beside(left: Line, right: Line, width: int) -> Line:
+    """Two lines at the two ends of one; the left one gives way where there is no room."""
+    taken = cells_of(right)
+    room = max(0, width - taken - 1)
+    line: Line = []
+    for ink in left:
+        cells = cell_len(ink.text)
+        if cells > room:
+            line.append(Ink(fit(ink.text, room), ink.look))
+            room = 0
+            break
+        line.append(ink)
+        room -= cells
+    return [*line, Ink(" " * (room + (1 if taken < width else 0))), *right]
