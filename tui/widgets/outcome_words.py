@@ -26,10 +26,12 @@ def setpoint(value: Mapping[str, Value]) -> tuple[float, float]:
 
 def drive_words(speed_m_s: float, steering_rad: float) -> str:
     """A setpoint with the side it steers to."""
-    side = _("left") if steering_rad > 0 else _("right") if steering_rad < 0 else _("straight")
-    return _("{speed:.2f} m/s, {steering:.2f} rad ({side})").format(
-        speed=speed_m_s, steering=steering_rad, side=side
-    )
+    words = _("{speed:.2f} m/s, {steering:.2f} rad, straight on")
+    if steering_rad > 0:
+        words = _("{speed:.2f} m/s, {steering:.2f} rad, to the left")
+    elif steering_rad < 0:
+        words = _("{speed:.2f} m/s, {steering:.2f} rad, to the right")
+    return words.format(speed=speed_m_s, steering=steering_rad)
 
 
 def wheel_words(value: Mapping[str, Value]) -> str:

@@ -34,7 +34,7 @@ TEMPLATES = (
 """,
     ),
     Template(
-        N_("Stop"),
+        N_("Stand still"),
         N_("It is too close. I stop."),
         """{
   "thought": "{thought}",

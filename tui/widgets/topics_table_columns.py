@@ -15,7 +15,7 @@ from tui.widgets.plain import plain
 UNKNOWN = "–"
 """Stands where there is no figure; the last column says why."""
 SortKey: TypeAlias = "tuple[float, str]"
-UNITS = ("B/s", "kB/s", "MB/s", "GB/s")
+UNITS = (N_("B/s"), N_("kB/s"), N_("MB/s"), N_("GB/s"))
 STEP = 1000
 SOON_S, MINUTE_S, HOUR_S = 1, 60, 3600
 WHOLE_FROM = 100
