@@ -1,0 +1,227 @@
+"""`deck up`, `ps`, `logs` and `down`: profiles that run without a terminal."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from launcher import client
+from launcher.catalog import find_profile
+from launcher.errors import ConnectionLostError, NotRunningError, SessionError, UnknownNodeError
+from launcher.events import LogEvent, StatusEvent
+from launcher.profile import load_profile
+from tui.cli.health import settled, well
+from tui.cli.output import BOLD, DIM, RED, Paint, say_error, table, write
+from tui.cli.report import TextReport, status_fields
+from tui.i18n import _, language, ngettext, pick, said
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Collection, Iterable, Sequence
+
+    from launcher.status import NodeStatus, SessionInfo
+
+UP_WITHIN_S = 60.0
+"""When `up` stops waiting, whatever the profile's own limits are."""
+
+
+def up_command(options: Namespace) -> int:
+    """Start a profile in the background, wait until it is up, show its nodes."""
+    return asyncio.run(_up(options))
+
+
+def ps_command(options: Namespace) -> int:
+    """Show what runs."""
+    return asyncio.run(_ps(options))
+
+
+def logs_command(options: Namespace) -> int:
+    """Show the log of a node, or of all."""
+    return asyncio.run(_logs(options))
+
+
+def down_command(options: Namespace) -> int:
+    """Stop what runs."""
+    return asyncio.run(_down(options))
+
+
+async def _up(options: Namespace) -> int:
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+    )
+    link = await client.launch(profile, foreground=False, node_lang=language())
+    try:
+        try:
+            await asyncio.wait_for(_settle(link), UP_WITHIN_S)
+        except asyncio.TimeoutError:
+            say_error(_("not all of it is up yet; `deck ps` tells how it goes on"))
+        optional = {name for name, node in profile.nodes.items() if node.optional}
+        _show(link.session, tuple(link.nodes.values()), optional)
+        healthy = all(well(node, optional) for node in link.nodes.values())
+    finally:
+        await link.aclose()
+    if healthy:
+        write(_("`deck attach` shows it, `deck down` stops it"))
+    else:
+        say_error(_("not all is well; `deck logs NODE` tells more, `deck down` stops it"))
+    return 0 if healthy else 1
+
+
+async def _settle(link: client.SupervisorClient) -> None:
+    """Wait until every node is up, or has failed to come up."""
+    async for event in link.events():
+        if isinstance(event, StatusEvent) and settled(link.nodes):
+            return
+    raise ConnectionLostError(_("the supervisor ended while the nodes were starting"))
+
+
+async def _ps(options: Namespace) -> int:
+    found: list[tuple[SessionInfo, tuple[NodeStatus, ...]]] = []
+    for session in client.running():
+        try:
+            link = await client.attach(session.run_id)
+        except SessionError:
+            continue  # It has ended just now.
+        found.append((link.session, tuple(link.nodes.values())))
+        await link.aclose()
+    if options.json:
+        write(json.dumps([_as_json(*each) for each in found], ensure_ascii=False, indent=2))
+        return 0
+    if not found:
+        say_error(str(said(NotRunningError().args[0])))
+    names = [session.name for session, _nodes in found]
+    for index, (session, nodes) in enumerate(found):
+        if index:
+            write("")
+        _show(session, nodes)
+        if names.count(session.name) > 1:
+            write(_("to name this one: {run_id}").format(run_id=session.run_id))
+    return 0
+
+
+async def _logs(options: Namespace) -> int:
+    link = await _attached(options.profile, options.node)
+    try:
+        names = [options.node] if options.node else list(link.nodes)
+        report = TextReport(write, names, Paint(sys.stdout))
+        last: dict[str, int] = {}
+        if options.lines:
+            for line in await link.history(options.node, options.lines):
+                report.log(line)
+                last[line.node] = line.seq
+        if not options.follow:
+            return 0
+        async for event in link.events():
+            if isinstance(event, LogEvent):
+                for line in event.lines:
+                    if options.node in (None, line.node) and line.seq > last.get(line.node, 0):
+                        report.log(line)
+                for node, count in event.skipped.items():
+                    if options.node in (None, node):
+                        report.skipped(node, count)
+        return 0
+    finally:
+        await link.aclose()
+
+
+async def _down(options: Namespace) -> int:
+    link = await client.attach(options.name)
+    session, count = link.session, len(link.nodes)
+    await link.shutdown()
+    words = ngettext("{name} stopped, {count} node", "{name} stopped, {count} nodes", count)
+    write(words.format(name=session.name, count=count))
+    return 0
+
+
+async def _attached(name: str | None, node: str | None) -> client.SupervisorClient:
+    """Attach by name; without one, to the only session that has the node."""
+    sessions = client.running()
+    if name is not None or node is None or len(sessions) < 2:
+        link = await client.attach(name)
+        if node is not None and node not in link.nodes:
+            known = tuple(link.nodes)
+            await link.aclose()
+            raise UnknownNodeError(node, known)
+        return link
+    having: list[client.SupervisorClient] = []
+    known_nodes: list[str] = []
+    for session in sessions:
+        link = await client.attach(session.run_id)
+        known_nodes += link.nodes
+        if node in link.nodes:
+            having.append(link)
+        else:
+            await link.aclose()
+    if len(having) == 1:
+        return having[0]
+    for link in having:
+        await link.aclose()
+    if not having:
+        raise UnknownNodeError(node, known_nodes)
+    return await client.attach(None)
+
+
+def _show(
+    session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection[str] = ()
+) -> None:
+    paint = Paint(sys.stdout)
+    where = _("domain {domain}, {hardware} hardware, supervisor {pid}").format(
+        domain=session.domain, hardware=session.hardware, pid=session.supervisor_pid
+    )
+    write(f"{paint(session.name, BOLD)}  {pick(session.title)}  {paint(f'({where})', DIM)}")
+    head = (_("NODE"), _("STATE"), "PID", _("UPTIME"), _("RESTARTS"), "CPU %", _("MB"), _("DETAIL"))
+    rows = [_row(node) for node in nodes]
+    first, *lines = table(head, rows)
+    write(paint(first, DIM))
+    for node, line in zip(nodes, lines, strict=True):
+        write(line if well(node, optional) else paint(line, RED))
+
+
+def _row(node: NodeStatus) -> tuple[str, ...]:
+    return (
+        node.name,
+        _(node.state.value),
+        "" if node.pid is None else str(node.pid),
+        "" if node.uptime_s is None else _duration(node.uptime_s),
+        str(node.restarts),
+        "" if node.cpu_percent is None else f"{node.cpu_percent:.1f}",
+        "" if node.memory_bytes is None else f"{node.memory_bytes / 1e6:.0f}",
+        said(node.detail),
+    )
+
+
+def _duration(seconds: float) -> str:
+    """Return `12 s`, `3:07` or `1:02:03`."""
+    whole = int(seconds)
+    if whole < 60:
+        return _("{seconds} s").format(seconds=whole)
+    hours, rest = divmod(whole, 3600)
+    minutes = f"{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"
+    return f"{hours}:{minutes}" if hours else minutes
+
+
+def _as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, object]:
+    return {
+        "name": session.name,
+        "run_id": session.run_id,
+        "profile": session.profile,
+        "domain": session.domain,
+        "hardware": session.hardware,
+        "foreground": session.foreground,
+        "supervisor_pid": session.supervisor_pid,
+        "log_dir": session.log_dir,
+        "nodes": [
+            {
+                **status_fields(node),
+                "uptime_s": node.uptime_s,
+                "cpu_percent": node.cpu_percent,
+                "memory_bytes": node.memory_bytes,
+            }
+            for node in nodes
+        ],
+    }

@@ -1,0 +1,53 @@
+"""Whether the nodes of a run are well, told from their statuses alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.status import NodeState
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from launcher.status import NodeStatus
+
+NOT_READY = "not ready"
+"""How the supervisor begins its words about a node whose time to become ready is up."""
+
+
+def serves(node: NodeStatus) -> bool:
+    """Whether those that need the node may start."""
+    if node.state is NodeState.RUNNING:
+        return not node.detail.startswith(NOT_READY)
+    return node.state is NodeState.READY
+
+
+def settled(nodes: Mapping[str, NodeStatus]) -> bool:
+    """Whether nothing is on its way up: each node is ready, has ended, or waits in vain."""
+    return not any(
+        node.state is NodeState.STARTING
+        or (
+            node.state is NodeState.WAITING
+            and all(serves(nodes[name]) for name in node.needs if name in nodes)
+        )
+        for node in nodes.values()
+    )
+
+
+def over(nodes: Mapping[str, NodeStatus]) -> bool:
+    """Whether every node has ended and none will be started again."""
+    ended = (NodeState.EXITED, NodeState.FAILED)
+    stuck = settled(nodes)
+    return all(
+        node.state in ended or (stuck and node.state is NodeState.WAITING)
+        for node in nodes.values()
+    )
+
+
+def well(node: NodeStatus, optional: Collection[str] = ()) -> bool:
+    """Whether a node has done what its profile promised; asked before anything is stopped."""
+    if node.name in optional:
+        return True
+    if node.state is NodeState.EXITED:
+        return not node.restarts and not node.exit_code and node.signal is None
+    return serves(node) and not node.restarts

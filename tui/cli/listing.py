@@ -1,0 +1,90 @@
+"""`deck list` and `deck check`: what there is to start, and what is wrong with it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from launcher.catalog import find_profile, list_profiles
+from launcher.errors import ProfileError
+from launcher.profile import load_profile
+from launcher.profile_text import shown
+from tui.cli.output import DIM, RED, YELLOW, Paint, write
+from tui.i18n import _, ngettext, pick, said
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from pathlib import Path
+
+    from launcher.catalog import ProfileEntry
+    from launcher.errors import ProfileProblem
+
+
+def list_command(options: Namespace) -> int:
+    """Show every profile; broken ones with their first problem."""
+    entries = list_profiles()
+    if options.json:
+        write(json.dumps([_as_json(entry) for entry in entries], ensure_ascii=False, indent=2))
+        return 0
+    width = max((len(entry.name) for entry in entries), default=0)
+    paint = Paint(sys.stdout)
+    for entry in entries:
+        name = entry.name.ljust(width)
+        if entry.error:
+            first = said(entry.problems[0].words) if entry.problems else entry.error
+            write(f"{name}  {paint(_('broken'), RED)}: {first}")
+            continue
+        nodes = paint(_("nodes: {names}").format(names=", ".join(entry.nodes)), DIM)
+        write(f"{name}  {pick(entry.title)}")
+        write(f"{'':{width}}  {nodes}")
+    return 0
+
+
+def check_command(options: Namespace) -> int:
+    """Say what is wrong with one profile or with all; 0 if nothing is."""
+    if options.profile:
+        paths = [find_profile(options.profile)]
+    else:
+        paths = [entry.path for entry in list_profiles()]
+    return max([_check(path, options) for path in paths], default=0)
+
+
+def _check(path: Path, options: Namespace) -> int:
+    paint = Paint(sys.stdout)
+    try:
+        profile = load_profile(
+            path,
+            hardware=options.hardware,
+            overrides=options.overrides,
+            domain=options.domain,
+        )
+    except ProfileError as error:
+        for problem in error.problems:
+            write(_line(problem, paint, RED))
+        return error.exit_code
+    for problem in profile.warnings:
+        write(_line(problem, paint, YELLOW, _("warning") + ": "))
+    count = len(profile.nodes)
+    nodes = ngettext("{count} node", "{count} nodes", count).format(count=count)
+    write(f"{shown(path)}: {_('all is well')}, {nodes}")
+    return 0
+
+
+def _line(problem: ProfileProblem, paint: Paint, colour: str, kind: str = "") -> str:
+    words = said(problem.words)
+    where = f"{problem.where}: "
+    return paint(where, colour) + kind + words.removeprefix(where)
+
+
+def _as_json(entry: ProfileEntry) -> dict[str, object]:
+    return {
+        "name": entry.name,
+        "path": str(entry.path),
+        "title": dict(entry.title),
+        "about": dict(entry.about),
+        "lesson": entry.lesson,
+        "nodes": list(entry.nodes),
+        "panels": list(entry.panels),
+        "error": entry.error,
+    }

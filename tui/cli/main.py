@@ -1,0 +1,71 @@
+"""`deck`: finds the command, imports only what it needs, and ends with a code that means something.
+
+0 all went well, 1 something failed, 2 what was asked for cannot be right, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from launcher.errors import LauncherError
+from tui.cli.arguments import parser_of, speak, split, wanted_language
+from tui.cli.output import drop_output, say_error
+from tui.i18n import LANGUAGES, detect, said, set_language
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Sequence
+
+HANDLERS = {
+    "open": ("tui.cli.screen", "open_command"),
+    "attach": ("tui.cli.screen", "attach_command"),
+    "run": ("tui.cli.run", "run_command"),
+    "list": ("tui.cli.listing", "list_command"),
+    "check": ("tui.cli.listing", "check_command"),
+    "up": ("tui.cli.background", "up_command"),
+    "ps": ("tui.cli.background", "ps_command"),
+    "logs": ("tui.cli.background", "logs_command"),
+    "down": ("tui.cli.background", "down_command"),
+    "doctor": ("tui.cli.doctor", "doctor_command"),
+}
+"""Command to module and function: only the module of the command in hand is imported."""
+INTERRUPTED = 130
+READER_GONE = 141
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; return what to exit with."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    asked = wanted_language(words)
+    set_language(detect(asked if asked in LANGUAGES else None))
+    speak()
+    command, rest = split(words)
+    try:
+        options = parser_of(command).parse_args(rest)
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 2
+    try:
+        return _run(command, options)
+    except LauncherError as error:
+        return complain(error)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        drop_output()
+        return READER_GONE
+
+
+def complain(error: LauncherError) -> int:
+    """Tell an error to standard error; return its exit code."""
+    for part in error.args:
+        say_error(said(part) if isinstance(part, str) else str(part))
+    return error.exit_code
+
+
+def _run(command: str, options: Namespace) -> int:
+    module, function = HANDLERS[command]
+    code: int = getattr(import_module(module), function)(options)
+    sys.stdout.flush()
+    return code

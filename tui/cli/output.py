@@ -1,0 +1,58 @@
+"""Writing to standard output: colour where it is wanted, tables, and a reader that may be slow."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+RED, GREEN, YELLOW, DIM, BOLD = "31", "32", "33", "2", "1"
+PREFIX_COLOURS = ("36", "35", "32", "34", "33", "96", "95", "92", "94", "93")
+"""For the names of nodes, taken in turn."""
+
+
+class Paint:
+    """Colours for a stream, or none: not a terminal, NO_COLOR, a terminal without colour."""
+
+    def __init__(self, stream: TextIO, environ: Mapping[str, str] | None = None) -> None:
+        """Decide once."""
+        env = os.environ if environ is None else environ
+        self.wanted = stream.isatty() and not env.get("NO_COLOR") and env.get("TERM") != "dumb"
+
+    def __call__(self, text: str, *codes: str) -> str:
+        """Return the text in these colours."""
+        return f"\x1b[{';'.join(codes)}m{text}\x1b[0m" if self.wanted and codes else text
+
+
+def say_error(text: str) -> None:
+    """Write to standard error, whatever became of it."""
+    try:
+        sys.stderr.write(text + "\n")
+        sys.stderr.flush()
+    except (OSError, ValueError):
+        pass
+
+
+def write(text: str) -> None:
+    """Write a line to standard output, at once."""
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table, columns as wide as they need to be."""
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=False)]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
+        for row in (head, *rows)
+    ]
+
+
+def drop_output() -> None:
+    """Lead standard output to nowhere: its reader has gone, and nobody shall trip over that."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)

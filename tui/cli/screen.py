@@ -1,0 +1,80 @@
+"""`deck` and `deck attach`: the screen, if there is a terminal to show it on."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import metadata
+from typing import TYPE_CHECKING
+
+from launcher.catalog import find_profile
+from launcher.errors import NotRunningError, SeveralRunningError
+from tui.cli.output import say_error, write
+from tui.i18n import _, language
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+
+def open_command(options: Namespace) -> int:
+    """Show the screen; without a terminal do as `deck run` does."""
+    if options.version:
+        write(f"deck {metadata.version('deck-robot')}")
+        return 0
+    if not has_terminal():
+        return _without_screen(options)
+    from tui.app import run_screen
+
+    return run_screen(
+        None if options.profile is None else find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=tuple(options.overrides),
+        domain=options.domain,
+        lang=language(),
+        attach=None,
+    )
+
+
+def attach_command(options: Namespace) -> int:
+    """Show the screen of a profile that runs in the background."""
+    if not has_terminal():
+        say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` do without"))
+        return 2
+    name = options.name or _the_only_one()
+    from tui.app import run_screen
+
+    return run_screen(None, lang=language(), attach=name)
+
+
+def _the_only_one() -> str:
+    """Return the run that there is to attach to; an error if there is a choice, or none."""
+    from launcher.client import running
+
+    sessions = running()
+    if not sessions:
+        raise NotRunningError
+    if len(sessions) > 1:
+        names = [session.name for session in sessions]
+        different = len(set(names)) == len(names)
+        raise SeveralRunningError(names if different else [each.run_id for each in sessions])
+    return sessions[0].name
+
+
+def has_terminal() -> bool:
+    """Whether a screen can be drawn and keys can be read."""
+    streams = (sys.stdin, sys.stdout)
+    return all(stream is not None and stream.isatty() for stream in streams) and os.environ.get(
+        "TERM", ""
+    ) not in ("", "dumb")
+
+
+def _without_screen(options: Namespace) -> int:
+    if options.profile is None:
+        say_error(
+            _("there is no terminal to draw on; name a profile: deck run 09-brain (deck list)")
+        )
+        return 2
+    from tui.cli.run import run_command
+
+    options.seconds, options.json = None, False
+    return run_command(options)
