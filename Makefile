@@ -29,7 +29,7 @@ help:
 setup: .venv/.ready
 
 .venv/.ready: pyproject.toml $(shell find interfaces)
-	@python=$$(sh scripts/find-python.sh) && exec "$$python" scripts/setup.py .venv
+	@python=$$(sh scripts/find-python.sh) && exec "$$python" scripts/environment.py .venv
 
 run: .venv/.ready
 	@if [ -t 1 ]; then exec .venv/bin/deck $(PROFILE) $(ARGS); fi; \
@@ -45,4 +45,4 @@ lint: .venv/.ready
 	@.venv/bin/lint-imports
 
 clean:
-	rm -rf .venv .setup.log .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv build .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache

@@ -1,6 +1,6 @@
 """Make or bring up to date the virtual environment that `make` works in.
 
-Usage: setup.py VENV, run by the Python that the environment is to be made of.
+Usage: environment.py VENV, run by the Python that the environment is to be made of.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import contextlib
 import fcntl
 import hashlib
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -19,12 +20,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parent.parent
-LOG = ROOT / ".setup.log"
+WORK = ROOT / "build" / "setup"
 TAIL = 25
 
 
 class StepError(Exception):
-    """A command of the set-up ended with an error; its output is in the log."""
+    """A command of the set-up ended with an error."""
+
+    def __init__(self, what: str, log: Path) -> None:
+        super().__init__(what)
+        self.log = log
 
 
 def say(text: str, end: str = "\n") -> None:
@@ -45,23 +50,38 @@ def only_one() -> Iterator[None]:
         os.close(folder)
 
 
-def step(what: str, *command: str | Path) -> None:
-    """Run one command with its output in the log."""
-    started = time.monotonic()
-    say(f"  {what} ... ", end="")
-    with LOG.open("ab") as log:
-        log.write(os.fsencode(f"\n$ {' '.join(map(str, command))}\n"))
-        log.flush()
-        code = subprocess.call(
-            command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=log, stderr=log, close_fds=False
-        )
-    if code:
-        say("failed")
-    if code < 0:
-        raise ChildProcessError(f"{what}: killed by signal {-code}")
-    if code:
-        raise StepError(what)
-    say(f"{time.monotonic() - started:.0f} s")
+class Step:
+    """One command of the set-up, under way, with a log of its own."""
+
+    def __init__(self, what: str, *command: str | Path, **environ: str) -> None:
+        self.what = what
+        self.log = WORK / f"{what.split(maxsplit=1)[0].lower()}.log"
+        self.started = time.monotonic()
+        with self.log.open("wb") as log:
+            self.process = subprocess.Popen(
+                command,
+                cwd=ROOT,
+                env=os.environ | environ,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                close_fds=False,
+            )
+
+    def finish(self) -> None:
+        """Wait for the command and say how long it took."""
+        say(f"  {self.what} ... ", end="")
+        code = self.process.wait()
+        say(f"{time.monotonic() - self.started:.0f} s" if code == 0 else "failed")
+        if code < 0:
+            raise ChildProcessError(f"{self.what}: killed by signal {-code}")
+        if code:
+            raise StepError(self.what, self.log)
+
+    def abandon(self) -> None:
+        """Stop the command, if it is still under way."""
+        self.process.kill()
+        self.process.wait()
 
 
 def fingerprint(folder: Path) -> str:
@@ -100,7 +120,9 @@ class Environment:
     def update(self) -> None:
         """Bring the environment to what pyproject.toml and interfaces/ ask for."""
         if not self.is_sound():
-            step("virtual environment", sys.executable, "-m", "venv", "--clear", self.folder)
+            Step(
+                "Virtual environment", sys.executable, "-m", "venv", "--clear", self.folder
+            ).finish()
         # What pip left half done looks whole to the next pip. When pip itself gives
         # up it undoes its work; when it is killed, this mark stays behind.
         self.unfinished.touch()
@@ -114,14 +136,39 @@ class Environment:
 
     def install(self) -> None:
         """Install Deck with all it needs, and the message types if they have changed."""
-        pip = (self.python, "-m", "pip", "install", "--disable-pip-version-check")
-        step("Deck, ROS 2 and their libraries", *pip, "--editable", ".[ros,test]")
         wanted = fingerprint(ROOT / "interfaces")
         if read(self.interfaces) == wanted.encode():
+            self.install_deck()
             return
+        wheels = WORK / "wheels"
+        shutil.rmtree(wheels, ignore_errors=True)
+        # The build has a Python environment of its own and need not wait for this one.
+        # It starts Pythons of this one, though, which must not load what is half there.
+        build = Step(
+            "Message types, meanwhile",
+            *self.pip("wheel", "--no-deps", "--wheel-dir", wheels, "./interfaces"),
+            _ROS_WHEELS_BOOTSTRAP_COMPLETE="1",
+            PIP_NO_COMPILE="1",
+        )
+        try:
+            self.install_deck()
+            build.finish()
+        finally:
+            build.abandon()
         self.interfaces.unlink(missing_ok=True)
-        step("message types in interfaces/", *pip, "--force-reinstall", "--no-deps", "./interfaces")
+        force = ("--force-reinstall", "--no-deps", "--no-index")
+        Step("Installing them", *self.pip("install", *force, *wheels.iterdir())).finish()
         self.interfaces.write_text(wanted)
+
+    def install_deck(self) -> None:
+        """Install Deck itself, editable, with ROS 2 and the tools of the tests."""
+        Step(
+            "Libraries of Deck and ROS 2", *self.pip("install", "--editable", ".[ros,test]")
+        ).finish()
+
+    def pip(self, *words: str | Path) -> tuple[str | Path, ...]:
+        """Return the command that runs this environment's pip."""
+        return (self.python, "-m", "pip", "--disable-pip-version-check", *words)
 
 
 def read(path: Path) -> bytes:
@@ -137,7 +184,7 @@ def set_up(environment: Environment) -> None:
             return
         version = "{}.{}.{}".format(*sys.version_info)
         say(f"deck: setting up {environment.folder} with Python {version}, 1 to 3 minutes at first")
-        LOG.write_bytes(b"")
+        WORK.mkdir(parents=True, exist_ok=True)
         environment.update()
         say("deck: set-up complete")
 
@@ -147,8 +194,8 @@ def main(folder: str) -> int:
     try:
         set_up(Environment(Path(folder).absolute()))
     except StepError as failed:
-        say("\n".join(read(LOG).decode(errors="replace").splitlines()[-TAIL:]))
-        say(f"deck: failed at: {failed}; the whole log is in {LOG}")
+        say("\n".join(read(failed.log).decode(errors="replace").splitlines()[-TAIL:]))
+        say(f"deck: failed at: {failed}; the whole log is in {failed.log}")
     except OSError as error:
         say(f"deck: cannot set up here: {error}")
     except KeyboardInterrupt:
