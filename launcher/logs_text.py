@@ -40,10 +40,8 @@ def plain_text(data: bytes) -> tuple[str, Severity | None]:
 
 
 def _suggested(text: str) -> Severity | None:
-    first = _COLOUR.search(text)
-    if first is None:
-        return None
-    for part in first.group(1).replace(":", ";").split(";"):
-        if part in _COLOURS:
-            return _COLOURS[part]
+    for sequence in _COLOUR.finditer(text):
+        for part in sequence.group(1).replace(":", ";").split(";"):
+            if part in _COLOURS:
+                return _COLOURS[part]
     return None

@@ -87,16 +87,16 @@ class Spawner:
         finally:
             self._pending.pop(request_id, None)
         self._groups.add(pid)
+        with contextlib.suppress(OSError):  # A new server is told which groups there are.
+            await self._send(json.dumps({"kind": "adopt", "groups": [pid]}).encode(), ())
         return pid
 
     async def forget(self, pid: int) -> None:
         """Say that a started process and its group are no more."""
         if pid in self._groups:
             self._groups.discard(pid)
-            try:
+            with contextlib.suppress(OSError):
                 await self._send(json.dumps({"kind": "forget", "groups": [pid]}).encode(), ())
-            except OSError:
-                return  # A new server is told which groups there are.
 
     def go_cold(self) -> None:
         """Replace the server by one that imports nothing: no node of this run needs it warm."""

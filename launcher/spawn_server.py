@@ -13,6 +13,7 @@ whatever it has left running (`launcher.spawn_server_undertaker`).
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import select
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 MAX_REQUEST = 1 << 20
 MAX_FDS = 3
+COLLECT_EVERY_S = 0.05
+"""While there are intermediates that have not been seen to exit."""
 
 
 class SpawnServer:
@@ -41,6 +44,7 @@ class SpawnServer:
         self._link = link
         self._supervisor = supervisor
         self._preload = preload
+        self._intermediates: set[int] = set()
         self._waiting: list[tuple[dict[str, Any], list[int]]] = []
         self.groups: set[int] = set()
 
@@ -60,13 +64,16 @@ class SpawnServer:
                 task = self._take(json.loads(packet), fds)
             else:
                 self._preload.step()
-                continue
+                task = None
             if task is not None:
                 return task
 
     def _request_is_there(self) -> bool:
         """Wait for a request, but do not wait while there is something to be imported."""
-        timeout = 0.0 if not self._preload.done else None
+        timeout = None if self._preload.done else 0.0
+        if self._intermediates:
+            self._collect()
+            timeout = COLLECT_EVERY_S if timeout is None else timeout
         return bool(select.select([self._link], [], [], timeout)[0])
 
     def _take(self, request: dict[str, Any], fds: list[int]) -> Callable[[], None] | None:
@@ -85,50 +92,45 @@ class SpawnServer:
 
     def _fork(self, request: dict[str, Any], fds: list[int]) -> Callable[[], None] | None:
         birth = Birth.from_request(request, fds, self._supervisor, self._preload.broken)
-        read, write = os.pipe()
         try:
             pid = os.fork()
         except OSError as problem:
-            node, error = 0, str(problem.strerror)
+            _answer(self._link, {"id": request["id"], "error": problem.strerror})
         else:
             if pid == 0:
-                return _fork_on(birth, write)
-            os.waitpid(pid, 0)
-            os.set_blocking(read, False)
-            node, error = _reported(read)
-        for fd in (read, write, *fds):
+                self._waiting.clear()
+                return _fork_on(birth, self._link, request["id"])
+            self._intermediates.add(pid)
+        for fd in fds:
             os.close(fd)
-        self._answer(request["id"], node, error)
         return None
 
-    def _answer(self, request_id: int, node: int, error: str) -> None:
-        if node:
-            self.groups.add(node)
-        answer = {"id": request_id, "error": error} if error else {"id": request_id, "pid": node}
-        try:
-            self._link.send(json.dumps(answer).encode())
-        except OSError:
-            return  # The supervisor has just gone; the next read says so.
+    def _collect(self) -> None:
+        for pid in tuple(self._intermediates):
+            if os.waitpid(pid, os.WNOHANG)[0] == pid:
+                self._intermediates.remove(pid)
 
 
-def _reported(fd: int) -> tuple[int, str]:
-    """Return the number of the node that the intermediate has forked, or why there is none."""
-    try:
-        return int(os.read(fd, 32)), ""
-    except (BlockingIOError, ValueError):
-        return 0, "the system refuses another process"
+def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[], None]:
+    """Fork the node, answer for it, and exit: what comes after runs in the node alone.
 
-
-def _fork_on(birth: Birth, report: int) -> Callable[[], None]:
-    """Fork the node and exit: what comes after runs in the node alone."""
+    The server does not wait for that: meanwhile it forks for the next request.
+    """
     try:
         pid = os.fork()
-    except OSError:
+    except OSError as problem:
+        _answer(link, {"id": request_id, "error": problem.strerror})
         os._exit(1)
     if pid:
-        os.write(report, str(pid).encode())
+        _answer(link, {"id": request_id, "pid": pid})
         os._exit(0)
     return lambda: become(birth)
+
+
+def _answer(link: socket.socket, answer: dict[str, Any]) -> None:
+    # Without a supervisor nobody waits for it, and the next read says so.
+    with contextlib.suppress(OSError):
+        link.send(json.dumps(answer).encode())
 
 
 def main() -> None:

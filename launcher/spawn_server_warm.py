@@ -47,7 +47,9 @@ class Preload:
         self._steps = self._all_steps()
 
     def step(self) -> None:
-        """Import the next thing."""
+        """Import the next thing, if there is one."""
+        if self.done:
+            return
         try:
             if next(self._steps, None) is None:
                 self.done = True

@@ -267,10 +267,12 @@ class Node:
             self._become(NodeState.RUNNING, serves=True)
             return
         self._become(NodeState.STARTING, say("waits for {what}", what=_what(plan.ready)))
+        clock = self._around.clock
         ready = asyncio.ensure_future(self._around.ready(plan.ready))
+        came = asyncio.Event()
+        ready.add_done_callback(lambda _ready: came.set())
         try:
-            done, _ = await asyncio.wait([ready], timeout=plan.within_s)
-            if not done:
+            if not await clock.wait(came, plan.within_s):
                 words = say(
                     "not ready within {seconds:g} s: no {what}",
                     seconds=plan.within_s,
@@ -278,10 +280,10 @@ class Node:
                 )
                 self._become(NodeState.RUNNING, words)
                 self._around.say(plan.name, Severity.WARN, words)
-                done, _ = await asyncio.wait([ready], timeout=LATE_S)
-            if done:
-                ready.result()
-                self._become(NodeState.READY, serves=True)
+                if not await clock.wait(came, LATE_S):
+                    return
+            ready.result()
+            self._become(NodeState.READY, serves=True)
         except UnwatchableError:
             self._become(NodeState.RUNNING, say("whether it is ready cannot be seen"), serves=True)
         finally:

@@ -1,0 +1,388 @@
+"""A node's life, on a clock that the test moves and with processes that obey it."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from dataclasses import replace
+
+import pytest
+
+from launcher.process_exit import Exit
+from launcher.process_spawner import SpawnError
+from launcher.process_table import Process
+from launcher.readiness import Condition, UnwatchableError
+from launcher.status import NodeState, Severity
+from launcher.supervisor_node import LATE_S, Node
+from launcher.supervisor_plan import NodePlan
+from tests.unit.manual_clock import ManualClock, settle
+
+PLAN = NodePlan(name="sonar", command="nodes.sonar", argv=("sonar",), restart="on-failure")
+
+
+class FakeProcess:
+    """A process, perhaps with a grandchild, and the signals that each of them ends by."""
+
+    def __init__(self, pid: int, ends_by: set[int], grandchild_ends_by: set[int] | None) -> None:
+        self.pid = pid
+        self.ended: asyncio.Future[Exit] = asyncio.get_running_loop().create_future()
+        self.heard: list[tuple[int, int]] = []
+        self.closed = False
+        self._living = {pid: ends_by}
+        if grandchild_ends_by is not None:
+            self._living[pid + 1] = grandchild_ends_by
+
+    def left(self) -> list[Process]:
+        return [Process(pid, "fake", "S", 1, self.pid, self.pid, pid, 0) for pid in self._living]
+
+    def signal(self, process: Process, number: signal.Signals) -> None:
+        self.heard.append((process.pid, number))
+        if number in self._living[process.pid] or number == signal.SIGKILL:
+            self.end(process.pid, Exit(None, number.name))
+
+    def end(self, pid: int, how: Exit) -> None:
+        del self._living[pid]
+        if pid == self.pid:
+            self.ended.set_result(how)
+
+    async def close(self) -> None:
+        assert not self._living, "let go of while something of it was alive"
+        self.closed = True
+
+
+class FakeSession:
+    """Fits `launcher.supervisor_node.Surroundings`."""
+
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.started: list[FakeProcess] = []
+        self.ends_by: set[int] = {signal.SIGINT}
+        self.grandchild_ends_by: set[int] | None = None
+        self.refuses = ""
+        self.is_ready = asyncio.Event()
+        self.watchable = True
+        self.absent = ""
+        self.states: list[NodeState] = []
+        self.lines: list[str] = []
+
+    @property
+    def process(self) -> FakeProcess:
+        return self.started[-1]
+
+    async def launch(self, _plan: NodePlan) -> FakeProcess:
+        if self.refuses:
+            raise SpawnError(self.refuses)
+        number = 100 + 10 * len(self.started)
+        self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
+        return self.process
+
+    async def ready(self, _condition: Condition) -> None:
+        if not self.watchable:
+            raise UnwatchableError
+        await self.is_ready.wait()
+
+    def missing(self, _plan: NodePlan) -> str:
+        return self.absent
+
+    def last_words(self, _name: str) -> str:
+        return "no such port"
+
+    def say(self, _name: str, _severity: Severity, words: str) -> None:
+        self.lines.append(words)
+
+    def changed(self, node: Node) -> None:
+        self.states.append(node.state)
+
+
+@pytest.fixture
+async def session() -> FakeSession:
+    return FakeSession()
+
+
+async def crash(session: FakeSession) -> None:
+    session.process.end(session.process.pid, Exit(1))
+    await settle()
+
+
+async def started(session: FakeSession, plan: NodePlan = PLAN) -> Node:
+    node = Node(plan, session)
+    node.start()
+    await settle()
+    return node
+
+
+async def test_a_node_without_a_condition_runs_at_once(session: FakeSession) -> None:
+    node = await started(session)
+    status = node.status()
+    assert (status.state, status.pid, status.restarts) == (NodeState.RUNNING, 100, 0)
+    assert node.serves
+
+
+async def test_a_node_is_ready_when_its_condition_holds(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, ready=Condition("topic", "/sonar")))
+    assert (node.state, node.serves) == (NodeState.STARTING, False)
+    assert "/sonar" in node.detail
+    session.is_ready.set()
+    await settle()
+    assert (node.state, node.serves) == (NodeState.READY, True)
+
+
+async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, ready=Condition("node", "sonar"), within_s=7))
+    await session.clock.advance(7)
+    assert (node.state, node.serves) == (NodeState.RUNNING, False)
+    assert node.detail == "not ready within 7 s: no node sonar in the graph"
+    session.is_ready.set()
+    await settle()
+    assert (node.state, node.detail, node.serves) == (NodeState.READY, "", True)
+
+
+async def test_readiness_is_not_watched_for_ever(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, ready=Condition("node", "sonar")))
+    await session.clock.advance(10 + LATE_S)
+    session.is_ready.set()
+    await settle()
+    assert node.state is NodeState.RUNNING
+
+
+async def test_where_readiness_cannot_be_seen_nobody_waits_for_it(session: FakeSession) -> None:
+    session.watchable = False
+    node = await started(session, replace(PLAN, ready=Condition("node", "sonar")))
+    assert (node.state, node.serves) == (NodeState.RUNNING, True)
+
+
+async def test_a_node_waits_for_those_it_needs(session: FakeSession) -> None:
+    session.absent = "waits for camera"
+    node = await started(session)
+    assert (node.state, node.detail) == (NodeState.WAITING, "waits for camera")
+    session.absent = ""
+    node.needs_changed()
+    await settle()
+    assert node.state is NodeState.RUNNING
+
+
+async def test_a_node_that_waits_can_be_started_by_hand(session: FakeSession) -> None:
+    session.absent = "waits for camera"
+    node = await started(session)
+    node.start()
+    await settle()
+    assert node.state is NodeState.RUNNING
+
+
+async def test_a_node_that_waits_can_be_stopped(session: FakeSession) -> None:
+    session.absent = "waits for camera"
+    node = await started(session)
+    await node.stop()
+    session.absent = ""
+    node.needs_changed()
+    await settle()
+    assert (node.state, session.started) == (NodeState.EXITED, [])
+
+
+async def test_a_crash_is_told_and_the_node_started_again_after_a_while(
+    session: FakeSession,
+) -> None:
+    node = await started(session)
+    await crash(session)
+    assert node.state is NodeState.BACKOFF
+    assert node.detail == "exit code 1: no such port; again in 1 s"
+    assert node.status().exit_code == 1
+    await session.clock.advance(0.9)
+    assert len(session.started) == 1
+    await session.clock.advance(0.2)
+    assert (node.state, node.status().restarts) == (NodeState.RUNNING, 1)
+    assert node.status().exit_code is None
+
+
+async def test_a_crash_loop_ends_with_a_word_why(session: FakeSession) -> None:
+    node = await started(session)
+    for delay in (1, 2, 4, 8):
+        await crash(session)
+        await session.clock.advance(delay)
+    await crash(session)
+    assert node.state is NodeState.FAILED
+    assert node.detail == "given up after 5 ends in 15 s: exit code 1: no such port"
+    await session.clock.advance(300)
+    assert len(session.started) == 5
+
+
+async def test_a_node_given_up_can_be_started_by_hand(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, restart="never"))
+    await crash(session)
+    assert node.state is NodeState.FAILED
+    node.start()
+    await settle()
+    assert node.state is NodeState.RUNNING
+
+
+async def test_a_clean_end_is_an_end(session: FakeSession) -> None:
+    node = await started(session)
+    session.process.end(100, Exit(0))
+    await settle()
+    assert (node.state, node.detail) == (NodeState.EXITED, "ended")
+
+
+async def test_a_node_that_always_returns_returns_after_a_clean_end(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, restart="always"))
+    session.process.end(100, Exit(0))
+    await session.clock.advance(1)
+    assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
+
+
+@pytest.mark.parametrize("restart", ["on-failure", "always"])
+async def test_a_stop_by_hand_is_never_undone(session: FakeSession, restart: str) -> None:
+    node = await started(session, replace(PLAN, restart=restart))
+    await node.stop()
+    assert (node.state, node.detail) == (NodeState.EXITED, "stopped by SIGINT")
+    await session.clock.advance(300)
+    assert len(session.started) == 1
+
+
+async def test_a_stop_during_the_wait_for_the_next_try_is_never_undone(
+    session: FakeSession,
+) -> None:
+    node = await started(session)
+    await crash(session)
+    await node.stop()
+    await session.clock.advance(300)
+    assert (node.state, len(session.started)) == (NodeState.EXITED, 1)
+
+
+async def test_a_restart_while_one_is_pending_does_not_start_two(session: FakeSession) -> None:
+    node = await started(session)
+    await crash(session)
+    node.restart()
+    node.restart()
+    await session.clock.advance(300)
+    assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
+
+
+async def test_restarts_while_it_stops_start_one(session: FakeSession) -> None:
+    session.ends_by = set()
+    node = await started(session)
+    node.restart()
+    await settle()
+    assert node.state is NodeState.STOPPING
+    node.restart()
+    node.start()
+    await session.clock.advance(60)
+    assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
+
+
+async def test_a_start_while_it_stops_waits_for_the_end(session: FakeSession) -> None:
+    session.ends_by = {signal.SIGTERM}
+    node = await started(session)
+    stopping = asyncio.ensure_future(node.stop())
+    await settle()
+    node.start()
+    await settle()
+    assert (node.state, len(session.started)) == (NodeState.STOPPING, 1)
+    await session.clock.advance(5.1)
+    assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
+    stopping.cancel()
+
+
+async def test_a_stop_after_a_restart_counts(session: FakeSession) -> None:
+    session.ends_by = {signal.SIGTERM}
+    node = await started(session)
+    node.restart()
+    await settle()
+    stopping = asyncio.ensure_future(node.stop())
+    await session.clock.advance(60)
+    await stopping
+    assert (node.state, len(session.started)) == (NodeState.EXITED, 1)
+
+
+def signals_of(process: FakeProcess) -> list[int]:
+    heard = [number for pid, number in process.heard if pid == process.pid]
+    return list(dict.fromkeys(heard))
+
+
+async def test_a_stop_has_three_stages_of_five_seconds(session: FakeSession) -> None:
+    session.ends_by = set()
+    node = await started(session)
+    stopping = asyncio.ensure_future(node.stop())
+    await session.clock.advance(4.9)
+    assert signals_of(session.process) == [signal.SIGINT]
+    assert node.detail == "SIGINT sent, waits for 100 (fake)"
+    await session.clock.advance(0.2)
+    assert signals_of(session.process) == [signal.SIGINT, signal.SIGTERM]
+    await session.clock.advance(5)
+    assert signals_of(session.process) == [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]
+    await stopping
+    assert node.detail == "stopped by SIGKILL"
+
+
+async def test_asking_in_a_hurry_skips_the_waiting(session: FakeSession) -> None:
+    session.ends_by = set()
+    node = await started(session)
+    stopping = asyncio.ensure_future(node.stop())
+    await session.clock.advance(1)
+    hurrying = asyncio.ensure_future(node.stop(now=True))
+    await session.clock.advance(1)
+    await asyncio.gather(stopping, hurrying)
+    assert node.state is NodeState.EXITED
+
+
+async def test_a_stop_is_not_over_when_only_the_leader_has_ended(session: FakeSession) -> None:
+    session.grandchild_ends_by = {signal.SIGTERM}
+    node = await started(session)
+    stopping = asyncio.ensure_future(node.stop())
+    await session.clock.advance(3)
+    assert (node.state, node.detail) == (
+        NodeState.STOPPING,
+        "SIGINT sent, waits for 101 (fake)",
+    )
+    await session.clock.advance(2.3)
+    await stopping
+    assert (node.state, session.process.left()) == (NodeState.EXITED, [])
+
+
+async def test_what_a_crashed_node_leaves_is_stopped_before_it_returns(
+    session: FakeSession,
+) -> None:
+    session.grandchild_ends_by = {signal.SIGTERM}
+    node = await started(session)
+    await crash(session)
+    assert (node.state, node.detail) == (NodeState.STOPPING, "it ended, and left 101 (fake)")
+    await session.clock.advance(4.9)
+    assert (node.state, len(session.started)) == (NodeState.STOPPING, 1)
+    await session.clock.advance(0.3)
+    assert node.state is NodeState.BACKOFF
+    await session.clock.advance(1)
+    assert (node.state, len(session.started)) == (NodeState.RUNNING, 2)
+
+
+async def test_a_process_that_cannot_be_started_is_tried_again(session: FakeSession) -> None:
+    session.refuses = "too many processes"
+    node = await started(session)
+    assert node.detail == "cannot be started: too many processes; again in 1 s"
+    session.refuses = ""
+    await session.clock.advance(1)
+    assert node.state is NodeState.RUNNING
+
+
+async def test_a_command_that_does_not_exist_is_not_tried_again(session: FakeSession) -> None:
+    node = await started(session)
+    session.process.end(100, Exit(127))
+    await settle()
+    assert node.state is NodeState.FAILED
+
+
+async def test_an_optional_node_does_not_fail(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, optional=True, restart="never"))
+    session.process.end(100, Exit(127))
+    await settle()
+    assert (node.state, node.detail) == (NodeState.EXITED, "exit code 127: no such port")
+
+
+def test_words_can_be_translated() -> None:
+    from launcher.control_protocol import pack_text, unpack_text
+    from launcher.words import say
+
+    words = say("{why}; again in {seconds:g} s", why=say("exit code {code}", code=1), seconds=2.0)
+    packed = pack_text(words)
+    again = unpack_text(packed)
+    assert again == words == "exit code 1; again in 2 s"
+    assert again.template == words.template
+    assert again.values["why"].template == "exit code {code}"
