@@ -10,10 +10,10 @@ from textual import on
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Static, TextArea
 
-from robot.commands import CommandError, parse_llm
+from robot.commands import MAX_BYTES, CommandError, parse_llm
 from tui import clock
 from tui.actions import bindings
-from tui.actions.composer import COMPOSER_ACTIONS
+from tui.actions.composer import COMPOSER_ACTIONS, Send, SendAnyway
 from tui.i18n import N_, _
 from tui.screens.base import DeckScreen
 from tui.screens.composer_templates import TemplatesDialog
@@ -160,6 +160,11 @@ class ComposerScreen(DeckScreen):
             self._checking.stop()
         self._checking = self.set_timer(CHECKED_AFTER_S, self.check)
 
+    @on(JsonEditor.TooLong)
+    def _too_long(self) -> None:
+        words = _("Not pasted: {limit} bytes at most.").format(limit=MAX_BYTES)
+        self.notify(words, severity="warning", markup=False)
+
     @on(JsonVerdict.Wanted)
     def _wanted(self, message: JsonVerdict.Wanted) -> None:
         self.editor.go_to(message.place)
@@ -182,7 +187,9 @@ class ComposerScreen(DeckScreen):
         self.check()
         if self.problems and not anyway:
             self.go_to_next_problem()
-            words = _("Not sent: there are problems. {key} sends it anyway.").format(key="F7")
+            words = _("Not sent: there are problems. {key} sends it anyway.").format(
+                key=self.deck.key_of(SendAnyway)
+            )
             self.notify(words, severity="warning", markup=False)
             return
         graph = self.feed.graph
@@ -243,7 +250,8 @@ class ComposerScreen(DeckScreen):
         self._title("#composer-came", _("What came of it"))
         story, now_s = self._story, clock.now()
         if story is None:
-            self.outcome.show(_("Nothing was sent yet."), ())
+            hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.key_of(Send))
+            self.outcome.show(f"{_('Nothing was sent yet.')} {hint}", ())
             return
         at = time.strftime("%H:%M:%S", time.localtime(story.sent_s))
         self.outcome.show(_("Sent at {time}").format(time=at), story.entries(now_s))

@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from rich.segment import Segment
+from rich.text import Text
 from textual.geometry import Offset
+from textual.message import Message
 from textual.strip import Strip
 from textual.widgets import TextArea
 
+from robot.limits import MAX_BYTES
 from tui.widgets.json_tokens import token_at, tokens
 from tui.widgets.plain import plain
 
@@ -16,11 +19,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rich.style import Style
-    from rich.text import Text
+    from textual.events import Paste
 
 MARK = "✗"
 MARGIN = 2
 """Cells that `TextArea` leaves between a line's number and its text."""
+
+LONGEST_COLOURED = 4096
+"""Characters of a line: a wrapped line is coloured anew for each of its rows on the screen."""
 
 
 class Place(NamedTuple):
@@ -35,6 +41,9 @@ class JsonEditor(TextArea):
 
     Highlighting hangs on `get_line`, which is there to be extended, and not on tree-sitter.
     """
+
+    class TooLong(Message):
+        """What was pasted would make the text longer than the robot takes; it was left out."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "json-editor--key",
@@ -88,13 +97,18 @@ class JsonEditor(TextArea):
         self.replace(text, self.document.start, self.document.end)
         self.move_cursor((0, 0))
 
+    def on_paste(self, event: Paste) -> None:
+        """Leave out what no robot takes: a megabyte would hold the whole screen up for seconds."""
+        if len(event.text) + len(self.text) > MAX_BYTES:
+            event.prevent_default().stop()
+            self.post_message(self.TooLong())
+
     def get_line(self, line_index: int) -> Text:
         """The line with its tokens coloured and control characters harmless."""
-        line = super().get_line(line_index)
-        source = line.plain
-        if not source.isprintable():
-            line.plain = "\t".join(plain(part) for part in source.split("\t"))
-        for token in tokens(source):
+        source = self.document.get_line(line_index)
+        shown = source if source.isprintable() else "\t".join(map(plain, source.split("\t")))
+        line = Text(shown, end="", no_wrap=True)
+        for token in tokens(source) if len(source) <= LONGEST_COLOURED else ():
             line.stylize(self._style(token.kind), token.start, token.end)
         for place in self._places:
             if place.line - 1 == line_index:
@@ -104,6 +118,8 @@ class JsonEditor(TextArea):
     def render_line(self, y: int) -> Strip:
         """The line with a mark between its number and its text where something is wrong in it."""
         strip = super().render_line(y)
+        if not self._places:
+            return strip
         row, column = self.wrapped_document.offset_to_location(Offset(0, y + self.scroll_offset.y))
         beyond = y + self.scroll_offset.y >= self.wrapped_document.height
         if column or beyond or not any(place.line - 1 == row for place in self._places):

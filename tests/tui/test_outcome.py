@@ -1,0 +1,232 @@
+"""What came of a sent message: each step with its delay, and plain words where none came."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from textual.app import App, ComposeResult
+
+from graph.data import Sample
+from robot.commands import parse_llm
+from tests.tui.recorded import NOW_S, joints, sample
+from tui.i18n import set_language
+from tui.widgets.outcome import Outcome, delay_text
+from tui.widgets.outcome_story import Entry, Story
+
+SENT_S = NOW_S + 100
+LOOK_AND_DRIVE = parse_llm(
+    '{"thought": "", "commands": [{"action": "turn_head", "pan": -45, "tilt": 10},'
+    ' {"action": "drive", "speed": 0.2, "steering": -0.3}]}'
+)
+
+
+def at(delay_s: float, message: Sample) -> Sample:
+    """The message as if it had arrived so long after the sending, taken a little later."""
+    return replace(message, received_s=SENT_S + delay_s + 0.05, age_s=0.05)
+
+
+def result(**event: Any) -> Sample:
+    return sample("/llm_result", "std_msgs/msg/String", {"data": json.dumps(event)})
+
+
+def drive(topic: str, speed: float, steering: float) -> Sample:
+    value = {"header": {}, "drive": {"speed": speed, "steering_angle": steering}}
+    return sample(topic, "ackermann_msgs/msg/AckermannDriveStamped", value)
+
+
+def wheels(left: float, right: float) -> Sample:
+    return joints(
+        "/wheel_commands",
+        rear_left_wheel_joint=(0.0, left),
+        rear_right_wheel_joint=(0.0, right),
+    )
+
+
+def head(pan: float, tilt: float) -> Sample:
+    return joints("/head_state", pan_joint=(pan, 0.0), tilt_joint=(tilt, 0.0))
+
+
+def safety(message: str) -> Sample:
+    status = [{"level": b"\x02", "name": "safety_stop", "message": message}]
+    return sample("/safety_state", "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+
+
+def told(story: Story, after_s: float = 1.0) -> list[tuple[str, str, str]]:
+    return [(entry.mark, entry.topic, entry.text) for entry in story.entries(SENT_S + after_s)]
+
+
+def begun(
+    before: dict[str, Sample] | None = None, listeners: tuple[str, ...] = ("llm_parser",)
+) -> Story:
+    return Story(SENT_S, listeners, LOOK_AND_DRIVE, before or {})
+
+
+def test_the_trail_of_a_message_is_told_in_order_with_its_delays() -> None:
+    story = begun({"/wheel_commands": wheels(0.0, 0.0)})
+    story.see(
+        {
+            "/wheel_commands": [at(0.005, wheels(0.0, 0.0)), at(0.031, wheels(6.2, 5.1))],
+            "/drive": [at(0.015, drive("/drive", 0.2, -0.3))],
+            "/drive_safe": [at(0.02, drive("/drive_safe", 0.2, -0.3))],
+            "/llm_result": [at(0.012, result(event="accepted", commands=2, thought="I look"))],
+        }
+    )
+    story.see(
+        {
+            "/head_state": [at(0.5, head(-0.3, 0.1)), at(1.01, head(-0.785, 0.175))],
+            "/llm_result": [at(1.043, result(event="head", pan=-45, tilt=10, sum=1))],
+        }
+    )
+    entries = story.entries(SENT_S + 2)
+    assert told(story) == [
+        ("✓", "/llm_result", "accepted: 2 commands “I look”"),
+        ("→", "/drive", "0.20 m/s, -0.30 rad, to the right"),
+        ("✓", "/drive_safe", "let through"),
+        ("→", "/wheel_commands", "left 6.20, right 5.10 rad/s"),
+        ("✓", "/head_state", "pan -45°, tilt 10°"),
+        ("✓", "set_head_position", "pan -45°, tilt 10°: done"),
+    ]
+    assert [delay_text(entry.delay_s) for entry in entries] == [
+        "12 ms", "15 ms", "20 ms", "31 ms", "1010 ms", "1043 ms",
+    ]  # fmt: skip
+
+
+def test_a_refusal_names_every_place_and_nothing_is_awaited() -> None:
+    story = Story(SENT_S, ("llm_parser",), None, {})
+    problem = {"field": "commands[0].speed", "line": 4, "column": 33, "message": "must be small"}
+    story.see({"/llm_result": [at(0.01, result(event="refused", problems=[problem]))]})
+    assert told(story, 10.0) == [
+        ("✗", "/llm_result", "refused: nothing of it is executed"),
+        ("✗", "/llm_result", "line 4, column 33: commands[0].speed: must be small"),
+    ]
+
+
+def test_a_refusal_is_said_in_the_language_of_the_screen() -> None:
+    set_language("ru")
+    story = Story(SENT_S, ("llm_parser",), None, {})
+    problem = {
+        "field": "commands[0].speed", "line": 4, "column": 33, "message": "must be a number",
+        "code": "number", "args": {},
+    }  # fmt: skip
+    story.see({"/llm_result": [at(0.01, result(event="refused", problems=[problem]))]})
+    assert told(story)[1][2].startswith("строка 4, столбец 33: commands[0].speed: ")
+    assert "must" not in told(story)[1][2]
+
+
+def test_silence_is_awaited_for_three_seconds_and_then_told() -> None:
+    story = begun()
+    assert told(story, 2.9) == [("·", "/llm_result", "waiting for an answer")]
+    mark, _topic, text = told(story, 3.0)[0]
+    assert mark == "✗"
+    assert text == "no answer within 3 s: is llm_parser running? Listening: llm_parser"
+
+
+def test_nobody_who_listens_is_told_at_once() -> None:
+    assert told(begun(listeners=()), 0.0) == [
+        ("✗", "/llm_result", "nobody listens to /llm_raw_json: is llm_parser running?")
+    ]
+
+
+def test_a_parser_that_does_not_report_is_no_silence() -> None:
+    story = begun()
+    story.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
+    assert told(story, 4.0)[-1] == (
+        "·", "/llm_result", "no word: this parser does not report",
+    )  # fmt: skip
+
+
+def test_what_safety_holds_back_is_told_with_its_reason() -> None:
+    story = begun({"/drive_safe": drive("/drive_safe", 0.0, 0.0)})
+    story.see(
+        {
+            "/drive": [at(0.02, drive("/drive", 0.2, -0.3))],
+            "/drive_safe": [
+                at(0.03, drive("/drive_safe", 0.0, 0.0)),
+                at(0.4, drive("/drive_safe", 0.0, -0.3)),
+            ],
+            "/safety_state": [at(0.41, safety("obstacle at 0.3 m"))],
+        }
+    )
+    assert ("!", "/drive_safe", "held back to 0.00 m/s, -0.30 rad, to the right") in told(story)
+    assert ("!", "/safety_state", "obstacle at 0.3 m") in told(story)
+
+
+def test_the_same_command_again_is_not_taken_for_silence_of_the_wheels() -> None:
+    story = begun({"/wheel_commands": wheels(6.2, 5.1)})
+    story.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
+    story.see({"/wheel_commands": [at(delay, wheels(6.2, 5.1)) for delay in (0.1, 0.2, 0.4)]})
+    assert [
+        entry.delay_s for entry in story.entries(SENT_S) if entry.topic == "/wheel_commands"
+    ] == [pytest.approx(0.4)]
+
+
+def test_what_came_before_the_sending_is_no_part_of_it() -> None:
+    story = begun()
+    story.see({"/drive": [at(-0.2, drive("/drive", 0.5, 0.0))]})
+    assert told(story) == [("·", "/llm_result", "waiting for an answer")]
+
+
+@pytest.mark.parametrize(
+    "data",
+    ["", "null", "[1]", "{", '{"event": 7}', '{"event": "refused", "problems": 3}',
+     '{"event": "refused", "problems": [null, {"args": 5, "code": "range"}]}',
+     '{"event": "accepted", "commands": "many"}', '{"event": "head"}', "[" * 100_000],
+)  # fmt: skip
+def test_any_words_on_the_result_topic_are_survived(data: str) -> None:
+    story = begun()
+    story.see({"/llm_result": [at(0.1, sample("/llm_result", "", {"data": data}))]})
+    assert story.entries(SENT_S + 9)
+
+
+def test_messages_of_another_shape_are_survived() -> None:
+    story = begun()
+    odd: dict[str, Any] = {"drive": 5, "name": None, "velocity": "x", "status": 3}
+    topics = ("/drive", "/drive_safe", "/wheel_commands", "/head_state", "/safety_state")
+    story.see({topic: [at(0.1 * n, sample(topic, "", odd))] for n, topic in enumerate(topics, 1)})
+    assert story.entries(SENT_S + 9)
+
+
+class OutcomeApp(App[None]):
+    """A bare app with nothing but the outcome."""
+
+    def compose(self) -> ComposeResult:
+        """It fills the screen."""
+        yield Outcome()
+
+    def lines(self) -> list[str]:
+        """What stands there now."""
+        outcome = self.query_one(Outcome)
+        return [outcome.render_line(y).text.rstrip() for y in range(outcome.size.height)]
+
+
+ENTRIES = (
+    Entry("✓", "/llm_result", "accepted: 2 commands", 0.012),
+    Entry("✗", "set_head_position", "pan -45°, tilt 10°: refused " * 4, 1.2),
+    Entry("·", "/head_state", "pan 0°, tilt 0°", None),
+)
+
+
+async def test_columns_stand_under_each_other_where_there_is_room() -> None:
+    app = OutcomeApp()
+    async with app.run_test(size=(80, 10)) as pilot:
+        app.query_one(Outcome).show("Sent at 12:00:00", ENTRIES)
+        await pilot.pause()
+        assert app.lines()[0] == "Sent at 12:00:00"
+        assert app.lines()[1] == "   12 ms ✓ /llm_result       accepted: 2 commands"
+        assert app.lines()[3].startswith(" " * 29)
+        assert "       … · /head_state       pan 0°, tilt 0°" in app.lines()
+
+
+@pytest.mark.parametrize("width", [1, 12, 40])
+async def test_where_there_is_none_everything_is_still_there(width: int) -> None:
+    app = OutcomeApp()
+    async with app.run_test(size=(width, 60)) as pilot:
+        app.query_one(Outcome).show("Sent at 12:00:00", ENTRIES)
+        await pilot.pause()
+        if width == 40:
+            assert app.lines()[1] == "   12 ms ✓ /llm_result: accepted: 2"
+        strips = [app.query_one(Outcome).render_line(y) for y in range(60)]
+        assert {strip.cell_length for strip in strips} == {app.query_one(Outcome).size.width}
