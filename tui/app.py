@@ -23,6 +23,7 @@ from tui.i18n import LANGUAGES, NAMES, _, language, pick, said, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
 from tui.seams import Order
 from tui.themes import CYCLE, HIGH_CONTRAST, after
+from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from textual.driver import Driver
@@ -73,9 +74,9 @@ class DeckApp(App[int], Acting):
 
     # Screens
 
-    def get_default_screen(self) -> Screen[Any]:
+    async def on_mount(self) -> None:
         """Begin with the lesson, or with the picker if none was named."""
-        return self._made_screen(self._first_screen)
+        await self.push_screen(self._made_screen(self._first_screen))
 
     async def show_screen(self, name: str) -> None:
         """Bring one of `SCREENS` to the front."""
@@ -233,9 +234,17 @@ class DeckApp(App[int], Acting):
             for tab in TABS
         ]
 
+    @property
+    def is_held(self) -> bool:
+        """Whether the safety node holds the wheels, by its own decision."""
+        return self.feed.link is not None and bool(self.brake.state.blocked)
+
     def state_words(self) -> Sequence[str]:
         """Return what runs, in words, from long to short; the first that fits is shown."""
         session = self.feed.session
+        if self.is_held:
+            reason = plain(self.brake.state.blocked, 400)
+            return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
         if session is None:
             if self.feed.ended:
                 return (said(self.feed.ended), _("ended"))

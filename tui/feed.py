@@ -135,9 +135,10 @@ class Feed:
 
     def catch_up(self, screen: DeckScreen) -> None:
         """Tell a screen that has just been opened how things stand, and keep telling it."""
-        if screen not in self._screens:
-            self._screens.append(screen)
-        if self.link is None:
+        if screen in self._screens:
+            return
+        self._screens.append(screen)
+        if not self.opened:
             return
         screen.post_message(SessionChanged())
         screen.post_message(StatusChanged(dict(self.nodes), frozenset(self.nodes)))

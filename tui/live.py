@@ -39,12 +39,13 @@ class LiveApp(DeckApp):
 
     def __init__(self, order: Order, stray: StrayOutput, settings: Settings) -> None:
         super().__init__(LivePad(), order, driver_class=DeckDriver)
+        self.terminal_fd = stray.terminal_fd
         self._stray = stray
         self._settings = settings
         self._stray_count = 0
         self._deserted = False
 
-    def on_mount(self) -> None:
+    async def on_mount(self) -> None:
         """Take the settings, and watch the terminal."""
         if self._settings.theme:
             self.theme = self._settings.theme

@@ -40,6 +40,11 @@ class StrayOutput:
             os.dup2(self._fd, number)
         return self
 
+    @property
+    def terminal_fd(self) -> int:
+        """Where 1 led before."""
+        return self._saved[0][1]
+
     def __exit__(
         self,
         kind: type[BaseException] | None,

@@ -10,16 +10,21 @@ from __future__ import annotations
 import contextlib
 import os
 import select
-import sys
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING
 
 from textual.drivers.linux_driver import LinuxDriver
 
 if TYPE_CHECKING:
     from textual.app import App
+
+    class OnTerminal(App[int]):
+        """An app that knows its terminal."""
+
+        terminal_fd: int
+
 
 MOST_WAITING = 1_000_000
 """Bytes that may wait for the terminal; beyond them it counts as stalled."""
@@ -111,11 +116,10 @@ class Terminal:
 class DeckDriver(LinuxDriver):
     """Textual's driver, on a terminal that may stall or go."""
 
-    def __init__(self, app: App[Any], **options: bool | tuple[int, int] | None) -> None:
-        """Write to a descriptor of its own: 1 and 2 are for others."""
+    def __init__(self, app: OnTerminal, **options: bool | tuple[int, int] | None) -> None:
+        """Write to the app's terminal: descriptors 1 and 2 may lead elsewhere."""
         super().__init__(app, **options)  # type: ignore[arg-type]
-        terminal = sys.__stdout__ if _is_tty(sys.__stdout__) else sys.__stderr__
-        fd = os.dup(terminal.fileno()) if terminal is not None else os.open("/dev/tty", os.O_WRONLY)
+        fd = app.terminal_fd
         self._terminal = Terminal(fd, lambda: app.call_later(app.refresh, layout=True))
         self._file = self._terminal  # type: ignore[assignment]
 
@@ -133,6 +137,14 @@ class DeckDriver(LinuxDriver):
         with contextlib.suppress(OSError):
             super().run_input_thread()
 
+    def _get_terminal_size(self) -> tuple[int, int]:
+        """Return columns and lines, those of any terminal where it does not tell."""
+        try:
+            size = os.get_terminal_size(self._terminal.fileno())
+        except OSError:
+            return 80, 24
+        return size.columns or 80, size.lines or 24
+
     def stop_application_mode(self) -> None:
         """Leave the terminal as it was found, a stalled one too once it takes again."""
         self._terminal.leaving = True
@@ -142,10 +154,6 @@ class DeckDriver(LinuxDriver):
         """Let the last words out."""
         super().close()
         self._terminal.finish()
-
-
-def _is_tty(file: TextIO | None) -> bool:
-    return file is not None and not file.closed and file.isatty()
 
 
 def _hung_up(fd: int) -> bool:

@@ -123,6 +123,6 @@ class DeckScreen(Screen[None], Acting):
         """Show title, session and emergency stop as they are."""
         deck = self.deck
         for bar in self.query(TitleBar):
-            bar.show(deck.tabs(self.tab), deck.state_words())
+            bar.show(deck.tabs(self.tab), deck.state_words(), alarm=deck.is_held)
         for banner in self.query(EmergencyBanner):
             banner.show(deck.brake.state, deck.keys_of(EmergencyRelease)[0])

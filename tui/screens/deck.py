@@ -1,13 +1,261 @@
-"""The lesson at work."""
+"""The lesson at work: its nodes, the panels that its profile names, and the log."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from dataclasses import replace
+from importlib import import_module
+from typing import TYPE_CHECKING, ClassVar
 
+from textual import on, work
+from textual.containers import Container, Vertical
+from textual.widgets import Static
+
+from launcher.errors import LauncherError
+from launcher.status import Severity
+from tui.actions import bindings
+from tui.actions.deck import DECK_ACTIONS
+from tui.i18n import N_, _, said
+from tui.messages import SessionChanged
 from tui.screens.base import DeckScreen
+from tui.widgets.log_view_pane import LogPane
+from tui.widgets.nodes_table import NodesTable
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from textual.app import ComposeResult
+    from textual.binding import BindingType
+    from textual.events import Resize
+
+    from tui.messages import (
+        GraphChanged,
+        LanguageChanged,
+        LogArrived,
+        StatusChanged,
+    )
+    from tui.panels.panel import Panel
+    from tui.panels.shelf import Shelf
+    from tui.widgets.log_filter import LogFilter
+    from tui.widgets.rows import Rows
+
+PANELS = {
+    "sonar": ("tui.panels.sonar", "SonarFeed"),
+    "wheels": ("tui.panels.wheels", "WheelsFeed"),
+    "camera": ("tui.panels.camera", "CameraFeed"),
+    "head": ("tui.panels.head", "HeadFeed"),
+}
+"""What a profile's `panels` may name; imported when a session that has them is opened."""
+
+
+SMALL = (60, 18)
+"""Columns and rows of the terminal below which there is no room for panels."""
 
 
 class LessonDeck(DeckScreen):
-    """Nodes, sensors, wheels, camera, head, voice and log of the lesson."""
+    """Nodes above the log, panels at the right; on a small terminal panels beside the log."""
 
     tab: ClassVar[str] = "deck"
+    about: ClassVar[str] = N_(
+        "The lesson at work. The table has the lesson's nodes: choose one by the arrow keys to "
+        "start, stop or restart it, or to hear it alone in the log. The panels show what the "
+        "nodes say on their topics."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*DECK_ACTIONS)
+    DEFAULT_CSS = """
+    LessonDeck {
+        #board { layout: grid; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
+        &.-shelved #board { grid-size: 2; grid-columns: 11fr 9fr; }
+        #nodes { height: 1fr; }
+        #shelf { height: 1fr; }
+        #talk { height: 1fr; }
+        &.-home.-shelved #shelf, &.-wide.-shelved #shelf { row-span: 2; }
+        &.-compact.-shelved #nodes { column-span: 2; }
+        &.-compact.-shelved #board { grid-columns: 2fr 3fr; }
+        #small { display: none; height: 1; width: 1fr; color: $text-warning; }
+        &.-small #shelf { display: none; }
+        &.-small #board { grid-size: 1; }
+        &.-small.-shelved #small { display: block; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shelf: Shelf | None = None
+
+    def compose_body(self) -> ComposeResult:
+        """The nodes above the log; panels come with the session."""
+        yield Static(id="small", markup=False)
+        with Container(id="board"):
+            yield NodesTable(id="nodes")
+            with Vertical(id="talk"):
+                yield LogPane(file_of=self._file_of)
+
+    # What the actions do
+
+    @property
+    def table(self) -> NodesTable:
+        """The nodes."""
+        return self.query_one(NodesTable)
+
+    @property
+    def pane(self) -> LogPane:
+        """The log."""
+        return self.query_one(LogPane)
+
+    @property
+    def chosen_node(self) -> str:
+        """The chosen node, empty without a session."""
+        if self.feed.link is None:
+            return ""
+        return next((table.chosen for table in self.query(NodesTable)), "")
+
+    @work(group="ask")
+    async def ask(self, what: str, *names: str) -> None:
+        """Ask the session to `start`, `stop` or `restart` these nodes, all if none is named."""
+        if self.feed.link is None:
+            return
+        try:
+            await getattr(self.feed.link, what)(*names)
+        except LauncherError as error:
+            words = said(error.args[0]) if error.args else str(error)
+            self.notify(plain(words), severity="error", markup=False)
+
+    @property
+    def log_filter(self) -> LogFilter:
+        """Which lines are shown."""
+        return self.pane.view.log_filter
+
+    def filter_log(self, chosen: LogFilter) -> None:
+        """Show these lines."""
+        self.pane.view.log_filter = chosen
+        self._show_nodes()
+
+    def hear_all(self) -> None:
+        """Let every node be heard, at every severity."""
+        self.filter_log(replace(self.log_filter.all_nodes(), minimum=Severity.DEBUG))
+
+    @property
+    def pages(self) -> int:
+        """How many pages of panels there are."""
+        return 0 if self._shelf is None or self.has_class("-small") else self._shelf.pages
+
+    def turn_page(self) -> None:
+        """Show the panels that had no room."""
+        if self._shelf is not None:
+            self._shelf.turn()
+
+    # What is shown
+
+    def watch_topics(self) -> set[str]:
+        """What the panels show."""
+        return set().union(*(panel.watched() for panel in self._panels))
+
+    def follow_topics(self) -> set[str]:
+        """What the panels must not miss."""
+        return set().union(*(panel.followed() for panel in self._panels))
+
+    @property
+    def _panels(self) -> Sequence[Panel]:
+        return () if self._shelf is None else self._shelf.panels
+
+    def on_mount(self) -> None:
+        """Begin at the nodes."""
+        self.table.focus()
+
+    def on_resize(self, event: Resize) -> None:
+        """Leave the panels out where there is no room for them."""
+        small = event.size.width < SMALL[0] or event.size.height < SMALL[1]
+        self.set_class(small, "-small")
+        self._lay_out(event.size.height)
+
+    @on(SessionChanged)
+    async def _bring_panels(self) -> None:
+        """Bring the panels of the session; one that has ended keeps what it showed."""
+        session = self.feed.session
+        if session is None:
+            return
+        if self.pane.view.ring.entries:
+            self.pane.view.clear()
+        self.pane.save_folder = session.log_dir
+        await self._put_up(session.panels)
+        self._lay_out(self.size.height)
+        self.topics_changed()
+
+    def on_status_changed(self, message: StatusChanged) -> None:
+        """Show the nodes as they are."""
+        self.pane.view.know_nodes(message.nodes)
+        self._show_nodes()
+        self._lay_out(self.size.height)
+
+    def on_log_arrived(self, message: LogArrived) -> None:
+        """Append the lines."""
+        self.pane.view.append(message.lines, message.skipped)
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Feed the panels; a dead graph is told where they are."""
+        if message.update.error:
+            self.notify(plain(message.update.error), severity="error", markup=False)
+            return
+        for panel in self._panels:
+            panel.show(message.update)
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw anew."""
+        del message
+        self.pane.words_changed()
+        self._show_nodes()
+        for panel in self._panels:
+            panel.words_changed()
+        if self._shelf is not None:
+            self._shelf.words_changed()
+        self._say_small()
+
+    def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
+        """Other keys are possible now."""
+        message.stop()
+        self.refresh_bindings()
+
+    def on_rows_opened(self, message: Rows.Opened) -> None:
+        """Listen to the node that was opened, alone."""
+        message.stop()
+        self.filter_log(self.log_filter.alone(message.key))
+
+    async def _put_up(self, names: Iterable[str]) -> None:
+        """Take away the panels of the session before and put up those of this one."""
+        if self._shelf is not None:
+            await self._shelf.remove()
+            self._shelf = None
+        panels = [_panel(name) for name in names if name in PANELS]
+        self.set_class(bool(panels), "-shelved")
+        if panels:
+            from tui.panels.shelf import Shelf
+
+            self._shelf = Shelf(panels, id="shelf")
+            await self.query_one("#board").mount(self._shelf, after="#nodes")
+        self._say_small()
+
+    def _show_nodes(self) -> None:
+        chosen = self.log_filter
+        names = self.feed.nodes
+        self.table.show_nodes(names, [name for name in names if not chosen.shows_node(name)])
+
+    def _lay_out(self, height: int) -> None:
+        """Give the table of nodes the rows it needs, but never most of them."""
+        wanted = len(self.feed.nodes) + 1
+        rows = max(2, min(wanted, height * 9 // 20))
+        self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
+
+    def _say_small(self) -> None:
+        words = _("The panels need {columns}×{rows}; this terminal is smaller.")
+        self.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))
+
+    def _file_of(self, node: str) -> str:
+        session = self.feed.session
+        return f"{session.log_dir}/{node}.log" if session and session.log_dir else ""
+
+
+def _panel(name: str) -> Panel:
+    module, made = PANELS[name]
+    panel: Panel = getattr(import_module(module), made)()
+    return panel

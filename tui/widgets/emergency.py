@@ -7,15 +7,13 @@ from textual.widget import Widget
 
 from tui.emergency import Emergency
 from tui.i18n import _
-from tui.widgets.plain import plain
 
 
 class EmergencyBanner(Widget):
-    """Hidden while nothing is wrong; red when stopped, amber when the safety node holds."""
+    """Hidden while it is not engaged."""
 
     DEFAULT_CSS = """
     EmergencyBanner {
-        dock: top;
         display: none;
         width: 1fr;
         height: auto;
@@ -28,7 +26,6 @@ class EmergencyBanner(Widget):
             color: #ffffff;
             text-style: bold;
         }
-        &.-blocked { display: block; background: #ffb000; color: #000000; }
     }
     """
 
@@ -43,14 +40,11 @@ class EmergencyBanner(Widget):
             return
         self._emergency, self._release_key = emergency, release_key
         self.set_class(emergency.engaged, "-engaged")
-        self.set_class(bool(emergency.blocked) and not emergency.engaged, "-blocked")
         self.refresh(layout=True)
 
     def render(self) -> Content:
         """Say what is stopped, why, and how to go on."""
         state = self._emergency
-        if not state.engaged:
-            return Content(_("⚠ Motion is held: {reason}").format(reason=plain(state.blocked, 400)))
         words = _("■ EMERGENCY STOP") if state.ours else _("■ EMERGENCY STOP (by another)")
         if state.fallback:
             words += " · " + _(state.fallback)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
+
 from launcher.status import NodeState
 from tui.i18n import N_, _, said
 from tui.widgets.plain import plain
@@ -25,7 +27,7 @@ STATES = {
 }
 """State to sign, word and meaning: never the colour alone."""
 
-NARROW, WIDE = 58, 96
+NARROW, WIDE = 56, 96
 """Widths in cells at which columns come: time and cost, then why a node is in its state."""
 MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
 
@@ -53,17 +55,18 @@ class NodesTable(Rows):
         width = self.size.width
         if not width:
             return
-        long = max((len(_(word)) for _sign, word, _meaning in STATES.values()), default=8)
+        longest = max(cell_len(_(word)) for _sign, word, _meaning in STATES.values())
+        pid = max((len(str(node.pid or "")) for node in self._statuses), default=0)
         columns = [
             Column(_("Node"), 0 if width < WIDE else 26),
-            Column(_("State"), long + 2),
+            Column(_("State"), longest + 2),
         ]
         if width >= NARROW:
-            columns += [Column(_("Pid"), 7, right=True), Column(_("Up"), 6, right=True)]
-            columns += [Column("↻", 3, right=True)]
-        columns += [Column(_("CPU"), 5, right=True), Column(_("Memory"), 7, right=True)]
+            columns += [Column(_("Pid"), max(5, pid), right=True), Column(_("Up"), 6, right=True)]
+            columns += [Column("↻", 2, right=True)]
+        columns += [Column(_("CPU"), 5, right=True), Column(_("Memory"), 6, right=True)]
         if width >= WIDE:
-            columns.append(Column(_("Why")))
+            columns.append(Column(_("Detail")))
         self.show(columns, [Row(node.name, self._cells(node, width)) for node in self._statuses])
 
     def _cells(self, node: NodeStatus, width: int) -> tuple[Cell, ...]:

@@ -1,0 +1,203 @@
+"""What can be done on the Deck; each letter also under its Cyrillic key."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from tui.actions.action import Action
+from tui.i18n import N_
+
+if TYPE_CHECKING:
+    from tui.screens.deck import LessonDeck
+
+
+class DeckAction(Action["LessonDeck"]):
+    """Something on the Deck."""
+
+
+class _AskNode(DeckAction):
+    """Ask the supervisor to do something with the chosen node."""
+
+    asked: ClassVar[str]
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only with a node chosen, in a session that is there."""
+        return True if target.chosen_node else None
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Ask."""
+        target.ask(cls.asked, target.chosen_node)
+
+
+class StartNode(_AskNode):
+    """Start one."""
+
+    id = "node.start"
+    key = "s,ы"
+    title = N_("Start")
+    tooltip = N_("Start the chosen node, with all that it needs.")
+    footer = True
+    asked = "start"
+
+
+class StopNode(_AskNode):
+    """Stop one."""
+
+    id = "node.stop"
+    key = "x,ч"
+    title = N_("Stop")
+    tooltip = N_("Stop the chosen node; pressed again, at once.")
+    footer = True
+    asked = "stop"
+
+
+class RestartNode(_AskNode):
+    """Restart one."""
+
+    id = "node.restart"
+    key = "r,к"
+    title = N_("Restart")
+    tooltip = N_("Stop the chosen node and start it again.")
+    footer = True
+    asked = "restart"
+
+
+class _AskAll(DeckAction):
+    """Ask the supervisor to do something with all nodes."""
+
+    asked: ClassVar[str]
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only in a session that is there."""
+        return target.feed.link is not None
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Ask."""
+        target.ask(cls.asked)
+
+
+class StartAll(_AskAll):
+    """Start all."""
+
+    id = "nodes.start"
+    key = "S,Ы"
+    title = N_("Start all")
+    tooltip = N_("Start every node that does not run.")
+    asked = "start"
+
+
+class StopAll(_AskAll):
+    """Stop all."""
+
+    id = "nodes.stop"
+    key = "X,Ч"
+    title = N_("Stop all")
+    tooltip = N_("Stop every node, dependants first; pressed again, at once.")
+    asked = "stop"
+
+
+class RestartAll(_AskAll):
+    """Restart all."""
+
+    id = "nodes.restart"
+    key = "R,К"
+    title = N_("Restart all")
+    tooltip = N_("Stop every node and start it again.")
+    asked = "restart"
+
+
+class MuteNode(_AskNode):
+    """Leave out one node's lines."""
+
+    id = "log.mute"
+    key = "m,ь"
+    title = N_("Mute")
+    tooltip = N_("Leave the chosen node out of the log, or let it be heard again.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Mute it, or not."""
+        target.filter_log(target.log_filter.toggled(target.chosen_node))
+
+
+class HearOnly(_AskNode):
+    """Leave out all others."""
+
+    id = "log.only"
+    key = "o,щ"
+    title = N_("Only this")
+    tooltip = N_("Show only the chosen node's log; again: as before.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Listen to it alone, or not."""
+        target.filter_log(target.log_filter.alone(target.chosen_node))
+
+
+class Severity(DeckAction):
+    """Leave out the least severe lines."""
+
+    id = "log.severity"
+    key = "l,д"
+    title = N_("Severity")
+    tooltip = N_("Leave out the least severe lines that are shown; after FATAL comes all.")
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Raise the level."""
+        target.filter_log(target.log_filter.next_minimum())
+
+
+class HearAll(DeckAction):
+    """Leave out nothing."""
+
+    id = "log.all"
+    key = "a,ф"
+    title = N_("Whole log")
+    tooltip = N_("Let every node be heard, at every severity.")
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Show all."""
+        target.hear_all()
+
+
+class TurnPage(DeckAction):
+    """The panels that had no room."""
+
+    id = "deck.page"
+    key = "v,м"
+    title = N_("More panels")
+    tooltip = N_("Show the panels that have no room on this page.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only if there are any."""
+        return target.pages > 1
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Turn the page."""
+        target.turn_page()
+
+
+DECK_ACTIONS = (
+    StartNode,
+    StopNode,
+    RestartNode,
+    MuteNode,
+    HearOnly,
+    TurnPage,
+    Severity,
+    HearAll,
+    StartAll,
+    StopAll,
+    RestartAll,
+)

@@ -1,0 +1,1 @@
+"""The panels of the Deck: each joins topics of the graph to a widget that draws them."""

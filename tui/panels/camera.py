@@ -1,0 +1,69 @@
+"""What the camera sees, within what a slow line can carry."""
+
+from __future__ import annotations
+
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from graph.images import ImageError, to_rgb
+from tui.i18n import N_, _
+from tui.panels.panel import Panel, newest, row_of, trouble_of
+from tui.widgets.image_view import ImageView
+from tui.widgets.trouble import trouble_words
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+
+TOPIC = "/camera/color/image_raw"
+PERIOD_S = 0.5
+"""Two pictures a second: a terminal is no cinema, and SSH no cable."""
+
+
+class CameraFeed(Panel):
+    """The newest picture."""
+
+    title = N_("Camera")
+    least = 8
+    weight = 5
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shown_s = float("-inf")
+
+    def compose(self) -> ComposeResult:
+        """The picture."""
+        yield ImageView(bits=4)
+
+    def watched(self) -> set[str]:
+        """The picture."""
+        return {TOPIC}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show the newest picture, not more often than is good for the line."""
+        view = self.query_one(ImageView)
+        sample = newest(update, TOPIC)
+        trouble, detail, age_s = trouble_of(update, TOPIC)
+        if trouble is not None:
+            view.show_words(trouble_words(trouble, age_s), detail)
+            return
+        if sample is None:
+            if not view.has_picture:
+                view.show_words(_("waiting for the first picture"), TOPIC)
+            return
+        now_s = monotonic()
+        if view.has_picture and now_s - self._shown_s < PERIOD_S:
+            return
+        self._shown_s = now_s
+        try:
+            picture = to_rgb(sample.value)
+        except ImageError as error:
+            view.show_words(_("this picture cannot be shown"), str(error))
+            return
+        view.show(picture, self._caption(update, picture.shape[1], picture.shape[0]))
+
+    def _caption(self, update: GraphUpdate, width: int, height: int) -> str:
+        row = row_of(update, TOPIC)
+        hz = "" if row is None or row.hz is None else _(" · {hz:.0f} Hz").format(hz=row.hz)
+        return f"{width}×{height}{hz}"

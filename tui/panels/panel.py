@@ -1,0 +1,85 @@
+"""What a panel of the Deck is: a titled frame, a widget in it, and the topics that feed it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.containers import Vertical
+
+from graph.data import Trouble
+from tui.i18n import _
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate, Sample, TopicRow
+
+
+class Panel(Vertical):
+    """Base of the panels; a subclass composes its widget and feeds it in `show`."""
+
+    DEFAULT_CSS = """
+    Panel {
+        width: 1fr; height: 1fr; padding: 0 1;
+        border: round $primary 60%; border-title-color: $foreground; border-title-style: bold;
+        border-subtitle-color: $text-muted;
+        &:focus-within { border: round $accent; }
+    }
+    """
+
+    title: ClassVar[str] = ""
+    """Marked by `N_`."""
+    least: ClassVar[int] = 5
+    """Rows, frame included, below which the panel is of no use."""
+    weight: ClassVar[int] = 2
+    """Its share of the rows that are left over."""
+    across: ClassVar[bool] = False
+    """Whether it takes the whole width where panels stand side by side."""
+
+    def on_mount(self) -> None:
+        """Show the title."""
+        self.border_title = _(self.title)
+
+    def watched(self) -> set[str]:
+        """Return the topics whose newest message is wanted."""
+        return set()
+
+    def followed(self) -> set[str]:
+        """Return the topics of which every message is wanted."""
+        return set()
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show what has come, and why nothing has."""
+        raise NotImplementedError
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        self.border_title = _(self.title)
+
+
+def row_of(update: GraphUpdate, topic: str) -> TopicRow | None:
+    """Return the row of a topic, None if there is none."""
+    return next((row for row in update.topics if row.name == topic), None)
+
+
+def newest(update: GraphUpdate, topic: str) -> Sample | None:
+    """Return the newest sample of a topic, None if none has come."""
+    samples = update.samples.get(topic)
+    return samples[-1] if samples else None
+
+
+def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, float | None]:
+    """Return (trouble, its words, age of the newest message) of a topic."""
+    row = row_of(update, topic)
+    if row is None:
+        return Trouble.NO_PUBLISHER, topic, None
+    return row.trouble, f"{topic} {row.detail}".rstrip(), row.age_s
+
+
+def first_published(update: GraphUpdate, topics: Iterable[str]) -> str:
+    """Return the first topic that somebody publishes, else the first of all."""
+    names = list(topics)
+    for name in names:
+        row = row_of(update, name)
+        if row is not None and row.publishers:
+            return name
+    return names[0]

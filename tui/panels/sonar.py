@@ -1,0 +1,49 @@
+"""How far the next obstacle is, ahead and behind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tui.i18n import N_
+from tui.panels.panel import Panel, row_of, trouble_of
+from tui.widgets.sonar import SonarPanel
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+
+TOPICS = {"front": "/sensor/sonar_front", "rear": "/sensor/sonar_rear"}
+
+
+class SonarFeed(Panel):
+    """The front sonar, and the rear one where somebody publishes it."""
+
+    title = N_("Sonar")
+    least = 5
+    weight = 2
+    across = True
+
+    def compose(self) -> ComposeResult:
+        """The gauges."""
+        yield SonarPanel()
+
+    def watched(self) -> set[str]:
+        """Both sonars."""
+        return set(TOPICS.values())
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show every reading, for the trend."""
+        gauges = self.query_one(SonarPanel)
+        gauges.set_both(row_of(update, TOPICS["rear"]) is not None)
+        for place, topic in TOPICS.items():
+            for sample in update.samples.get(topic, ()):
+                metres = sample.value.get("data")
+                if isinstance(metres, (int, float)):
+                    gauges.show(place, float(metres), sample.received_s)
+            gauges.show_trouble(place, *trouble_of(update, topic))
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        super().words_changed()
+        self.query_one(SonarPanel).words_changed()

@@ -1,0 +1,67 @@
+"""How fast the wheels turn; without a differential, how fast they would."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robot.kinematics import wheel_speeds
+from tui.i18n import N_
+from tui.panels.panel import Panel, first_published, newest, trouble_of
+from tui.widgets.wheels import WheelsPanel
+from tui.widgets.wheels_reading import Wheels, wheels_in
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+
+WHEELS, DRIVE = "/wheel_commands", "/drive"
+
+
+class WheelsFeed(Panel):
+    """The rear wheels and the steering, from above."""
+
+    title = N_("Wheels")
+    least = 7
+    weight = 4
+
+    def compose(self) -> ComposeResult:
+        """The drawing."""
+        yield WheelsPanel()
+
+    def watched(self) -> set[str]:
+        """What the wheels are told, and what the chassis is told."""
+        return {WHEELS, DRIVE}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show the newest speeds."""
+        topic = first_published(update, (WHEELS, DRIVE))
+        self.border_subtitle = topic
+        drawing = self.query_one(WheelsPanel)
+        sample = newest(update, topic)
+        if sample is not None:
+            wheels = wheels_in(sample.value) if topic == WHEELS else would_be(sample.value)
+            if wheels is not None:
+                drawing.show(wheels)
+        drawing.show_trouble(*trouble_of(update, topic))
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        super().words_changed()
+        self.query_one(WheelsPanel).words_changed()
+
+
+def would_be(value: Mapping[str, Any]) -> Wheels | None:
+    """Return what an AckermannDriveStamped would make the wheels do; None if it is none."""
+    drive = value.get("drive")
+    if not drive:
+        return None
+    speed, steering = float(drive["speed"]), float(drive["steering_angle"])
+    try:
+        speeds = wheel_speeds(speed, steering)
+    except ValueError:
+        return None
+    return Wheels(speeds.left_m_s, speeds.right_m_s, steering)
