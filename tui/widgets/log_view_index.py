@@ -20,7 +20,9 @@ from tui.widgets.log_view_ring import Entry
 _id_of = attrgetter("id")
 
 
-_narrow = re.compile("[ -~\xa0-\xac\xae-\u02ff\u0370-\u0482\u048a-\u052f\u2010-\u2027]*").fullmatch
+_narrow = re.compile(
+    "[ -~\xa0-\xac\xae-\u02ff\u0370-\u0482\u048a-\u052f\u2010-\u2027\u2400-\u2421]*"
+).fullmatch
 """Matches texts of which every character takes one cell."""
 
 
@@ -31,7 +33,10 @@ def folded(text: str, width: int) -> list[str]:
     characters are cut anywhere between these.
     """
     if not _narrow(text):
-        return chop_cells(text, width) or [""]
+        chopped = chop_cells(text, width) or [""]
+        # A tail of characters without width is left out by `chop_cells`.
+        chopped[-1] += text[sum(map(len, chopped)) :]
+        return chopped
     pieces: list[str] = []
     at, end = 0, len(text)
     while end - at > width:

@@ -1,0 +1,61 @@
+"""Where the head looks, out of a JointState."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tui.i18n import _
+
+PAN, TILT = "pan_joint", "tilt_joint"
+LIMIT_DEG = 90.0
+SAME_WITHIN_DEG = 0.5
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Degrees, + is left and up."""
+
+    pan_deg: float
+    tilt_deg: float
+
+    @property
+    def pan_words(self) -> str:
+        """`45° left`."""
+        return _words(self.pan_deg, _("left"), _("right"))
+
+    @property
+    def tilt_words(self) -> str:
+        """`10° up`."""
+        return _words(self.tilt_deg, _("up"), _("down"))
+
+    def near(self, other: Pose) -> bool:
+        """Whether the two are the same but for rounding."""
+        pan, tilt = self.pan_deg - other.pan_deg, self.tilt_deg - other.tilt_deg
+        return abs(pan) < SAME_WITHIN_DEG and abs(tilt) < SAME_WITHIN_DEG
+
+
+def _words(degrees: float, plus: str, minus: str) -> str:
+    if not math.isfinite(degrees):
+        return "---"
+    whole = round(degrees)
+    return f"{abs(whole)}°" + (f" {plus if whole > 0 else minus}" if whole else "")
+
+
+def head_in(value: Mapping[str, Any]) -> Pose | None:
+    """Read a sensor_msgs/JointState in radians; None if it is not about the head.
+
+    A joint that is missing counts as not a number.
+    """
+    names = [str(name) for name in value.get("name", ())]
+    if PAN not in names and TILT not in names:
+        return None
+    positions = value.get("position", ())
+
+    def degrees(joint: str) -> float:
+        at = names.index(joint) if joint in names else len(positions)
+        return math.degrees(float(positions[at])) if at < len(positions) else math.nan
+
+    return Pose(degrees(PAN), degrees(TILT))

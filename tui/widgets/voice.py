@@ -1,0 +1,91 @@
+"""The talk between human and robot: who said what when, the newest at the bottom."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Literal
+
+from rich.cells import cell_len
+
+from tui.i18n import _
+from tui.widgets.drawing import Drawing, Ink, Line, fit
+from tui.widgets.log_view_index import folded
+from tui.widgets.log_view_rows import clock
+from tui.widgets.voice_reading import Heard, heard
+
+Speaker = Literal["human", "robot"]
+KEPT = 200
+SAME_SOUND_S = 1.0
+"""Pieces of sound that follow each other this closely are one."""
+WITH_TIME_FROM = 36
+LEAST_TEXT = 8
+
+
+@dataclass(frozen=True)
+class Saying:
+    """Something that was said."""
+
+    who: Speaker
+    time_s: float
+    what: Heard
+
+
+class VoicePanel(Drawing):
+    """Shows messages of microphone (`human`) and loudspeaker (`robot`)."""
+
+    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
+        """Begin with silence."""
+        super().__init__(id=id, classes=classes)
+        self._sayings: deque[Saying] = deque(maxlen=KEPT)
+
+    def hear(self, who: Speaker, data: bytes, time_s: float) -> None:
+        """Take a message of bytes at a unix time: UTF-8 text or 16-bit PCM, whatever it is."""
+        saying = Saying(who, time_s, heard(data))
+        last = next((one for one in reversed(self._sayings) if one.who == who), None)
+        if last is not None and _one_sound(last, saying):
+            self._sayings.remove(last)
+            saying = Saying(who, time_s, last.what.and_then(saying.what))
+        self._sayings.append(saying)
+        self.redraw()
+
+    def clear(self) -> None:
+        """Forget what was said."""
+        self._sayings.clear()
+        self.refresh()
+
+    @property
+    def stale(self) -> bool:
+        """What was said stays said."""
+        return False
+
+    @property
+    def has_value(self) -> bool:
+        """Whether anything was said."""
+        return bool(self._sayings)
+
+    def draw(self, width: int, height: int) -> list[Line]:
+        """As many of the newest as there is room for."""
+        lines: list[Line] = []
+        for saying in reversed(self._sayings):
+            lines[:0] = self._saying_lines(saying, width)
+            if len(lines) >= height:
+                return lines[-height:]
+        return lines
+
+    def _saying_lines(self, saying: Saying, width: int) -> list[Line]:
+        names = {"human": _("human"), "robot": _("robot")}
+        name = fit(names[saying.who], max(map(cell_len, names.values())))
+        when = f"{clock(saying.time_s, 8)} " if width >= WITH_TIME_FROM else ""
+        sign, look = ("▸", "accent") if saying.who == "human" else ("◂", "second")
+        lead = [Ink(when, "muted"), Ink(f"{sign} {name} ", look)]
+        room = max(LEAST_TEXT, width - sum(cell_len(ink.text) for ink in lead))
+        first, *rest = folded(saying.what.words, room)
+        body = "muted" if saying.what.is_sound else ""
+        indent = Ink(" " * (width - room))
+        return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
+
+
+def _one_sound(last: Saying, saying: Saying) -> bool:
+    both = last.what.is_sound and saying.what.is_sound
+    return both and abs(saying.time_s - last.time_s) <= SAME_SOUND_S
