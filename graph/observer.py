@@ -106,8 +106,9 @@ class Observer:
     ) -> Future[int]:
         """Publish one message; the future tells how many subscribers it went to.
 
-        A new publisher waits up to a second for its subscribers. A latched message stays for
-        those who come later. The future raises PublishError, UnknownTypeError, FieldError or
+        A new publisher waits up to a second for its subscribers, in the first seconds up to four.
+        A latched message goes out at once and stays for those who come later; only the count
+        waits. The future raises PublishError, UnknownTypeError, FieldError or
         ObserverError.
         """
         order = Publish(topic, type_name, value, latched)

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 MATCH_WITHIN_S = 1.0
 """How long a new publisher waits for its subscribers."""
+DISCOVERY_S = 4.0
+"""How long after its start Deck may not have found everybody yet."""
 DEPTH = 10
 
 
@@ -32,7 +34,7 @@ class PublishError(Exception):
 
 @dataclass
 class _Line:
-    """One publisher and the messages that wait for its subscribers."""
+    """One publisher and what waits for its subscribers."""
 
     publisher: Publisher
     cls: type[Any]
@@ -41,6 +43,18 @@ class _Line:
     """Subscribers that the graph knew when it was made."""
     patience_ends_s: float
     waiting: deque[tuple[Any, Future[int]]] = field(default_factory=deque)
+    """A message, None if it has gone out, and who wants to know how many it went to."""
+
+    def publish(self, message: Any, future: Future[int]) -> bool:  # noqa: ANN401
+        """Publish; tell whether that went well, and the future if it did not."""
+        try:
+            self.publisher.publish(message)
+        except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+            failure = PublishError(f"{self.publisher.topic}: {error}")
+            failure.__cause__ = error
+            future.set_exception(failure)
+            return False
+        return True
 
 
 class Outbox:
@@ -48,6 +62,7 @@ class Outbox:
 
     def __init__(self, node: Node) -> None:
         self._node = node
+        self._born_s = time.monotonic()
         self._lines: dict[tuple[str, str, bool], _Line] = {}
 
     def prepare(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> None:
@@ -72,7 +87,13 @@ class Outbox:
         Raises PublishError, UnknownTypeError or FieldError.
         """
         line = self._line(topic, type_name, ends, latched=latched)
-        line.waiting.append((to_message(line.cls, value), future))
+        message = to_message(line.cls, value)
+        if latched:
+            # The middleware hands it to those who are matched later: a stop must not wait.
+            if line.publish(message, future):
+                line.waiting.append((None, future))
+        else:
+            line.waiting.append((message, future))
         self._send(line)
 
     def step(self) -> bool:
@@ -118,7 +139,9 @@ class Outbox:
             )
         except Exception as error:
             raise PublishError(f"{topic} cannot be published: {error}") from error
-        return _Line(publisher, cls, qos, expected, time.monotonic() + MATCH_WITHIN_S)
+        now_s = time.monotonic()
+        patience_ends_s = max(now_s + MATCH_WITHIN_S, self._born_s + DISCOVERY_S)
+        return _Line(publisher, cls, qos, expected, patience_ends_s)
 
     def _send(self, line: _Line) -> None:
         matched = line.publisher.get_subscription_count()
@@ -128,11 +151,5 @@ class Outbox:
         line.patience_ends_s = 0.0
         while line.waiting:
             message, future = line.waiting.popleft()
-            try:
-                line.publisher.publish(message)
-            except Exception as error:  # noqa: BLE001 - told to whoever asked for it
-                failure = PublishError(f"{line.publisher.topic}: {error}")
-                failure.__cause__ = error
-                future.set_exception(failure)
-            else:
+            if message is None or line.publish(message, future):
                 future.set_result(matched)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 NAME_PREFIX = "_deck_observer_"
 """The underscore keeps it out of `ros2 node list`."""
+DOMAINS = range(233)
+"""Fast DDS ends the whole process at a greater one: its ports would be no ports any more."""
 RANGES = {"localhost": "LOCALHOST", "subnet": "SUBNET"}
 
 
@@ -38,8 +40,10 @@ def open_ros(domain: int, discovery: str | tuple[str, ...]) -> Ros:
     """Join the domain; takes a tenth of a second or more, most of it the import of rclpy.
 
     `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found. Raises
-    ImportError without ROS, and what rclpy raises when the domain is refused.
+    ImportError without ROS, ValueError for a domain that does not exist, and what rclpy raises.
     """
+    if domain not in DOMAINS:
+        raise ValueError(f"domain {domain} is not between {DOMAINS[0]} and {DOMAINS[-1]}")
     from rclpy.context import Context
     from rclpy.impl.logging_severity import LoggingSeverity
     from rclpy.logging import set_logger_level
@@ -65,6 +69,8 @@ def open_ros(domain: int, discovery: str | tuple[str, ...]) -> Ros:
 
 def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str]:
     if isinstance(discovery, str):
+        if discovery not in RANGES:
+            raise ValueError(f"discovery '{discovery}' is neither of {', '.join(RANGES)}")
         return {"ROS_AUTOMATIC_DISCOVERY_RANGE": RANGES[discovery], "ROS_STATIC_PEERS": ""}
     return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": ";".join(discovery)}
 

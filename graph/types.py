@@ -50,6 +50,7 @@ def _load(type_name: str, kind: str) -> type[Any]:
         )
     package, _, name = parts
     try:
+        importlib.import_module(package)
         module = importlib.import_module(f"{package}.{kind}")
         found: type[Any] | None = getattr(module, name, None)
         if found is not None:

@@ -1,0 +1,125 @@
+"""Real ROS nodes in processes of their own, and an observer that looks at them."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
+from graph.observer import Observer
+from tests.waiting import wait_until
+
+ROOT = Path(__file__).parents[2]
+
+
+class Peer:
+    """A node in a process of its own; `peer.advertise(...)` has it do `Orders.advertise`."""
+
+    def __init__(self, name: str, domain: int) -> None:
+        self.name = f"/{name}"
+        self.heard: dict[str, list[str]] = {}
+        self.served: list[str] = []
+        self._answers: queue.Queue[Any] = queue.Queue()
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "tests.ros.told_node", name],
+            cwd=ROOT,
+            env={
+                **os.environ,
+                "ROS_DOMAIN_ID": str(domain),
+                "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            },
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        self._answers.get(timeout=30)
+
+    def __getattr__(self, order: str) -> Any:
+        def do(topic: str = "", /, **words: Any) -> Any:
+            words = {"topic": topic, **words} if topic else words
+            assert self.process.stdin is not None
+            self.process.stdin.write(json.dumps({"order": order, **words}) + "\n")
+            self.process.stdin.flush()
+            return self._answers.get(timeout=30)
+
+        return do
+
+    def close(self) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.close()
+        self.process.wait(10)
+        self._reader.join(10)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            said = json.loads(line)
+            if "heard" in said:
+                self.heard.setdefault(said["heard"], []).append(said["value"])
+            elif "served" in said:
+                self.served.append(said["served"])
+            else:
+                self._answers.put(said.get("done"))
+
+
+class Watcher:
+    """An observer and all that it has handed over."""
+
+    def __init__(self, domain: int, **settings: Any) -> None:
+        self.observer = Observer(domain, "localhost", **settings)
+        self.update = GraphUpdate(0.0)
+        self.updates = 0
+        self.samples: dict[str, list[Sample]] = {}
+        self.observer.start(self._take)
+
+    def row(self, topic: str) -> TopicRow | None:
+        return next((row for row in self.update.topics if row.name == topic), None)
+
+    def node(self, name: str) -> NodeRow | None:
+        return next((row for row in self.update.nodes if row.name == name), None)
+
+    def of(self, topic: str) -> list[Any]:
+        """The values of the samples so far; `data` alone where that is all there is."""
+        return [
+            s.value["data"] if len(s.value) == 1 else s.value for s in self.samples.get(topic, [])
+        ]
+
+    def wait_for(self, topic: str, test: Any, what: str) -> TopicRow:
+        """Wait until the topic's row is there and passes the test."""
+
+        def passes() -> TopicRow | None:
+            row = self.row(topic)
+            return row if row and test(row) else None
+
+        return wait_until(passes, f"{topic}: {what}")
+
+    def close(self) -> None:
+        self.observer.watch(())
+        self.observer.stop()
+
+    def _take(self, update: GraphUpdate) -> None:
+        for topic, samples in update.samples.items():
+            self.samples.setdefault(topic, []).extend(samples)
+        self.update = update
+        self.updates += 1
+
+
+def let_updates_come(watcher: Watcher, count: int) -> None:
+    """Wait until so many more updates have come: what would have shown up has had its time."""
+    goal = watcher.updates + count
+    wait_until(lambda: watcher.updates >= goal, f"{count} more updates")
+
+
+def seconds(since_s: float) -> float:
+    return time.monotonic() - since_s

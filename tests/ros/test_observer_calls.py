@@ -1,0 +1,120 @@
+"""Service calls: an answer, or in words why there is none; nothing else waits meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from graph.data import CallResult
+from tests.ros.observing import Peer, Watcher, let_updates_come
+from tests.waiting import wait_until
+
+ADD = "example_interfaces/srv/AddTwoInts"
+
+
+@pytest.fixture(scope="module")
+def server(module_domain: int) -> Iterator[Peer]:
+    peer = Peer("server", module_domain)
+    peer.serve("/add")
+    yield peer
+    peer.close()
+
+
+@pytest.fixture(scope="module")
+def watcher(module_domain: int) -> Iterator[Watcher]:
+    watcher = Watcher(module_domain)
+    yield watcher
+    watcher.close()
+
+
+def call(watcher: Watcher, service: str, request: dict[str, object], **how: object) -> CallResult:
+    type_name = str(how.pop("type_name", ADD))
+    return watcher.observer.call(service, type_name, request, **how).result(40)
+
+
+@pytest.mark.usefixtures("server")
+def test_an_answer_comes_as_plain_values(watcher: Watcher) -> None:
+    result = call(watcher, "/add", {"a": 2, "b": 40}, timeout_s=30)
+    assert result.ok, result.error
+    assert result.response == {"sum": 42}
+    assert result.error == ""
+    assert 0 < result.elapsed_s < 30
+
+
+@pytest.mark.usefixtures("server")
+def test_many_calls_at_once_get_each_their_own_answer(watcher: Watcher) -> None:
+    futures = [
+        watcher.observer.call("/add", ADD, {"a": number, "b": 1000}, timeout_s=30)
+        for number in range(20)
+    ]
+    sums = [future.result(40).response for future in futures]
+    assert sums == [{"sum": 1000 + number} for number in range(20)]
+
+
+def test_a_service_that_nobody_serves_is_named(watcher: Watcher) -> None:
+    result = call(watcher, "/nobody", {"a": 1, "b": 2}, timeout_s=0.3)
+    assert (result.ok, result.response) == (False, None)
+    assert result.error == "/nobody: nobody serves it within 0.3 s"
+    assert result.elapsed_s >= 0.3
+
+
+def test_a_server_that_does_not_answer_ends_in_a_time_out_and_freezes_nothing(
+    server: Peer, watcher: Watcher, module_domain: int
+) -> None:
+    server.advertise("/beat", type_name="std_msgs/msg/Float32")
+    server.repeat("/beat", value={"data": 1.0}, hz=20)
+    watcher.observer.watch(["/beat"])
+    wait_until(lambda: watcher.of("/beat"), "the beat")
+    slow = Peer("slow", module_domain)
+    slow.serve("/slow", after_s=2.0)
+    wait_until(lambda: any(s.name == "/slow" for s in watcher.update.services), "the service")
+    slow_one = watcher.observer.call("/slow", ADD, {"a": 1, "b": 2}, timeout_s=0.8)
+    let_updates_come(watcher, 5)
+    assert not slow_one.done()
+    result = slow_one.result(30)
+    assert result.error == "/slow: no answer within 0.8 s"
+    # The answer that comes too late is not taken for one to the next call.
+    wait_until(lambda: slow.served == ["/slow"], "the late answer")
+    late = call(watcher, "/slow", {"a": 10, "b": 20}, timeout_s=30)
+    assert late.response == {"sum": 30}
+    slow.close()
+
+
+@pytest.mark.usefixtures("server")
+@pytest.mark.parametrize(
+    ("service", "type_name", "request_", "word"),
+    [
+        ("/add", ADD, {"a": "two"}, "a: expected a whole number, got 'two'"),
+        ("/add", ADD, {"c": 2}, "c: no such field; there is a, b"),
+        ("/add", ADD, {"a": 2**63}, "a: expected -9223372036854775808 to 9223372036854775807"),
+        ("/add", "foo_msgs/srv/Bar", {}, "/add is a example_interfaces/srv/AddTwoInts, not a foo"),
+        ("/else", "foo_msgs/srv/Bar", {}, "package foo_msgs is not installed"),
+        ("/no name", ADD, {}, "/no name cannot be called"),
+    ],
+)
+def test_what_cannot_be_called_is_refused_in_words(
+    watcher: Watcher,
+    service: str,
+    type_name: str,
+    request_: dict[str, object],
+    word: str,
+) -> None:
+    wait_until(lambda: any(s.name == "/add" for s in watcher.update.services), "the service")
+    result = call(watcher, service, request_, type_name=type_name)
+    assert not result.ok
+    assert result.error.startswith(word)
+
+
+def test_a_server_that_dies_during_the_call_ends_in_a_time_out(
+    watcher: Watcher, module_domain: int
+) -> None:
+    dying = Peer("dying", module_domain)
+    dying.serve("/dying", after_s=60.0)
+    wait_until(lambda: any(s.name == "/dying" for s in watcher.update.services), "the service")
+    future = watcher.observer.call("/dying", ADD, {"a": 1, "b": 2}, timeout_s=2.0)
+    wait_until(future.running, "the call is under way")
+    dying.process.kill()
+    dying.process.wait(10)
+    assert "no answer" in future.result(30).error
+    dying.close()
