@@ -149,10 +149,10 @@ async def test_a_megabyte_is_not_pasted() -> None:
     app = EditorApp()
     async with app.run_test(size=(60, 12)) as pilot:
         before = app.editor.text
-        app.editor.post_message(Paste("x" * 1_000_000))
+        app.post_message(Paste("x" * 1_000_000))
         await pilot.pause()
         assert app.editor.text == before
-        app.editor.post_message(Paste("[1]"))
+        app.post_message(Paste("[1]"))
         await pilot.pause()
         assert app.editor.text == "[1]" + before
 

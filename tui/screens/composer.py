@@ -188,7 +188,7 @@ class ComposerScreen(DeckScreen):
         if self.problems and not anyway:
             self.go_to_next_problem()
             words = _("Not sent: there are problems. {key} sends it anyway.").format(
-                key=self.deck.key_of(SendAnyway)
+                key=self.deck.keys_of(SendAnyway)[0]
             )
             self.notify(words, severity="warning", markup=False)
             return
@@ -250,7 +250,7 @@ class ComposerScreen(DeckScreen):
         self._title("#composer-came", _("What came of it"))
         story, now_s = self._story, clock.now()
         if story is None:
-            hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.key_of(Send))
+            hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
             self.outcome.show(f"{_('Nothing was sent yet.')} {hint}", ())
             return
         at = time.strftime("%H:%M:%S", time.localtime(story.sent_s))
