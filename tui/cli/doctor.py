@@ -1,0 +1,43 @@
+"""`deck doctor`: the findings as lines, or as JSON."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from tui.cli.output import DIM, GREEN, RED, YELLOW, Paint, write
+from tui.doctor import Level, examine
+from tui.i18n import N_, _
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from tui.doctor import Finding
+
+LOOKS = {
+    Level.OK: (N_("ok"), GREEN),
+    Level.WARN: (N_("warn"), YELLOW),
+    Level.FAIL: (N_("FAIL"), RED),
+}
+
+
+def doctor_command(options: Namespace) -> int:
+    """Examine everything; 1 if something is missing that Deck cannot do without."""
+    findings = examine()
+    if options.json:
+        write(json.dumps([asdict(finding) for finding in findings], ensure_ascii=False, indent=2))
+    else:
+        paint = Paint(sys.stdout)
+        width = max(len(_(word)) for word, _colour in LOOKS.values())
+        for finding in findings:
+            _show(finding, paint, width)
+    return 1 if any(finding.level is Level.FAIL for finding in findings) else 0
+
+
+def _show(finding: Finding, paint: Paint, width: int) -> None:
+    word, colour = LOOKS[finding.level]
+    write(f"{paint(_(word).ljust(width), colour)}  {finding.text}")
+    if finding.mend:
+        write(f"{'':{width}}  {paint('-> ' + finding.mend, DIM)}")

@@ -1,0 +1,106 @@
+"""Serial ports: which there are, by which lasting name, and whether they may be opened."""
+
+from __future__ import annotations
+
+import grp
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tui.doctor.finding import ok, warn
+from tui.i18n import _
+
+if TYPE_CHECKING:
+    from tui.doctor.finding import Finding
+
+BY_ID = Path("/dev/serial/by-id")
+
+
+@dataclass(frozen=True)
+class SerialPort:
+    """One port."""
+
+    device: str
+    """`/dev/ttyACM0`."""
+    description: str = ""
+    by_id: str = ""
+    """The name that stays the same at every plugging, empty if there is none."""
+    group: str = ""
+    allowed: bool = True
+    """Whether this user may read and write it."""
+
+
+@dataclass(frozen=True)
+class SerialFacts:
+    """What is there."""
+
+    ports: tuple[SerialPort, ...] = ()
+    user: str = ""
+    groups: tuple[str, ...] = ()
+    """Of this process: a group joined a moment ago counts only after logging in again."""
+    error: str = ""
+
+
+def look() -> SerialFacts:
+    """Find out; ports of the motherboard without anything behind them are left out."""
+    try:
+        from serial.tools import list_ports
+    except ImportError as error:
+        return SerialFacts(error=str(error))
+    names = {os.path.realpath(path): str(path) for path in sorted(BY_ID.glob("*"))}
+    ports = tuple(
+        SerialPort(
+            device=port.device,
+            description=port.description or "",
+            by_id=names.get(os.path.realpath(port.device), ""),
+            group=_group_of(port.device),
+            allowed=os.access(port.device, os.R_OK | os.W_OK),
+        )
+        for port in sorted(list_ports.comports(), key=lambda port: port.device)
+        if port.hwid != "n/a"
+    )
+    return SerialFacts(ports, os.environ.get("USER", ""), tuple(map(_name, os.getgroups())))
+
+
+def judge(facts: SerialFacts) -> list[Finding]:
+    """Say what is well and what is not."""
+    if facts.error:
+        return [warn("serial", facts.error, "pip install pyserial")]
+    if not facts.ports:
+        return [ok("serial", _("no serial port; mocks need none"))]
+    return [_port(port, facts) for port in facts.ports]
+
+
+def _port(port: SerialPort, facts: SerialFacts) -> Finding:
+    name = port.by_id or port.device
+    what = f" ({port.description})" if port.description not in ("", "n/a") else ""
+    text = _("serial port {name}").format(name=name) + what
+    if port.allowed:
+        return ok("serial", text)
+    user, group = facts.user or "$USER", port.group or "dialout"
+    if group in facts.groups:
+        mend = _("the group {group} is yours, but the port forbids it: look at its udev rule")
+        return warn(
+            "serial", _("{what}: no permission").format(what=text), mend.format(group=group)
+        )
+    mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
+    return warn(
+        "serial",
+        _("{what}: no permission").format(what=text),
+        mend.format(group=group, user=user),
+    )
+
+
+def _group_of(device: str) -> str:
+    try:
+        return _name(os.stat(device).st_gid)  # noqa: PTH116 - a device, not a file to be read
+    except OSError:
+        return ""
+
+
+def _name(gid: int) -> str:
+    try:
+        return grp.getgrgid(gid).gr_name
+    except KeyError:
+        return str(gid)

@@ -1,0 +1,89 @@
+"""/dev/shm, through which nodes of one machine talk: its room, and what dead nodes left in it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tui.doctor.finding import ok, warn
+from tui.i18n import _, ngettext
+
+if TYPE_CHECKING:
+    from tui.doctor.finding import Finding
+
+FOLDER = Path("/dev/shm")
+LEAST_FREE = 64 * 2**20
+"""Bytes; Fast DDS takes half a megabyte for each node and more for pictures."""
+
+
+@dataclass(frozen=True)
+class SharedMemoryFacts:
+    """What is there."""
+
+    exists: bool = True
+    free: int = 2**30
+    """Bytes."""
+    stale: int = 0
+    """Segments of Fast DDS that are this user's and that no process has mapped."""
+    stale_bytes: int = 0
+
+
+def look() -> SharedMemoryFacts:
+    """Find out."""
+    if not FOLDER.is_dir():
+        return SharedMemoryFacts(exists=False, free=0)
+    status = os.statvfs(FOLDER)
+    held = _mapped()
+    stale = [
+        path.stat().st_size
+        for path in FOLDER.glob("fastrtps_*")
+        if not path.name.endswith(("_el", "_sl")) and str(path) not in held and _is_mine(path)
+    ]
+    return SharedMemoryFacts(True, status.f_bavail * status.f_frsize, len(stale), sum(stale))
+
+
+def judge(facts: SharedMemoryFacts) -> list[Finding]:
+    """Say what is well and what is not."""
+    if not facts.exists:
+        text = _("there is no /dev/shm: nodes talk through the network stack, which is slower")
+        return [warn("shm", text, _("mount it; in a container: --ipc=host"))]
+    found = [_room(facts)]
+    if facts.stale:
+        words = ngettext(
+            "{count} segment in /dev/shm that nobody holds ({size:.0f} MB)",
+            "{count} segments in /dev/shm that nobody holds ({size:.0f} MB)",
+            facts.stale,
+        )
+        text = words.format(count=facts.stale, size=facts.stale_bytes / 1e6)
+        mend = _("with no ROS node running: rm /dev/shm/fastrtps_*")
+        found.append(warn("shm.stale", text, mend))
+    return found
+
+
+def _room(facts: SharedMemoryFacts) -> Finding:
+    text = _("/dev/shm has {size:.0f} MB free").format(size=facts.free / 1e6)
+    if facts.free < LEAST_FREE:
+        mend = _("free some, or enlarge it; in a container: --shm-size=256m")
+        return warn("shm", text, mend)
+    return ok("shm", text)
+
+
+def _mapped() -> set[str]:
+    """Return the segments that processes have mapped, as far as one may look."""
+    held: set[str] = set()
+    for maps in Path("/proc").glob("[0-9]*/maps"):
+        try:
+            lines = maps.read_text(errors="replace").splitlines()
+        except OSError:
+            continue
+        held.update(line[line.index(str(FOLDER)) :] for line in lines if "/fastrtps_" in line)
+    return held
+
+
+def _is_mine(path: Path) -> bool:
+    try:
+        return path.stat().st_uid == os.getuid()
+    except OSError:
+        return False
