@@ -1,0 +1,265 @@
+"""The screen of topics: what it asks of the graph, and what it shows in every case."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
+from tests.tui.recorded import TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from tests.tui.snapshots import Look, settle
+from tui.screens.topics import TopicsScreen
+from tui.widgets.topic_detail import TopicHead
+
+if TYPE_CHECKING:
+    from textual.pilot import Pilot
+
+    from tui.app import DeckApp
+
+HOME = Look((120, 40), "en")
+SONAR, CAMERA = "/sensor/sonar_front", "/camera/color/image_raw"
+
+
+class Room:
+    """The screen of topics over a recorded graph, under a pilot."""
+
+    def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
+        self.app, self.pilot, self.graph = app, pilot, graph
+
+    @property
+    def screen(self) -> TopicsScreen:
+        """The screen."""
+        screen = self.app.screen
+        assert isinstance(screen, TopicsScreen)
+        return screen
+
+    async def choose(self, topic: str) -> None:
+        """Choose a topic and wait until it is asked for."""
+        self.screen.table.choose(topic)
+        for _round in range(100):
+            await self.pilot.pause(0.02)
+            if self.graph.watched == {topic}:
+                return
+        pytest.fail(f"{topic} is not watched: {self.graph.watched}")
+
+    async def show(self, update: GraphUpdate) -> None:
+        """Let the graph be this, and wait until it is drawn."""
+        self.graph.show(update)
+        await self.pilot.pause()
+        await self.pilot.pause()
+
+    def head(self) -> str:
+        """The lines above the message."""
+        return self.screen.query_one(TopicHead).render().plain
+
+    def echo(self) -> str:
+        """The message, or the words in its place."""
+        tree = self.screen.detail.echo
+        return "\n".join(tree.render_line(y).text.rstrip() for y in range(tree.size.height)).strip()
+
+
+def row(name: str, **more: Any) -> TopicRow:
+    return replace(next(row for row in TOPICS if row.name == name), **more)
+
+
+def with_row(changed: TopicRow, **samples: Any) -> GraphUpdate:
+    others = [row for row in TOPICS if row.name != changed.name]
+    return lesson_update(topics=(*others, changed), samples=samples)
+
+
+@pytest.fixture
+def graph() -> RecordedGraph:
+    return RecordedGraph()
+
+
+@pytest.fixture
+async def room(graph: RecordedGraph) -> Any:
+    app = HOME.app("topics", RecordedPad(graph=graph))
+    async with app.run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        yield Room(app, pilot, graph)
+
+
+async def test_all_rates_are_measured_while_the_screen_is_in_front(room: Room) -> None:
+    assert room.graph.measured
+    await room.pilot.press("4")
+    await settle(room.pilot)
+    assert not room.graph.measured
+    assert room.graph.watched == set()
+
+
+async def test_only_the_chosen_topic_is_decoded(room: Room) -> None:
+    await room.choose(SONAR)
+    await room.show(lesson_update())
+    assert "data:    1.84" in room.echo()
+    assert "std_msgs/msg/Float32" in room.head()
+    assert "1.0 Hz · 8 B/s · 8 B a message" in room.head()
+
+
+async def test_walking_past_topics_subscribes_none_of_them(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[set[str]] = []
+    monkeypatch.setattr(room.graph, "watch", lambda topics: asked.append(set(topics)))
+    await room.pilot.press("down", "down", "down", "down")
+    for _round in range(100):
+        await room.pilot.pause(0.02)
+        if asked:
+            break
+    assert asked == [{"/drive"}]
+
+
+async def test_an_image_is_a_picture_and_can_be_a_tree(room: Room) -> None:
+    await room.choose(CAMERA)
+    await room.show(lesson_update())
+    assert room.screen.detail.as_picture
+    assert room.screen.detail.picture.caption == "bgr8 640×480 · 10.0 Hz"
+    await room.pilot.press("i")
+    assert not room.screen.detail.as_picture
+    assert "(921600 bytes)" in room.echo()
+    await room.show(lesson_update())
+    assert not room.screen.detail.as_picture
+
+
+async def test_a_picture_that_cannot_be_shown_is_told(room: Room) -> None:
+    await room.choose(CAMERA)
+    odd = {"width": 2, "height": 2, "step": 4, "encoding": "bayer_rggb8", "data": b"1234"}
+    await room.show(
+        lesson_update(samples={CAMERA: (sample(CAMERA, "sensor_msgs/msg/Image", odd),)})
+    )
+    headline, detail = room.screen.detail.picture.words
+    assert headline == "pictures of the encoding bayer_rggb8 cannot be shown"
+    assert "rgb8" in detail
+
+
+async def test_nobody_who_publishes_is_told(room: Room) -> None:
+    await room.choose("/emergency_stop")
+    assert room.echo().startswith("nobody publishes this topic\nStart the node")
+
+
+async def test_a_qos_mismatch_names_who_and_what_to_change(room: Room) -> None:
+    facts = {
+        "policy": "reliability", "publisher": "/lidar", "subscriber": "/brain",
+        "offered": "best_effort", "requested": "reliable",
+    }  # fmt: skip
+    await room.choose(SONAR)
+    await room.show(
+        with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, facts=facts))
+    )
+    words = " ".join(room.echo().split())
+    assert words.startswith("QoS does not fit")
+    assert "/brain does not hear /lidar: reliability reliable is asked for" in words
+    assert "Make the publisher reliable or the subscriber best_effort." in words
+
+
+async def test_an_unknown_type_names_its_package(room: Room) -> None:
+    facts = {"type": "my_msgs/msg/Thing", "package": "my_msgs", "reason": "not installed"}
+    await room.choose(SONAR)
+    await room.show(
+        with_row(row(SONAR, trouble=Trouble.UNKNOWN_TYPE, hz=None, age_s=None, facts=facts))
+    )
+    assert "install the package my_msgs" in " ".join(room.echo().split())
+
+
+async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(room: Room) -> None:
+    await room.choose(SONAR)
+    await room.show(lesson_update())
+    publisher = EndpointInfo("/sonar_front", "std_msgs/msg/Float32", "reliable", "volatile")
+    await room.show(
+        with_row(row(SONAR, trouble=Trouble.QUIET, hz=0.0, age_s=7.4, published_by=(publisher,)))
+    )
+    assert "data:    1.84" in room.echo()
+    assert "no data for 7 s" in room.head()
+    assert "Publishers are there: sonar_front." in room.head()
+
+
+async def test_what_is_not_measured_says_so(room: Room) -> None:
+    await room.show(with_row(row(SONAR, measured=False, hz=None, bytes_per_s=None, age_s=None)))
+    await room.choose(SONAR)
+    assert "not measured: Deck is not subscribed" in room.head()
+
+
+async def test_a_pause_holds_the_message_and_says_so(room: Room) -> None:
+    await room.choose(SONAR)
+    await room.show(lesson_update())
+    await room.pilot.press("p")
+    newer = sample(SONAR, "std_msgs/msg/Float32", {"data": 0.5}, 8)
+    await room.show(lesson_update(samples={SONAR: (newer,)}))
+    assert "1.84" in room.echo()
+    assert "PAUSED" in room.head()
+    await room.pilot.press("p")
+    await room.pilot.pause()
+    assert "0.5" in room.echo()
+    assert "PAUSED" not in room.head()
+
+
+@pytest.mark.parametrize("key", ["y", "c", "с"])
+async def test_the_message_is_copied_as_yaml(room: Room, key: str) -> None:
+    await room.choose("/drive")
+    await room.show(lesson_update())
+    await room.pilot.press(key)
+    assert "steering_angle: 0.5" in room.app.clipboard
+
+
+async def test_without_a_message_there_is_nothing_to_copy(room: Room) -> None:
+    await room.choose("/emergency_stop")
+    await room.pilot.press("y")
+    assert room.app.clipboard == ""
+
+
+async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(room: Room) -> None:
+    await room.pilot.press("slash", *"audio", "space", *"mic")
+    await room.pilot.pause()
+    assert [row.name for row in room.screen.table.shown] == ["/audio/mic_raw"]
+    assert room.screen.filter.value == "audio mic"
+    assert not room.app.brake.state.engaged
+    await room.pilot.press("enter")
+    assert room.screen.table.has_focus
+    await room.pilot.press("escape")
+    await room.pilot.pause()
+    assert len(room.screen.table.shown) == 11
+
+
+async def test_space_stops_the_robot_from_table_and_tree(room: Room) -> None:
+    for widget in (room.screen.table, room.screen.detail.echo):
+        room.app.brake.forget()
+        widget.focus()
+        await room.pilot.press("space")
+        await room.pilot.pause()
+        assert room.app.brake.state.engaged
+
+
+async def test_keys_sort_turn_round_and_show_the_topics_of_ros_itself(room: Room) -> None:
+    await room.pilot.press("s", "s")
+    assert room.screen.table.order.column_id == "publishers"
+    await room.pilot.press("r")
+    assert room.screen.table.order.reverse
+    await room.pilot.press("a")
+    await room.pilot.pause()
+    assert len(room.screen.table.shown) == 13
+
+
+async def test_an_observer_that_cannot_work_says_why(room: Room) -> None:
+    await room.show(GraphUpdate(0.0, error="rclpy is missing: source ROS 2"))
+    text = room.screen.table.render_line(1).text + room.screen.table.render_line(2).text
+    assert "ROS cannot be observed" in text
+    assert "rclpy is missing: source ROS 2" in text
+
+
+async def test_the_language_changes_under_the_screen(room: Room) -> None:
+    await room.choose("/emergency_stop")
+    await room.pilot.press("f9")
+    await room.pilot.pause()
+    assert room.echo().startswith("этот топик никто не публикует")
+    assert "Топик" in room.screen.table.render_line(0).text
+
+
+@pytest.mark.parametrize("size", [(1, 1), (10, 4), (30, 8), (59, 19)])
+async def test_any_size_is_survived(room: Room, size: tuple[int, int]) -> None:
+    await room.choose(CAMERA)
+    await room.pilot.resize_terminal(*size)
+    await room.show(lesson_update())
+    await room.choose(SONAR)
+    await room.show(lesson_update())
