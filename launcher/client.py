@@ -213,7 +213,7 @@ class SupervisorClient:
     async def shutdown(self, now: bool = False) -> None:
         """Stop all nodes, dependants first, and the supervisor; return when it has ended.
 
-        `now` skips the waiting, also that of a call that is under way.
+        `now`, or asking a second time, skips the waiting, also that of a call under way.
         """
         with contextlib.suppress(ConnectionLostError):
             await self._ask("shutdown", now=now)

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 LATE_S = 60.0
 """For so long after its time was up a node may still become ready."""
+ASKED_TWICE_S = 0.3
+"""Two requests to stop that are closer together are one."""
 _NO_SUCH_COMMAND = (126, 127)
 
 
@@ -97,6 +99,7 @@ class Node:
         self._again = False
         self._forced = False
         self._hurried = False
+        self._asked_at = 0.0
 
     @property
     def at_work(self) -> bool:
@@ -134,10 +137,13 @@ class Node:
             self._nudge.set()
 
     async def stop(self, *, now: bool = False) -> None:
-        """Stop it and return when nothing of it is left; `now` skips the waiting between stages."""
+        """Stop it and return when nothing of it is left.
+
+        `now`, or asking a second time, skips the waiting between the signals.
+        """
         self._again = False
         if self.at_work and self._task is not None:
-            self._go_down(now=now)
+            self._go_down(now=now or self._asked_before())
             await asyncio.wait([self._task])
         elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
             self._become(NodeState.EXITED, say("stopped"))
@@ -155,7 +161,12 @@ class Node:
         if self.state is NodeState.WAITING:
             self._nudge.set()
 
+    def _asked_before(self) -> bool:
+        return self._down and self._around.clock.now() - self._asked_at > ASKED_TWICE_S
+
     def _go_down(self, *, now: bool) -> None:
+        if not self._down:
+            self._asked_at = self._around.clock.now()
         self._down = True
         self._hurried = self._hurried or now
         self.serves = False

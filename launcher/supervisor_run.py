@@ -194,7 +194,7 @@ class Supervisor:
 
     def shut_down(self, *, now: bool) -> None:
         """Begin to stop everything, and then the supervisor."""
-        self._finish(say("stopped"), now=now)
+        self._finish(say("stopped"), now=now or self._end.is_set())
 
     # What happens.
 

@@ -1,0 +1,114 @@
+"""Sessions of small scripts under a real supervisor."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+import textwrap
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from launcher.client import SupervisorClient, launch
+from launcher.process_table import read_process
+from launcher.status import NodeState, NodeStatus
+
+Launch = Callable[..., Awaitable[SupervisorClient]]
+
+NODE_DEADLINE_S = 30.0
+
+
+def script(text: str, *arguments: str) -> list[str]:
+    """Return the command line of a Python script that starts at once: no site, no ROS."""
+    return [sys.executable, "-I", "-S", "-u", "-c", textwrap.dedent(text), *arguments]
+
+
+SLEEPER = script("import time; time.sleep(1000)")
+DEAF = "import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN); "
+
+
+def write_profile(folder: Path, nodes: dict[str, Any], name: str = "test") -> Path:
+    """Write a profile; JSON is YAML."""
+    path = folder / f"{name}.yaml"
+    path.write_text(json.dumps({"title": {"en": "Test"}, "nodes": nodes}), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+async def start(tmp_path: Path, ros_domain: int) -> AsyncIterator[Launch]:
+    """Launch sessions that end with the test."""
+    clients: list[SupervisorClient] = []
+
+    async def begin(nodes: dict[str, Any], **options: Any) -> SupervisorClient:
+        path = write_profile(tmp_path, nodes, options.pop("name", "test"))
+        client = await launch(path, **{"domain": ros_domain, **options})
+        clients.append(client)
+        return client
+
+    yield begin
+    for client in clients:
+        await client.shutdown(now=True)
+
+
+async def until(condition: Callable[[], Any], what: str, within_s: float = NODE_DEADLINE_S) -> Any:
+    """Return the first truthy result of `condition`."""
+    deadline = time.monotonic() + within_s
+    while True:
+        result = condition()
+        if result:
+            return result
+        if time.monotonic() > deadline:
+            pytest.fail(f"not within {within_s:g} s: {what}")
+        await asyncio.sleep(0.02)
+
+
+async def until_state(
+    client: SupervisorClient, name: str, *states: NodeState, within_s: float = NODE_DEADLINE_S
+) -> NodeStatus:
+    """Return the node's status once it is in one of these states."""
+    words = " or ".join(state.value for state in states)
+
+    def there() -> NodeStatus | None:
+        status = client.nodes[name]
+        return status if status.state in states else None
+
+    try:
+        status: NodeStatus = await until(there, f"{name} {words}", within_s)
+    except pytest.fail.Exception:
+        log = [line.text for line in await client.history(name, 20)]
+        pytest.fail(f"{name} is not {words} but {client.nodes[name]}; log: {log}")
+    return status
+
+
+async def running_pid(client: SupervisorClient, name: str) -> int:
+    """Return the number of a node's process once it runs."""
+    status = await until_state(client, name, NodeState.RUNNING, NodeState.READY)
+    assert status.pid is not None
+    return status.pid
+
+
+async def said(client: SupervisorClient, name: str, start: str) -> str:
+    """Return what follows `start` in the first line of a node's log that starts so."""
+    deadline = time.monotonic() + NODE_DEADLINE_S
+    while time.monotonic() < deadline:
+        for line in await client.history(name, 1000):
+            if line.text.startswith(start):
+                return line.text.removeprefix(start).strip()
+        await asyncio.sleep(0.05)
+    pytest.fail(f"{name} has not said {start!r}")
+
+
+def alive(pid: int) -> bool:
+    """Whether a process lives."""
+    process = read_process(pid)
+    return process is not None and not process.zombie
+
+
+def kill(pid: int, number: int) -> None:
+    """Send a signal to a process that the test has started."""
+    os.kill(pid, number)

@@ -1,0 +1,295 @@
+"""Nodes as processes: nothing is started twice, and nothing is left when they are stopped."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from launcher.process_table import read_marks, read_process
+from launcher.status import NodeState
+from tests.ros.supervised import (
+    DEAF,
+    SLEEPER,
+    Launch,
+    alive,
+    kill,
+    running_pid,
+    said,
+    script,
+    until,
+    until_state,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FORK_OFF = """
+import os, sys, time
+middle = os.fork()
+if middle == 0:
+    if "session" in sys.argv: os.setsid()
+    if "twice" in sys.argv and os.fork(): os._exit(0)
+    if "deaf" in sys.argv:
+        import signal
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    print("grandchild", os.getpid(), flush=True)
+    time.sleep(1000)
+if "quit" in sys.argv:
+    time.sleep(0.5)
+    sys.exit(3)
+try: time.sleep(1000)
+except KeyboardInterrupt: sys.exit(0)
+"""
+
+
+async def test_each_node_leads_a_session_and_a_group_of_its_own(start: Launch) -> None:
+    client = await start({"one": {"exec": SLEEPER}, "two": {"exec": SLEEPER}})
+    for name in client.nodes:
+        pid = await running_pid(client, name)
+        process = read_process(pid)
+        assert process is not None
+        assert (process.group, process.session) == (pid, pid)
+        assert process.parent == client.session.supervisor_pid
+        assert (read_marks(pid) or {}).get("DECK_RUN_ID") == client.session.run_id
+
+
+async def test_a_node_gets_its_environment_and_no_terminal(
+    start: Launch,
+    tmp_path: Path,
+    ros_domain: int,
+) -> None:
+    text = """
+        import json, os
+        print("env", json.dumps([dict(os.environ), os.getcwd(), os.read(0, 9).hex()]))
+    """
+    client = await start({"env": {"exec": script(text), "env": {"SPEED": "3"}, "cwd": "."}})
+    await until_state(client, "env", NodeState.EXITED)
+    environ, cwd, read = json.loads(await said(client, "env", "env"))
+    assert environ["SPEED"] == "3"
+    assert environ["ROS_DOMAIN_ID"] == str(ros_domain)
+    assert environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    assert environ["DECK_NODE"] == "env"
+    assert (cwd, read) == (str(tmp_path), "")
+
+
+async def test_a_node_hears_sigint_though_whoever_started_deck_ignores_it(start: Launch) -> None:
+    text = "import signal; print('int', signal.getsignal(2) is not signal.SIG_IGN)"
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        client = await start({"node": {"exec": script(text)}})
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert await said(client, "node", "int") == "True"
+
+
+@pytest.mark.parametrize(
+    ("text", "state", "code", "name", "detail"),
+    [
+        ("pass", NodeState.EXITED, 0, None, "ended"),
+        ("raise SystemExit(3)", NodeState.FAILED, 3, None, "exit code 3"),
+        (
+            "import os; print('dying'); os.abort()",
+            NodeState.FAILED,
+            None,
+            "SIGABRT",
+            "killed by SIGABRT: dying",
+        ),
+        ("1/0", NodeState.FAILED, 1, None, "exit code 1: ZeroDivisionError: division by zero"),
+    ],
+)
+async def test_how_a_node_ended_is_told(
+    start: Launch,
+    text: str,
+    state: NodeState,
+    code: int | None,
+    name: str | None,
+    detail: str,
+) -> None:
+    client = await start({"node": {"exec": script(text)}})
+    status = await until_state(client, "node", NodeState.EXITED, NodeState.FAILED)
+    assert (status.state, status.exit_code, status.signal) == (state, code, name)
+    assert (status.detail, status.pid) == (detail, None)
+
+
+async def test_a_command_that_does_not_exist_fails_at_once(start: Launch) -> None:
+    client = await start({"node": {"exec": ["no-such-program-1"], "restart": "always"}})
+    status = await until_state(client, "node", NodeState.FAILED)
+    assert status.detail == "exit code 127: deck: command not found: no-such-program-1"
+
+
+async def test_a_killed_node_returns(start: Launch) -> None:
+    client = await start({"node": {"exec": SLEEPER, "restart": "on-failure"}})
+    first = await running_pid(client, "node")
+    kill(first, signal.SIGKILL)
+    status = await until_state(client, "node", NodeState.BACKOFF)
+    assert (status.signal, status.pid) == ("SIGKILL", None)
+    second = await running_pid(client, "node")
+    assert second != first
+    assert client.nodes["node"].restarts == 1
+
+
+async def test_a_crash_loop_is_given_up(start: Launch) -> None:
+    client = await start(
+        {"node": {"exec": script("raise SystemExit('no port')"), "restart": "always"}}
+    )
+    for crash in range(4):
+        # Starting it by hand skips the backoff, it does not forget the crashes.
+        await until(lambda n=crash: client.nodes["node"].restarts >= n, "another try")
+        await until_state(client, "node", NodeState.BACKOFF, NodeState.FAILED)
+        await client.start("node")
+    status = await until_state(client, "node", NodeState.FAILED)
+    assert status.restarts == 4
+    assert status.detail.startswith("given up after 5 ends in ")
+    assert status.detail.endswith("exit code 1: no port")
+
+
+async def test_restarts_at_the_same_time_start_one_process(start: Launch, tmp_path: Path) -> None:
+    starts = tmp_path / "starts"
+    text = f"open({str(starts)!r}, 'a').write('x'); import time; time.sleep(1000)"
+    client = await start({"node": {"exec": script(text)}})
+    first = await running_pid(client, "node")
+    await until(starts.exists, "the first start")
+    await asyncio.gather(client.restart("node"), client.restart("node"), client.restart("node"))
+    await until(lambda: client.nodes["node"].pid not in (first, None), "another process")
+    await until(lambda: len(starts.read_text()) == 2, "the second start")
+    await client.stop("node")
+    assert starts.read_text() == "xx"
+
+
+async def test_a_stop_is_not_undone(start: Launch) -> None:
+    client = await start({"node": {"exec": SLEEPER, "restart": "always"}})
+    pid = await running_pid(client, "node")
+    await client.stop("node")
+    assert client.nodes["node"].state is NodeState.EXITED
+    assert not alive(pid)
+    await asyncio.sleep(1.5)  # Longer than the first backoff.
+    assert client.nodes["node"].state is NodeState.EXITED
+
+
+@pytest.mark.parametrize("way", ["", "session", "session twice"])
+async def test_a_deaf_grandchild_is_ended_with_its_node(start: Launch, way: str) -> None:
+    """In the node's group, in a session of its own, or daemonised."""
+    client = await start({"node": {"exec": script(FORK_OFF, "deaf", *way.split())}})
+    grandchild = int(await said(client, "node", "grandchild"))
+    stopping = asyncio.ensure_future(client.stop("node"))
+    await until(lambda: str(grandchild) in client.nodes["node"].detail, "the word who holds it up")
+    assert client.nodes["node"].state is NodeState.STOPPING
+    assert "SIGINT sent, waits for" in client.nodes["node"].detail
+    assert alive(grandchild)
+    await client.stop("node", now=True)
+    await stopping
+    assert client.nodes["node"].state is NodeState.EXITED
+    assert not alive(grandchild)
+
+
+async def test_asking_twice_is_asking_in_a_hurry(start: Launch) -> None:
+    client = await start({"node": {"exec": script(DEAF + "print('deaf'); time.sleep(1000)")}})
+    await said(client, "node", "deaf")
+    first = asyncio.ensure_future(client.stop("node"))
+    await until(lambda: client.nodes["node"].detail, "the word who holds it up")
+    began = asyncio.get_running_loop().time()
+    await client.stop("node")
+    await first
+    assert asyncio.get_running_loop().time() - began < 4
+
+
+@pytest.mark.parametrize("way", ["", "session twice"])
+async def test_what_a_crashed_node_leaves_is_ended_before_it_returns(
+    start: Launch,
+    way: str,
+) -> None:
+    client = await start(
+        {"node": {"exec": script(FORK_OFF, "quit", *way.split()), "restart": "on-failure"}}
+    )
+    grandchild = int(await said(client, "node", "grandchild"))
+    await until_state(client, "node", NodeState.BACKOFF)
+    assert not alive(grandchild)
+
+
+async def test_dependants_are_started_last_and_stopped_first(start: Launch, tmp_path: Path) -> None:
+    notes = tmp_path / "notes"
+    text = f"""
+        import sys, time
+        def note(word): open({str(notes)!r}, "a").write(f"{{word}} {{sys.argv[1]}}\\n")
+        note("up")
+        try: time.sleep(1000)
+        except KeyboardInterrupt: time.sleep(0.2); note("down")
+    """
+    client = await start(
+        {
+            "brain": {"exec": script(text, "brain"), "needs": ["safety"]},
+            "safety": {"exec": script(text, "safety"), "needs": ["sonar"]},
+            "sonar": {"exec": script(text, "sonar")},
+        }
+    )
+    for name in client.nodes:
+        await running_pid(client, name)
+    await until(lambda: notes.exists() and len(notes.read_text().split()) == 6, "all are up")
+    await client.stop()
+    order = notes.read_text().splitlines()
+    assert order[3:] == ["down brain", "down safety", "down sonar"]
+
+
+async def test_starting_a_node_starts_what_it_needs(start: Launch) -> None:
+    client = await start(
+        {"brain": {"exec": SLEEPER, "needs": ["sonar"]}, "sonar": {"exec": SLEEPER}}
+    )
+    await running_pid(client, "brain")
+    await client.stop()
+    await client.start("brain")
+    await running_pid(client, "brain")
+    await running_pid(client, "sonar")
+
+
+async def test_a_suspended_node_can_be_stopped(start: Launch) -> None:
+    client = await start({"node": {"exec": SLEEPER}})
+    pid = await running_pid(client, "node")
+    kill(pid, signal.SIGSTOP)
+    await asyncio.wait_for(client.stop("node"), 4)
+    assert client.nodes["node"].signal == "SIGINT"
+
+
+async def test_what_a_node_costs_is_that_of_its_whole_group(start: Launch) -> None:
+    """And not that of a wrapper which only waits for the work to be done."""
+    work = "x = bytearray(30_000_000)\nwhile True: pass"
+    wrapper = (
+        f"import subprocess, sys; subprocess.run([sys.executable, '-I', '-S', '-c', {work!r}])"
+    )
+    client = await start({"node": {"exec": script(wrapper)}})
+    status = await until(
+        lambda: (client.nodes["node"].cpu_percent or 0) > 15 and client.nodes["node"], "its load"
+    )
+    assert status.memory_bytes > 30_000_000
+    assert status.uptime_s > 0
+
+
+async def test_what_eludes_every_search_ends_with_the_session(start: Launch) -> None:
+    """A daemon without a mark in its environment: the supervisor has adopted it all the same."""
+    text = """
+        import os, sys
+        if os.fork() == 0:
+            os.setsid()
+            if os.fork(): os._exit(0)
+            command = "echo daemon $$; sleep 1000"
+            os.execve("/bin/sh", ["sh", "-c", command], {"PATH": os.environ["PATH"]})
+        os.wait()
+    """
+    client = await start({"node": {"exec": script(text)}})
+    daemon = int(await said(client, "node", "daemon"))
+    await client.shutdown()
+    assert not alive(daemon)
+
+
+def test_this_python_can_ask_for_the_parents_death() -> None:
+    """The tests above mean nothing where /proc does not tell of processes."""
+    assert sys.platform == "linux"
+    process = read_process(os.getpid())
+    assert process is not None
+    assert process.parent == os.getppid()
