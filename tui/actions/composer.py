@@ -29,7 +29,7 @@ class Send(ComposerAction):
     @classmethod
     async def run(cls, target: ComposerScreen) -> None:
         """Send what is valid."""
-        await target.send()
+        target.send()
 
 
 class SendAnyway(ComposerAction):
@@ -49,7 +49,7 @@ class SendAnyway(ComposerAction):
     @classmethod
     async def run(cls, target: ComposerScreen) -> None:
         """Send it as it is."""
-        await target.send(anyway=True)
+        target.send(anyway=True)
 
 
 class Templates(ComposerAction):

@@ -27,6 +27,8 @@ from tui.widgets.templates import TEMPLATES
 from tui.widgets.topic_words import names
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from textual.app import ComposeResult
     from textual.timer import Timer
 
@@ -182,7 +184,7 @@ class ComposerScreen(DeckScreen):
         if bool(had) != bool(problems):
             self.refresh_bindings()
 
-    async def send(self, *, anyway: bool = False) -> None:
+    def send(self, *, anyway: bool = False) -> None:
         """Send the JSON; what is wrong only `anyway`."""
         self.check()
         if self.problems and not anyway:
@@ -199,12 +201,19 @@ class ComposerScreen(DeckScreen):
             return
         text = self.editor.text
         self._sent.add(text)
-        story = self._story = Story(clock.now(), self._listeners(), self._response, self._newest)
+        self._story = Story(clock.now(), self._listeners(), self._response, self._newest)
         self.topics_changed()
+        future = graph.publish(SENT_TO, TYPE, {"data": text})
+        # Not awaited here: keys wait for the end of what a key does.
+        self.run_worker(self._confirm(self._story, future), group="send")
         self._say()
+
+    async def _confirm(self, story: Story, future: Future[int]) -> None:
         try:
-            future = graph.publish(SENT_TO, TYPE, {"data": text})
             await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
+        except asyncio.TimeoutError:
+            story.failure = _("ROS did not take it within {n} s").format(n=f"{SENT_WITHIN_S:g}")
+            self._say()
         except Exception as error:  # noqa: BLE001 - whatever it was, it is told
             story.failure = str(error) or type(error).__name__
             self._say()

@@ -32,6 +32,11 @@ class TemplatesDialog(Dialog[str | None]):
         """Yield the list."""
         yield OptionList(*(_(one.title) for one in TEMPLATES), markup=False, compact=True)
 
+    def on_mount(self) -> None:
+        """Begin in the list."""
+        super().on_mount()
+        self.query_one(OptionList).focus()
+
     def action_leave(self) -> None:
         """Choose none."""
         self.dismiss(None)
