@@ -56,9 +56,9 @@ class HeadPanel(Drawing):
             return []
         state = self._state()
         numbers: Line = [
-            Ink(f"{_('pan')} ", "muted"),
+            Ink(_("pan") + " ", "muted"),
             Ink(pose.pan_words, "accent"),
-            Ink(f"  {_('tilt')} ", "muted"),
+            Ink("  " + _("tilt") + " ", "muted"),
             Ink(pose.tilt_words, "second"),
         ]
         words = self._in_words(numbers, state, width)

@@ -24,12 +24,12 @@ class Pose:
     @property
     def pan_words(self) -> str:
         """`45° left`."""
-        return _words(self.pan_deg, _("left"), _("right"))
+        return _words(self.pan_deg, _("{degrees}° left"), _("{degrees}° right"))
 
     @property
     def tilt_words(self) -> str:
         """`10° up`."""
-        return _words(self.tilt_deg, _("up"), _("down"))
+        return _words(self.tilt_deg, _("{degrees}° up"), _("{degrees}° down"))
 
     def near(self, other: Pose) -> bool:
         """Whether the two are the same but for rounding."""
@@ -41,7 +41,9 @@ def _words(degrees: float, plus: str, minus: str) -> str:
     if not math.isfinite(degrees):
         return "---"
     whole = round(degrees)
-    return f"{abs(whole)}°" + (f" {plus if whole > 0 else minus}" if whole else "")
+    if not whole:
+        return "0°"
+    return (plus if whole > 0 else minus).format(degrees=abs(whole))
 
 
 def head_in(value: Mapping[str, Any]) -> Pose | None:

@@ -79,7 +79,7 @@ class Sonar(Drawing):
 
     def _digits(self, metres: float, width: int) -> list[Line]:
         digits = big(number(metres), ink_of(metres, self._stop_below_m))
-        digits[2] = [*digits[2], Ink(f" {remark(metres) or _('m')}")]
+        digits[2] = [*digits[2], Ink(" " + (remark(metres) or _("m")))]
         return [[Ink(" "), *line] if width > DIGIT_CELLS else line for line in digits]
 
     def _head(self, width: int, *, with_number: bool) -> Line:
@@ -90,7 +90,7 @@ class Sonar(Drawing):
         return beside(left, self._word(metres), width)
 
     def _number(self, metres: float) -> Line:
-        words = remark(metres) or f"{number(metres)} {_('m')}"
+        words = remark(metres) or _("{metres} m").format(metres=number(metres))
         return [Ink(words, ink_of(metres, self._stop_below_m))]
 
     def _word(self, metres: float) -> Line:

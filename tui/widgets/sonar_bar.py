@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
+from tui.i18n import _
 from tui.widgets.drawing import Ink, Line
 from tui.widgets.sonar_words import FREE_FROM_M, RANGE_M, Zone, zone_of
 
@@ -54,7 +55,7 @@ def scale(width: int, stop_below_m: float) -> Line:
         (0.0, "0"),
         (stop_below_m, f"↑{stop_below_m:g}"),
         (FREE_FROM_M, f"↑{FREE_FROM_M:g}"),
-        (RANGE_M, f"{RANGE_M:g} m"),
+        (RANGE_M, _("{metres} m").format(metres=f"{RANGE_M:g}")),
     ):
         start = min(mark_cell(metres, width), width - len(text))
         place = cells[max(0, start - 1) : start + len(text) + 1]

@@ -68,7 +68,7 @@ class WheelsPanel(Drawing):
     def _steering(self, wheels: Wheels, width: int) -> Line:
         radius = [Ink(radius_words(wheels.radius_m), "muted")]
         words = angle_words(wheels.steering_rad)
-        angle = [Ink(f"{_('steering')} ", "muted"), Ink(words, "strong")]
+        angle = [Ink(_("steering") + " ", "muted"), Ink(words, "strong")]
         if cells_of(angle) + cells_of(radius) < width:
             return beside(angle, radius, width)
         return beside(angle[1:], radius, width)
@@ -90,15 +90,17 @@ class WheelsPanel(Drawing):
 
     def _one_line(self, wheels: Wheels, width: int) -> Line:
         speeds = [
-            Ink(f"{_('left')} {speed_words(wheels.left_m_s)}", "accent"),
+            Ink(_("left") + " " + speed_words(wheels.left_m_s), "accent"),
             Ink("  "),
-            Ink(f"{_('right')} {speed_words(wheels.right_m_s)}", "second"),
+            Ink(_("right") + " " + speed_words(wheels.right_m_s), "second"),
         ]
         words = self.stale_words if self.stale else wheels.words
         word = [Ink(words, "alert" if self.stale else "strong")]
         if cells_of(speeds) + cells_of(word) >= width:
-            pair = f"{number_words(wheels.left_m_s)} ‖ {number_words(wheels.right_m_s)}"
-            speeds = [Ink(f"{pair} {_('m/s')}", "accent")]
+            speeds = [
+                Ink(f"{number_words(wheels.left_m_s)} ‖ ", "accent"),
+                Ink(speed_words(wheels.right_m_s), "second"),
+            ]
         return beside(speeds, word, width)
 
 
@@ -130,20 +132,23 @@ def number_words(value: float) -> str:
 
 def speed_words(speed: float) -> str:
     """`-0.25 m/s`."""
-    return f"{number_words(speed)} {_('m/s')}"
+    return _("{speed} m/s").format(speed=number_words(speed))
 
 
 def angle_words(steering_rad: float) -> str:
     """`0.50 rad 29° left`."""
     if not math.isfinite(steering_rad):
-        return f"--- {_('rad')}"
+        return "---"
     degrees = round(math.degrees(steering_rad))
-    side = "" if degrees == 0 else f" {_('left') if degrees > 0 else _('right')}"
-    return f"{steering_rad:.2f} {_('rad')} {abs(degrees)}°{side}"
+    words = _("{degrees}° left") if degrees > 0 else _("{degrees}° right")
+    turned = words.format(degrees=abs(degrees)) if degrees else "0°"
+    return _("{angle} rad").format(angle=f"{steering_rad:.2f}") + f" {turned}"
 
 
 def radius_words(radius_m: float) -> str:
     """`R 0.46 m`, without a sign: the angle tells the side."""
     if math.isnan(radius_m):
         return "R ---"
-    return "R ∞" if math.isinf(radius_m) else f"R {abs(radius_m):.2f} {_('m')}"
+    if math.isinf(radius_m):
+        return "R ∞"
+    return "R " + _("{metres} m").format(metres=f"{abs(radius_m):.2f}")
