@@ -102,6 +102,10 @@ class Drawing(Widget):
         if not self.is_mounted or width < 1 or height < 1:
             return
         had, self._lines = self._lines, self._drawn(width, height)
+        if not had or not self._lines:
+            # Words stood there, or will.
+            self.refresh()
+            return
         regions = [
             region
             for y in range(height)
