@@ -188,12 +188,33 @@ class TurnPage(DeckAction):
         target.turn_page()
 
 
+class WriteCommand(DeckAction):
+    """Speak to the robot."""
+
+    id = "deck.command"
+    key = "c,с"
+    title = N_("Command")
+    tooltip = N_("Write a word to /ai_command: forward, left, right, back, stop. Escape leaves.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only where a node takes such words."""
+        return target.driven
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Go to the field."""
+        target.write_command()
+
+
 DECK_ACTIONS = (
     StartNode,
     StopNode,
     RestartNode,
     MuteNode,
     HearOnly,
+    WriteCommand,
     TurnPage,
     Severity,
     HearAll,

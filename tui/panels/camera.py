@@ -25,7 +25,7 @@ class CameraFeed(Panel):
     """The newest picture."""
 
     title = N_("Camera")
-    least = 8
+    least = 6
     weight = 5
 
     def __init__(self) -> None:

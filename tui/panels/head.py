@@ -22,7 +22,7 @@ class HeadFeed(Panel):
     """Pan and tilt, from above and from the side."""
 
     title = N_("Head")
-    least = 5
+    least = 3
     weight = 4
 
     def compose(self) -> ComposeResult:

@@ -13,6 +13,8 @@ from tui.i18n import _
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample, TopicRow
 
+ALWAYS = 1_000_000
+
 
 class Panel(Vertical):
     """Base of the panels; a subclass composes its widget and feeds it in `show`."""
@@ -28,12 +30,12 @@ class Panel(Vertical):
 
     title: ClassVar[str] = ""
     """Marked by `N_`."""
-    least: ClassVar[int] = 5
-    """Rows, frame included, below which the panel is of no use."""
+    least: ClassVar[int] = 2
+    """Rows within the frame below which the panel is of no use."""
     weight: ClassVar[int] = 2
     """Its share of the rows that are left over."""
-    across: ClassVar[bool] = False
-    """Whether it takes the whole width where panels stand side by side."""
+    across_below: ClassVar[int] = 0
+    """Width of the shelf below which no other panel stands beside it."""
 
     def on_mount(self) -> None:
         """Show the title."""
@@ -72,7 +74,9 @@ def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, fl
     row = row_of(update, topic)
     if row is None:
         return Trouble.NO_PUBLISHER, topic, None
-    return row.trouble, f"{topic} {row.detail}".rstrip(), row.age_s
+    # Nobody there, or nobody speaking, is said by the headline already.
+    plain = row.trouble in {Trouble.NO_PUBLISHER, Trouble.QUIET}
+    return row.trouble, topic if plain else f"{topic}: {row.detail}", row.age_s
 
 
 def first_published(update: GraphUpdate, topics: Iterable[str]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from textual.containers import Container
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from tui.panels.panel import Panel
 
+Row: TypeAlias = "list[Panel]"
 BESIDE_FROM = 52
 """Cells from which on two panels stand side by side."""
 
@@ -24,6 +25,8 @@ class Shelf(Container):
 
     DEFAULT_CSS = """
     Shelf { layout: grid; grid-gutter: 0; width: 1fr; height: 1fr; overflow: hidden; }
+    Shelf.-thin > Panel { border: none; border-top: solid $primary 60%; }
+    Shelf.-thin > Panel:focus-within { border: none; border-top: solid $accent; }
     """
 
     def __init__(self, panels: Sequence[Panel], id: str | None = None) -> None:
@@ -31,6 +34,7 @@ class Shelf(Container):
         super().__init__(*panels, id=id)
         self._panels = list(panels)
         self._page = 0
+        self._frame = 2
         self._pages: list[list[list[Panel]]] = []
 
     @property
@@ -47,61 +51,79 @@ class Shelf(Container):
         """Show the next page."""
         if self._pages:
             self._page = (self._page + 1) % len(self._pages)
-            self._lay_out()
+            self._lay_out(self.size.height)
 
     def on_resize(self, event: Resize) -> None:
         """Place the panels anew."""
-        beside = event.size.width >= BESIDE_FROM
-        self._pages = paged(in_rows(self._panels, beside=beside), event.size.height)
+        width, height = event.size
+        self._frame = 2 if width >= BESIDE_FROM else 1
+        self.set_class(self._frame == 1, "-thin")
+        self._pages = paged(in_rows(self._panels, width), height, self._frame)
         self._page = min(self._page, max(0, len(self._pages) - 1))
-        self._lay_out()
+        self._lay_out(height)
 
     def words_changed(self) -> None:
         """Say the page in another language."""
-        self._lay_out()
+        self._lay_out(self.size.height)
 
-    def _lay_out(self) -> None:
+    def _lay_out(self, height: int) -> None:
         rows = self._pages[self._page] if self._pages else []
         columns = max((len(row) for row in rows), default=1)
         self.styles.grid_size_columns = columns
-        shares = [max(panel.weight for panel in row) for row in rows]
-        self.styles.grid_rows = " ".join(f"{share}fr" for share in shares) or "1fr"
+        self.styles.grid_rows = " ".join(map(str, heights(rows, height, self._frame))) or "1fr"
         shown = [panel for row in rows for panel in row]
         for panel in self._panels:
             panel.display = panel in shown
-            panel.border_subtitle = ""
         for row in rows:
             row[-1].styles.column_span = columns - len(row) + 1
+        for panel in self._panels:
+            panel.border_subtitle = ""
         if shown and len(self._pages) > 1:
-            page = _("{page} of {pages} · v").format(page=self._page + 1, pages=len(self._pages))
-            shown[-1].border_subtitle = page
+            words = _("{page} of {pages} · v")
+            shown[-1].border_subtitle = words.format(page=self._page + 1, pages=len(self._pages))
 
 
-def in_rows(panels: Sequence[Panel], *, beside: bool) -> list[list[Panel]]:
-    """Put panels into rows of one, or of two but for those that go across."""
-    rows: list[list[Panel]] = []
-    open_row: list[Panel] | None = None
+def in_rows(panels: Sequence[Panel], width: int) -> list[Row]:
+    """Put panels into rows of two where there is room for two."""
+    rows: list[Row] = []
+    half: Row | None = None
     for panel in panels:
-        if panel.across or not beside:
+        if width < max(BESIDE_FROM, panel.across_below):
             rows.append([panel])
-        elif open_row is None:
-            open_row = [panel]
-            rows.append(open_row)
+        elif half is None:
+            half = [panel]
+            rows.append(half)
         else:
-            open_row.append(panel)
-            open_row = None
+            half.append(panel)
+            half = None
     return rows
 
 
-def paged(rows: Sequence[list[Panel]], height: int) -> list[list[list[Panel]]]:
-    """Put rows onto pages of so many lines, at least one row on each."""
-    pages: list[list[list[Panel]]] = []
-    room = 0
+def paged(rows: Sequence[Row], height: int, frame: int) -> list[list[Row]]:
+    """Put each row onto the first page of so many lines that has room for it."""
+    pages: list[list[Row]] = []
+    rooms: list[int] = []
     for row in rows:
-        needed = max(panel.least for panel in row)
-        if not pages or needed > room:
+        needed = frame + least(row)
+        at = next((at for at, room in enumerate(rooms) if needed <= room), len(pages))
+        if at == len(pages):
             pages.append([])
-            room = height
-        pages[-1].append(row)
-        room -= needed
+            rooms.append(height)
+        pages[at].append(row)
+        rooms[at] -= needed
     return pages
+
+
+def heights(rows: Sequence[Row], height: int, frame: int) -> list[int]:
+    """Share out the lines of a page: what each row needs, and of the rest what it is worth."""
+    weights = [max(panel.weight for panel in row) for row in rows]
+    spare = max(0, height - sum(frame + least(row) for row in rows))
+    shares = [spare * weight // sum(weights) for weight in weights]
+    if shares:
+        shares[weights.index(max(weights))] += spare - sum(shares)
+    return [frame + least(row) + share for row, share in zip(rows, shares, strict=True)]
+
+
+def least(row: Row) -> int:
+    """Return how many lines a row needs within its frame."""
+    return max(panel.least for panel in row)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tui.i18n import N_
-from tui.panels.panel import Panel, row_of, trouble_of
+from tui.panels.panel import ALWAYS, Panel, row_of, trouble_of
 from tui.widgets.sonar import SonarPanel
 
 if TYPE_CHECKING:
@@ -20,9 +20,9 @@ class SonarFeed(Panel):
     """The front sonar, and the rear one where somebody publishes it."""
 
     title = N_("Sonar")
-    least = 5
+    least = 2
     weight = 2
-    across = True
+    across_below = ALWAYS
 
     def compose(self) -> ComposeResult:
         """The gauges."""
@@ -35,7 +35,10 @@ class SonarFeed(Panel):
     def show(self, update: GraphUpdate) -> None:
         """Show every reading, for the trend."""
         gauges = self.query_one(SonarPanel)
-        gauges.set_both(row_of(update, TOPICS["rear"]) is not None)
+        rear = row_of(update, TOPICS["rear"])
+        if rear is not None and rear.publishers:
+            # One that has fallen silent stays, and says so.
+            gauges.set_both(True)
         for place, topic in TOPICS.items():
             for sample in update.samples.get(topic, ()):
                 metres = sample.value.get("data")

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on, work
+from textual.binding import Binding
 from textual.containers import Container, Vertical
 from textual.widgets import Static
 
@@ -16,13 +17,16 @@ from tui.actions import bindings
 from tui.actions.deck import DECK_ACTIONS
 from tui.i18n import N_, _, said
 from tui.messages import SessionChanged
+from tui.panels.panel import row_of
 from tui.screens.base import DeckScreen
+from tui.widgets.command_line import CommandLine
 from tui.widgets.log_view_pane import LogPane
 from tui.widgets.nodes_table import NodesTable
 from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from concurrent.futures import Future
 
     from textual.app import ComposeResult
     from textual.binding import BindingType
@@ -44,10 +48,13 @@ PANELS = {
     "wheels": ("tui.panels.wheels", "WheelsFeed"),
     "camera": ("tui.panels.camera", "CameraFeed"),
     "head": ("tui.panels.head", "HeadFeed"),
+    "voice": ("tui.panels.voice", "VoiceFeed"),
 }
 """What a profile's `panels` may name; imported when a session that has them is opened."""
 
 
+DRIVER = "nodes.ai_driver"
+COMMANDS, COMMANDS_TYPE = "/ai_command", "std_msgs/msg/String"
 SMALL = (60, 18)
 """Columns and rows of the terminal below which there is no room for panels."""
 
@@ -61,7 +68,10 @@ class LessonDeck(DeckScreen):
         "start, stop or restart it, or to hear it alone in the log. The panels show what the "
         "nodes say on their topics."
     )
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*DECK_ACTIONS)
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *bindings(*DECK_ACTIONS),
+        Binding("escape", "leave_field", show=False),
+    ]
     DEFAULT_CSS = """
     LessonDeck {
         #board { layout: grid; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
@@ -69,6 +79,8 @@ class LessonDeck(DeckScreen):
         #nodes { height: 1fr; }
         #shelf { height: 1fr; }
         #talk { height: 1fr; }
+        #command { display: none; padding: 0 1; border-top: none; background: $panel; }
+        &.-driven #command { display: block; }
         &.-home.-shelved #shelf, &.-wide.-shelved #shelf { row-span: 2; }
         &.-compact.-shelved #nodes { column-span: 2; }
         &.-compact.-shelved #board { grid-columns: 2fr 3fr; }
@@ -90,6 +102,7 @@ class LessonDeck(DeckScreen):
             yield NodesTable(id="nodes")
             with Vertical(id="talk"):
                 yield LogPane(file_of=self._file_of)
+                yield CommandLine(id="command")
 
     # What the actions do
 
@@ -134,6 +147,31 @@ class LessonDeck(DeckScreen):
     def hear_all(self) -> None:
         """Let every node be heard, at every severity."""
         self.filter_log(replace(self.log_filter.all_nodes(), minimum=Severity.DEBUG))
+
+    @property
+    def driven(self) -> bool:
+        """Whether there is a node that takes commands in words."""
+        return any(node.command == DRIVER for node in self.feed.nodes.values())
+
+    def write_command(self) -> None:
+        """Go to the command line, or back to the nodes."""
+        self.query_one(CommandLine).field.focus()
+
+    def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
+        """Say it to the driver."""
+        if self.feed.graph is None:
+            return
+        sent = self.feed.graph.publish(COMMANDS, COMMANDS_TYPE, {"data": message.text})
+        sent.add_done_callback(lambda done: self.app.call_later(self._tell_if_lost, done))
+
+    def _tell_if_lost(self, sent: Future[int]) -> None:
+        error = None if sent.cancelled() else sent.exception()
+        if error is not None:
+            self.notify(plain(str(error)), severity="error", markup=False)
+
+    def action_leave_field(self) -> None:
+        """Back to the nodes."""
+        self.table.focus()
 
     @property
     def pages(self) -> int:
@@ -184,6 +222,7 @@ class LessonDeck(DeckScreen):
 
     def on_status_changed(self, message: StatusChanged) -> None:
         """Show the nodes as they are."""
+        self.set_class(self.driven, "-driven")
         self.pane.view.know_nodes(message.nodes)
         self._show_nodes()
         self._lay_out(self.size.height)
@@ -199,12 +238,15 @@ class LessonDeck(DeckScreen):
             return
         for panel in self._panels:
             panel.show(message.update)
+        row = row_of(message.update, COMMANDS)
+        self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Draw anew."""
         del message
         self.pane.words_changed()
         self._show_nodes()
+        self.query_one(CommandLine).words_changed()
         for panel in self._panels:
             panel.words_changed()
         if self._shelf is not None:

@@ -26,6 +26,8 @@ class Key(NamedTuple):
     title: str
     id: str
     enabled: bool
+    everywhere: bool
+    """Whether it is the app's own."""
 
 
 class KeyBar(Widget):
@@ -73,7 +75,8 @@ class KeyBar(Widget):
         wanted = action.key.split(",")
         first = min(keys, key=lambda one: (*wanted, one.binding.key).index(one.binding.key))
         key = self.app.get_key_display(first.binding)
-        return Key(key, _(action.title), action.id, first.enabled)
+        everywhere = first.node is self.app
+        return Key(key, _(action.title), action.id, first.enabled, everywhere)
 
     async def action_press(self, name: str) -> None:
         """Do what was clicked, as its key would."""
@@ -83,21 +86,24 @@ class KeyBar(Widget):
                 return
 
     def render(self) -> Content:
-        """Draw as many as fit."""
-        key_style = self.get_visual_style("key-bar--key")
-        title_style = self.get_visual_style("key-bar--title")
-        off_style = self.get_visual_style("key-bar--off")
-        parts: list[Content] = []
-        room = self.size.width
+        """Draw the keys of every screen at the right, before them as many others as fit."""
+        always = [entry for entry in self.keys() if entry.everywhere]
+        room = self.size.width - sum(map(_cells, always))
+        shown: list[Key] = []
         for entry in self.keys():
-            room -= cell_len(entry.key) + cell_len(entry.title) + 3
-            if room < 0:
-                break
-            meta = Style.from_meta({"@click": f"press({entry.id!r})"}) if entry.enabled else Style()
-            parts.append(
-                Content.assemble(
-                    (f" {entry.key}", (key_style if entry.enabled else off_style) + meta),
-                    (f" {entry.title} ", (title_style if entry.enabled else off_style) + meta),
-                )
-            )
-        return Content("").join(parts)
+            room -= 0 if entry.everywhere else _cells(entry)
+            if not entry.everywhere and room >= 0:
+                shown.append(entry)
+        return Content("").join(map(self._drawn, [*shown, *always]))
+
+    def _drawn(self, entry: Key) -> Content:
+        key_style = self.get_visual_style("key-bar--key" if entry.enabled else "key-bar--off")
+        title_style = self.get_visual_style("key-bar--title" if entry.enabled else "key-bar--off")
+        click = Style.from_meta({"@click": f"press({entry.id!r})"}) if entry.enabled else Style()
+        return Content.assemble(
+            (f" {entry.key}", key_style + click), (f" {entry.title} ", title_style + click)
+        )
+
+
+def _cells(entry: Key) -> int:
+    return cell_len(entry.key) + cell_len(entry.title) + 3
