@@ -1,0 +1,254 @@
+"""The reflex: warns, blocks, stops, and says why; the mock sonar that feeds it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import signal
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from ackermann_msgs.msg import AckermannDriveStamped
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from std_msgs.msg import Bool, Float32
+
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import LATCHED, Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+FRONT, REAR = "/sensor/sonar_front", "/sensor/sonar_rear"
+
+
+def drive(speed: float, steering: float = 0.0) -> AckermannDriveStamped:
+    message = AckermannDriveStamped()
+    message.drive.speed = speed
+    message.drive.steering_angle = steering
+    return message
+
+
+class Gate:
+    """The safety node as a gate, with everything around it."""
+
+    def __init__(self, domain: int, **params: object) -> None:
+        self.process = NodeProcess(
+            "nodes.safety_stop",
+            domain,
+            params={"gate": True, "rate": 50, "stale_after_s": 60, **params},
+        )
+        self.peer = Peer(domain)
+        self.safe = self.peer.hear("/drive_safe", AckermannDriveStamped)
+        self.states = self.peer.hear("/safety_state", DiagnosticArray)
+
+    def close(self) -> None:
+        self.peer.close()
+        self.process.close()
+
+    def see(self, distance: float, place: str = "front") -> None:
+        """Give a reading, and wait until the gate has taken it."""
+        self.peer.say(f"/sensor/sonar_{place}", Float32(data=distance))
+        wait_until(
+            lambda: (
+                self.states and values(self.states[-1])[f"{place}_distance_m"] == f"{distance:.3f}"
+            ),
+            f"{distance} m {place}",
+        )
+
+    def wait_for_speed(self, speed: float) -> AckermannDriveStamped:
+        """Wait until the gate lets this speed through, and no other."""
+        self.safe.clear()
+        wait_until(
+            lambda: self.safe and self.safe[-1].drive.speed == pytest.approx(speed),
+            f"{speed} m/s on /drive_safe",
+        )
+        return self.safe[-1]
+
+    def wait_for_state(self, state: str) -> DiagnosticStatus:
+        wait_until(lambda: self.states and values(self.states[-1])["state"] == state, state)
+        return self.states[-1].status[0]
+
+
+def values(message: DiagnosticArray) -> dict[str, str]:
+    return {item.key: item.value for item in message.status[0].values}
+
+
+@pytest.fixture
+def gate(ros_domain: int, request: pytest.FixtureRequest) -> Iterator[Gate]:
+    gate = Gate(ros_domain, **getattr(request, "param", {}))
+    yield gate
+    gate.close()
+
+
+def test_a_free_way_lets_every_command_through_unchanged(gate: Gate) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(0.3, 0.5))
+    passed = gate.wait_for_speed(0.3)
+    assert passed.drive.steering_angle == pytest.approx(0.5)
+    assert passed.header.frame_id == "base_link"
+    state = gate.wait_for_state("free")
+    assert state.level == DiagnosticStatus.OK
+    assert values(gate.states[-1])["front_distance_m"] == "2.000"
+
+
+@pytest.mark.parametrize("distance", [0.49, 0.0, -math.inf, math.nan, -1.0])
+def test_danger_ahead_stops_the_robot_and_lets_it_back_off(gate: Gate, distance: float) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(0.3))
+    gate.wait_for_speed(0.3)
+    gate.see(distance)
+    gate.wait_for_speed(0.0)
+    assert gate.wait_for_state("blocked_forward").level > DiagnosticStatus.OK
+    gate.peer.say("/drive", drive(-0.3))
+    gate.wait_for_speed(-0.3)
+
+
+def test_a_command_cut_short_is_not_resumed(gate: Gate) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(0.3))
+    gate.wait_for_speed(0.3)
+    gate.see(0.2)
+    gate.wait_for_speed(0.0)
+    gate.process.wait_for_words("is stopped: forward is blocked: front 0.20 m")
+    gate.see(2.0)
+    gate.wait_for_state("free")
+    gate.wait_for_speed(0.0)
+
+
+@pytest.mark.parametrize("gate", [{"stale_after_s": 0.3}], indirect=True)
+def test_silence_is_danger(gate: Gate) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(0.3))
+    gate.wait_for_state("free")
+    state = gate.wait_for_state("blocked_forward")
+    assert state.level == DiagnosticStatus.ERROR
+    assert "silent" in state.message
+    gate.wait_for_speed(0.0)
+    gate.process.wait_for_words("silent for")
+
+
+def test_without_any_reading_the_robot_does_not_drive_forward(gate: Gate) -> None:
+    gate.peer.say("/drive", drive(0.3))
+    gate.process.wait_for_words("is stopped")
+    gate.wait_for_speed(0.0)
+
+
+@pytest.mark.parametrize("gate", [{"rear_topic": REAR}], indirect=True)
+def test_a_rear_sonar_blocks_the_way_back(gate: Gate) -> None:
+    gate.see(2.0)
+    gate.see(0.1, "rear")
+    gate.wait_for_state("blocked_backward")
+    gate.peer.say("/drive", drive(-0.3))
+    gate.process.wait_for_words("is stopped: backward is blocked: rear 0.10 m")
+    gate.see(0.1)
+    gate.wait_for_state("blocked")
+
+
+@pytest.mark.parametrize("qos", [LATCHED, 10], ids=["latched", "volatile"])
+def test_an_emergency_stop_holds_until_it_is_released(gate: Gate, qos: Any) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(0.3))
+    gate.wait_for_speed(0.3)
+    gate.peer.say("/emergency_stop", Bool(data=True), qos=qos)
+    gate.wait_for_speed(0.0)
+    assert gate.wait_for_state("emergency_stop").level == DiagnosticStatus.ERROR
+    gate.safe.clear()
+    gate.peer.say("/drive", drive(-0.3))
+    wait_until(lambda: len(gate.safe) > 20, "what passes during the stop")
+    gate.peer.say("/emergency_stop", Bool(data=False), qos=qos)
+    gate.wait_for_state("free")
+    assert {message.drive.speed for message in gate.safe} == {0.0}
+    gate.peer.say("/drive", drive(-0.2))
+    gate.wait_for_speed(-0.2)
+
+
+def test_a_stop_from_before_the_node_started_is_obeyed(ros_domain: int) -> None:
+    with Peer(ros_domain) as peer:
+        peer.publisher("/emergency_stop", Bool, LATCHED).publish(Bool(data=True))
+        with NodeProcess("nodes.safety_stop", ros_domain) as process:
+            process.wait_for_words("EMERGENCY STOP")
+
+
+@pytest.mark.parametrize("gate", [{"max_age_s": 0.3}], indirect=True)
+def test_a_command_that_is_not_renewed_becomes_a_stop(gate: Gate) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(-0.3))
+    gate.wait_for_speed(-0.3)
+    gate.wait_for_speed(0.0)
+    gate.process.wait_for_words("No new command for 0.3 s")
+
+
+@pytest.mark.parametrize("speed", [math.nan, math.inf, -math.inf])
+def test_a_speed_that_is_no_number_is_a_stop(gate: Gate, speed: float) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(-0.3))
+    gate.wait_for_speed(-0.3)
+    gate.peer.say("/drive", drive(speed))
+    gate.wait_for_speed(0.0)
+
+
+def test_the_gate_leaves_a_stop_behind_when_it_ends(gate: Gate) -> None:
+    gate.see(2.0)
+    gate.peer.say("/drive", drive(-0.3))
+    gate.wait_for_speed(-0.3)
+    gate.process.send(signal.SIGINT)
+    wait_until(lambda: gate.safe[-1].drive.speed == 0.0, "a last stop")
+
+
+def test_without_the_gate_it_only_warns(ros_domain: int) -> None:
+    with Peer(ros_domain) as peer, NodeProcess("nodes.safety_stop", ros_domain, lang="ru") as node:
+        peer.say(FRONT, Float32(data=1.25))
+        node.wait_for_words("Путь свободен (1.25 м)")
+        peer.say(FRONT, Float32(data=0.31))
+        node.wait_for_words("[WARN]", "Препятствие в 0.31 м")
+        assert peer.node.count_publishers("/drive_safe") == 0
+
+
+def test_a_fast_sonar_does_not_flood_the_log(ros_domain: int) -> None:
+    with Peer(ros_domain) as peer, NodeProcess("nodes.safety_stop", ros_domain) as node:
+        peer.say(FRONT, Float32(data=1.0))
+        node.wait_for_words("free")
+        for _ in range(200):
+            peer.say(FRONT, Float32(data=1.0))
+        peer.say(FRONT, Float32(data=0.1))
+        node.wait_for_words("Obstacle at 0.10 m")
+        assert node.output.count("free") <= 10
+
+
+# ---------------------------------------------------------------- the sonar
+
+
+def heard_from_sonar(domain: int, count: int, **params: object) -> list[float]:
+    with (
+        Peer(domain) as peer,
+        NodeProcess("nodes.mock_sonar", domain, params={"rate": 200, **params}),
+    ):
+        heard = peer.hear(FRONT, Float32)
+        wait_until(lambda: len(heard) >= count, f"{count} readings")
+        return [message.data for message in heard]
+
+
+def test_the_random_sonar_stays_in_the_course_s_range(ros_domain: int) -> None:
+    distances = heard_from_sonar(ros_domain, 100)
+    assert all(0.2 <= distance <= 3.0 for distance in distances)
+    assert len(set(distances)) > 50
+
+
+def test_the_sweep_goes_to_and_fro(ros_domain: int) -> None:
+    distances = heard_from_sonar(ros_domain, 150, pattern="sweep", sweep_period=0.5)
+    assert min(distances) == pytest.approx(0.2, abs=0.05)
+    assert max(distances) == pytest.approx(3.0, abs=0.05)
+    steps = [abs(b - a) for a, b in itertools.pairwise(distances)]
+    assert sorted(steps)[len(steps) // 2] < 0.2
+
+
+@pytest.mark.parametrize(("value", "expected"), [(1.25, 1.25), (".inf", math.inf)])
+def test_the_constant_sonar(ros_domain: int, value: object, expected: float) -> None:
+    distances = heard_from_sonar(ros_domain, 5, pattern="constant", value=value)
+    assert set(distances) == {expected}
+
+
+def test_dropouts_are_readings_that_are_no_number(ros_domain: int) -> None:
+    distances = heard_from_sonar(ros_domain, 100, dropout=0.5)
+    assert 10 < sum(map(math.isnan, distances)) < len(distances) - 10
