@@ -25,7 +25,8 @@ MATCH_WITHIN_S = 1.0
 """How long a new publisher waits for its subscribers."""
 DISCOVERY_S = 4.0
 """How long after its start Deck may not have found everybody yet."""
-DEPTH = 10
+DEPTH = 200
+"""Of messages on their way: a burst must not overwrite what a subscriber has not acknowledged."""
 
 
 class PublishError(Exception):

@@ -17,6 +17,9 @@ NAME_PREFIX = "_deck_observer_"
 """The underscore keeps it out of `ros2 node list`."""
 DOMAINS = range(233)
 """Fast DDS ends the whole process at a greater one: its ports would be no ports any more."""
+LOCALHOST_ONLY = "ROS_LOCALHOST_ONLY"
+RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+PEERS = "ROS_STATIC_PEERS"
 RANGES = {"localhost": "LOCALHOST", "subnet": "SUBNET"}
 
 
@@ -67,24 +70,31 @@ def open_ros(domain: int, discovery: str | tuple[str, ...]) -> Ros:
     return Ros(context, node, node.get_fully_qualified_name())
 
 
-def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str]:
-    if isinstance(discovery, str):
-        if discovery not in RANGES:
-            raise ValueError(f"discovery '{discovery}' is neither of {', '.join(RANGES)}")
-        return {"ROS_AUTOMATIC_DISCOVERY_RANGE": RANGES[discovery], "ROS_STATIC_PEERS": ""}
-    return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": ";".join(discovery)}
+def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
+    """Return the variables to be set, None for those to be taken away."""
+    # The deprecated variable would win over the others.
+    if not isinstance(discovery, str):
+        peers = ";".join(discovery)
+        return {LOCALHOST_ONLY: None, RANGE: "LOCALHOST", PEERS: peers}
+    if discovery not in RANGES:
+        raise ValueError(f"discovery '{discovery}' is neither of {', '.join(RANGES)}")
+    return {LOCALHOST_ONLY: None, RANGE: RANGES[discovery], PEERS: None}
 
 
 @contextmanager
-def _environment(settings: dict[str, str]) -> Iterator[None]:
+def _environment(settings: dict[str, str | None]) -> Iterator[None]:
     """Set variables for as long as rcl reads them: children of the screen get none of it."""
     before = {name: os.environ.get(name) for name in settings}
-    os.environ.update(settings)
+    _set(settings)
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+        _set(before)
+
+
+def _set(settings: dict[str, str | None]) -> None:
+    for name, value in settings.items():
+        if value is None:
+            os.environ.pop(name, None)
+        else:
+            os.environ[name] = value
