@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import os
+import signal
 import socket
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -101,7 +103,9 @@ class Spawner:
     def go_cold(self) -> None:
         """Replace the server by one that imports nothing: no node of this run needs it warm."""
         self._warm = False
-        self._dismiss()
+        # It is in the midst of its imports, and would read a dismissal only after them.
+        os.kill(self._server.pid, signal.SIGKILL)
+        self._drop()
         self._replace()
 
     def close(self) -> None:

@@ -1,0 +1,235 @@
+"""Whoever dies, no node is left that nobody knows of; and what should live on, lives on."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import signal
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from launcher.client import attach, running
+from launcher.process_table import NODE_MARK, RUN_MARK, processes, read_marks
+from launcher.status import NodeState
+from tests.ros.supervised import (
+    DEAF,
+    SLEEPER,
+    Launch,
+    alive,
+    kill,
+    running_pid,
+    said,
+    script,
+    until,
+    until_state,
+    write_profile,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+    from pathlib import Path
+
+PROMISED_S = 2.0
+"""After so long no node is alive (and a machine under load is given a little more)."""
+
+DEAF_FAMILY = """
+import os, signal, sys, time
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+if os.fork() == 0:
+    os.setsid()
+    os.fork()
+print("pid", os.getpid(), flush=True)
+time.sleep(1000)
+"""
+
+
+def of_run(run_id: str) -> list[int]:
+    """Every process of a run, its spawn server too."""
+    return [
+        process.pid
+        for process in processes()
+        if not process.zombie and (read_marks(process.pid) or {}).get(RUN_MARK) == run_id
+    ]
+
+
+async def all_gone(run_id: str) -> float:
+    """Wait until a run has no process left; return how long that took, in seconds."""
+    began = time.monotonic()
+    await until(lambda: not of_run(run_id), "the end of every process of the run")
+    return time.monotonic() - began
+
+
+def spawn_servers_of(run_id: str) -> list[int]:
+    return [
+        pid for pid in of_run(run_id) if (read_marks(pid) or {}).get(NODE_MARK, "").startswith("--")
+    ]
+
+
+async def spawn_server_of(run_id: str) -> int:
+    (pid,) = await until(
+        lambda: len(servers := spawn_servers_of(run_id)) == 1 and servers, "one spawn server"
+    )
+    return int(pid)
+
+
+@pytest.fixture
+async def own(tmp_path: Path, ros_domain: int) -> AsyncIterator[Any]:
+    """Start a session in a process of its own, which can then be killed."""
+    owners: list[asyncio.subprocess.Process] = []
+
+    async def begin(
+        nodes: dict[str, Any], mode: str = "foreground"
+    ) -> tuple[asyncio.subprocess.Process, dict[str, Any]]:
+        owner = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "tests.ros.owner"),
+            *(str(write_profile(tmp_path, nodes)), str(ros_domain), mode),
+            stdout=asyncio.subprocess.PIPE,
+            start_new_session=True,
+        )
+        owners.append(owner)
+        assert owner.stdout is not None
+        line = await asyncio.wait_for(owner.stdout.readline(), 40)
+        return owner, json.loads(line)
+
+    yield begin
+    for owner in owners:
+        if owner.returncode is None:
+            owner.kill()
+        await owner.communicate()
+    for session in running():
+        client = await attach(session.run_id)
+        await client.shutdown(now=True)
+
+
+async def test_the_supervisor_killed_takes_everything_with_it(start: Launch) -> None:
+    """Its nodes, their children, and what has left for a session of its own."""
+    client = await start(
+        {"deaf": {"exec": script(DEAF_FAMILY)}, "other": {"exec": SLEEPER, "restart": "always"}}
+    )
+    await running_pid(client, "other")
+    run_id = client.session.run_id
+    await until(lambda: len(of_run(run_id)) == 5, "the deaf node, its two children, the other")
+    kill(client.session.supervisor_pid, signal.SIGKILL)
+    assert await all_gone(run_id) < PROMISED_S + 1
+    assert running() == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGHUP, signal.SIGTERM])
+async def test_a_foreground_session_ends_with_its_screen(own: Any, number: int) -> None:
+    """Killed, or its terminal closed: everything is over quickly, deaf children included."""
+    owner, told = await own({"deaf": {"exec": script(DEAF_FAMILY)}, "other": {"exec": SLEEPER}})
+    owner.send_signal(number)
+    assert await all_gone(told["session"]["run_id"]) < PROMISED_S + 1
+    await until(lambda: not alive(told["session"]["supervisor_pid"]), "the supervisor's end")
+    assert running() == []
+
+
+async def test_a_background_session_outlives_whoever_started_it(own: Any) -> None:
+    owner, told = await own({"node": {"exec": SLEEPER}}, "background")
+    owner.kill()
+    await owner.wait()
+    kill(told["session"]["supervisor_pid"], signal.SIGHUP)
+    client = await attach()
+    assert client.session.run_id == told["session"]["run_id"]
+    assert await running_pid(client, "node") == told["pids"]["node"]
+    await client.shutdown()
+    assert not alive(told["pids"]["node"])
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+async def test_a_signal_to_the_supervisor_is_an_orderly_stop(
+    start: Launch, tmp_path: Path, number: int
+) -> None:
+    note = tmp_path / "note"
+    text = f"""
+        import time
+        try: print("up", flush=True); time.sleep(1000)
+        except KeyboardInterrupt: open({str(note)!r}, "w").write("orderly")
+    """
+    client = await start({"node": {"exec": script(text)}})
+    await said(client, "node", "up")
+    kill(client.session.supervisor_pid, number)
+    events = [event async for event in client.events()]
+    assert events[-1].reason == f"{signal.Signals(number).name} received"
+    assert note.read_text() == "orderly"
+
+
+async def test_a_second_signal_skips_the_waiting(start: Launch) -> None:
+    client = await start({"deaf": {"exec": script(DEAF + "print('up'); time.sleep(1000)")}})
+    await said(client, "deaf", "up")
+    kill(client.session.supervisor_pid, signal.SIGINT)
+    await until_state(client, "deaf", NodeState.STOPPING)
+    began = time.monotonic()
+    kill(client.session.supervisor_pid, signal.SIGINT)
+    await all_gone(client.session.run_id)
+    assert time.monotonic() - began < 4
+
+
+async def test_the_death_of_the_spawn_server_harms_nobody(start: Launch) -> None:
+    client = await start({"node": {"exec": SLEEPER}, "other": {"exec": SLEEPER}})
+    pid = await running_pid(client, "node")
+    await running_pid(client, "other")
+    server = await spawn_server_of(client.session.run_id)
+    kill(server, signal.SIGKILL)
+    assert "ended" in await said(client, "deck", f"the spawn server (pid {server})")
+    assert await running_pid(client, "node") == pid
+    await client.restart("other")
+    await until(lambda: client.nodes["other"].state is not NodeState.RUNNING, "its stop")
+    await running_pid(client, "other")
+
+
+async def test_a_new_spawn_server_is_an_undertaker_too(start: Launch) -> None:
+    client = await start({"deaf": {"exec": script(DEAF_FAMILY)}})
+    run_id = client.session.run_id
+    await until(lambda: len(of_run(run_id)) == 4, "the deaf node and its children")
+    kill(await spawn_server_of(run_id), signal.SIGKILL)
+    await said(client, "deck", "the spawn server")
+    kill(client.session.supervisor_pid, signal.SIGKILL)
+    assert await all_gone(run_id) < PROMISED_S + 1
+
+
+async def test_what_an_earlier_run_left_is_told_of_and_ended_on_demand(start: Launch) -> None:
+    """Supervisor and spawn server killed together: a child of the node is left."""
+    client = await start({"deaf": {"exec": script(DEAF_FAMILY)}}, name="earlier")
+    run_id = client.session.run_id
+    await until(lambda: len(of_run(run_id)) == 4, "the deaf node and its children")
+    both = (await spawn_server_of(run_id), client.session.supervisor_pid)
+    for number in (signal.SIGSTOP, signal.SIGKILL):
+        for pid in both:
+            kill(pid, number)
+    await until(lambda: not alive(client.session.supervisor_pid), "the supervisor's end")
+    left = set(of_run(run_id))
+    assert len(left) == 2
+
+    later = await start({"node": {"exec": SLEEPER}}, name="later")
+    await until(lambda: {stray.pid for stray in later.strays} == left, "the strays")
+    assert {(stray.node, stray.run_id) for stray in later.strays} == {("deaf", run_id)}
+    assert left <= set(of_run(run_id)), "they are ended only on demand"
+    await later.stop_strays(later.strays)
+    assert of_run(run_id) == []
+    await until(lambda: later.strays == (), "the word that nothing is left")
+
+
+async def test_a_process_that_has_the_number_of_a_stray_is_left_alone(start: Launch) -> None:
+    from launcher.status import Stray
+
+    client = await start({"node": {"exec": SLEEPER}})
+    bystander = await asyncio.create_subprocess_exec("sleep", "1000")
+    started = time.time() - 1000
+    await client.stop_strays([Stray(bystander.pid, started, "node", "sleep", "20200101-1-1")])
+    assert alive(bystander.pid)
+    bystander.kill()
+    await bystander.wait()
+
+
+async def test_a_running_session_has_no_strays(start: Launch) -> None:
+    one = await start({"one": {"exec": SLEEPER}}, name="one")
+    await running_pid(one, "one")
+    two = await start({"two": {"exec": SLEEPER}}, name="two")
+    await running_pid(two, "two")
+    assert two.strays == ()
+    assert [session.name for session in running()] == ["one", "two"]
