@@ -1,0 +1,44 @@
+"""CPU and memory of processes, read from /proc."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+
+
+def cpu_s(pids: Iterable[int]) -> float:
+    """CPU time that the processes have used so far, user and system, in seconds."""
+    ticks = 0
+    for pid in pids:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        ticks += int(fields[11]) + int(fields[12])
+    return ticks / TICKS_PER_S
+
+
+def pss_mb(pids: Iterable[int]) -> float:
+    """Proportional set size of the processes together, in megabytes (10^6 bytes)."""
+    return sum(_pss_bytes(pid) for pid in pids) / 1e6
+
+
+def children(pid: int) -> list[int]:
+    """Pids of the direct children of a process."""
+    found = []
+    for thread in Path(f"/proc/{pid}/task").iterdir():
+        found += [int(child) for child in (thread / "children").read_text().split()]
+    return found
+
+
+def command(pid: int) -> str:
+    """Command line of a process, blanks between the arguments."""
+    return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode().strip()
+
+
+def _pss_bytes(pid: int) -> int:
+    match = re.search(
+        r"^Pss:\s+(\d+) kB", Path(f"/proc/{pid}/smaps_rollup").read_text(), re.MULTILINE
+    )
+    return int(match[1]) * 1024 if match else 0

@@ -1,0 +1,54 @@
+"""`deck` in a terminal, with directories, a domain and a mark of the test's own."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.e2e import marked
+from tests.e2e.terminal import Terminal
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@dataclass
+class Deck:
+    """Starts `deck` in terminals, and knows every process that came of it."""
+
+    mark: str
+    env: dict[str, str]
+    terminals: list[Terminal]
+
+    def open(self, *args: str, columns: int = 120, rows: int = 40) -> Terminal:
+        """Start `deck ARGS` in a terminal of this size."""
+        argv = [sys.executable, "-m", "tui", *args]
+        terminal = Terminal(argv, columns, rows, self.env, cwd=str(ROOT))
+        self.terminals.append(terminal)
+        return terminal
+
+
+@pytest.fixture
+def deck(ros_domain: int, tmp_path: Path) -> Iterator[Deck]:
+    """A `deck` to start; whatever it left is ended, by pid, and makes the test fail."""
+    mark = marked.new_mark()
+    env = {
+        marked.VARIABLE: mark,
+        "ROS_DOMAIN_ID": str(ros_domain),
+        "XDG_CONFIG_HOME": str(tmp_path / "config"),
+        "XDG_STATE_HOME": str(tmp_path / "state"),
+        "DECK_LANG": "en",
+    }
+    started = Deck(mark, env, [])
+    yield started
+    for terminal in started.terminals:
+        terminal.close()
+    left = marked.alive(mark)
+    for pid in left:
+        os.kill(pid, signal.SIGKILL)
+    assert not left, f"left running: {left}"

@@ -1,0 +1,202 @@
+"""A real terminal for `deck`: a pseudo-terminal at one end, a screen to look at on the other.
+
+Used by the end-to-end tests, by the benchmarks, and by the script that makes the README's picture.
+"""
+
+from __future__ import annotations
+
+import codecs
+import fcntl
+import io
+import os
+import pty
+import signal
+import struct
+import subprocess
+import termios
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+import pyte
+from rich.console import Console
+from rich.style import Style
+from rich.text import Text
+
+KEYS = {
+    "enter": "\r",
+    "escape": "\x1b",
+    "tab": "\t",
+    "space": " ",
+    "up": "\x1b[A",
+    "down": "\x1b[B",
+    "right": "\x1b[C",
+    "left": "\x1b[D",
+    "f1": "\x1bOP",
+    "f2": "\x1bOQ",
+    "f3": "\x1bOR",
+    "f4": "\x1bOS",
+    "f5": "\x1b[15~",
+}
+"""What a terminal sends for the keys that have names; `ctrl+x` is understood besides."""
+
+
+class Terminal:
+    """One program in a terminal of its own, its output read all the time.
+
+    Attributes:
+        received: bytes that the program has written to the terminal so far.
+    """
+
+    def __init__(
+        self,
+        argv: Sequence[str],
+        columns: int = 120,
+        rows: int = 40,
+        env: Mapping[str, str] | None = None,
+        cwd: str | None = None,
+    ) -> None:
+        self.received = 0
+        self._lock = threading.Lock()
+        self._screen = pyte.Screen(columns, rows)
+        self._stream = pyte.Stream(self._screen)
+        self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
+        self._master, slave = pty.openpty()
+        self._set_size(columns, rows)
+        self.process = subprocess.Popen(
+            list(argv),
+            stdin=slave,
+            stdout=slave,
+            stderr=slave,
+            cwd=cwd,
+            env={**os.environ, "TERM": "xterm-256color", "COLORTERM": "truecolor", **(env or {})},
+            start_new_session=True,
+            preexec_fn=_take_terminal,  # noqa: PLW1509 - one system call, no Python lock
+        )
+        os.close(slave)
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def press(self, *keys: str) -> None:
+        """Press keys by name (`enter`, `ctrl+x`, `a`)."""
+        for key in keys:
+            if key.startswith("ctrl+"):
+                self.type(chr(ord(key[-1]) & 0x1F))
+            else:
+                self.type(KEYS.get(key, key))
+
+    def type(self, text: str) -> None:
+        """Send text as if typed."""
+        os.write(self._master, text.encode())
+
+    def resize(self, columns: int, rows: int) -> None:
+        """Change the size of the window; the program gets SIGWINCH."""
+        with self._lock:
+            self._screen.resize(rows, columns)
+        self._set_size(columns, rows)
+
+    def hang_up(self) -> None:
+        """Close the window: the program gets SIGHUP, and every read and write fails."""
+        os.close(self._master)
+        self._reader.join(timeout=5)
+
+    def text(self) -> str:
+        """What stands on the screen now, a line a row."""
+        with self._lock:
+            return "\n".join(self._screen.display)
+
+    def wait_for(self, text: str, within_s: float = 30.0) -> str:
+        """Wait until `text` stands on the screen; return the screen."""
+        return self.wait_until(lambda screen: text in screen, f"{text!r} on screen", within_s)
+
+    def wait_gone(self, text: str, within_s: float = 30.0) -> str:
+        """Wait until `text` does not stand on the screen any more; return the screen."""
+        return self.wait_until(lambda screen: text not in screen, f"no {text!r}", within_s)
+
+    def wait_until(
+        self, condition: Callable[[str], bool], what: str, within_s: float = 30.0
+    ) -> str:
+        """Wait until `condition` holds of the screen's text; return that text."""
+        deadline = time.monotonic() + within_s
+        while not condition(screen := self.text()):
+            if time.monotonic() > deadline:
+                raise AssertionError(f"not within {within_s:g} s: {what}; the screen:\n{screen}")
+            time.sleep(0.02)
+        return screen
+
+    def wait_exit(self, within_s: float = 30.0) -> int:
+        """Wait until the program has ended; return its exit code."""
+        return self.process.wait(timeout=within_s)
+
+    def svg(self, title: str = "deck") -> str:
+        """The screen as a picture."""
+        with self._lock:
+            console = Console(
+                record=True,
+                width=self._screen.columns,
+                height=self._screen.lines,
+                file=io.StringIO(),
+                force_terminal=True,
+                color_system="truecolor",
+                legacy_windows=False,
+            )
+            for row in range(self._screen.lines):
+                console.print(self._row(row), end="\n", no_wrap=True, overflow="crop")
+        return console.export_svg(title=title)
+
+    def close(self) -> None:
+        """End the program: asked first, then made to."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            try:
+                self.process.wait(timeout=15)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+
+    def _row(self, row: int) -> Text:
+        text = Text()
+        cells = self._screen.buffer[row]
+        for column in range(self._screen.columns):
+            cell = cells[column]
+            if not cell.data:  # the right half of a wide character
+                continue
+            text.append(
+                cell.data,
+                Style(
+                    color=_colour(cell.fg),
+                    bgcolor=_colour(cell.bg),
+                    bold=cell.bold,
+                    italic=cell.italics,
+                    underline=cell.underscore,
+                    reverse=cell.reverse,
+                ),
+            )
+        return text
+
+    def _set_size(self, columns: int, rows: int) -> None:
+        fcntl.ioctl(self._master, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+    def _read(self) -> None:
+        while True:
+            try:
+                data = os.read(self._master, 65536)
+            except OSError:
+                return
+            if not data:
+                return
+            with self._lock:
+                self.received += len(data)
+                self._stream.feed(self._decoder.decode(data))
+
+
+def _take_terminal() -> None:
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+def _colour(name: str) -> str | None:
+    if name == "default":
+        return None
+    if len(name) == 6 and all(digit in "0123456789abcdefABCDEF" for digit in name):
+        return f"#{name}"
+    return {"brown": "yellow"}.get(name, name.replace("bright", "bright_"))

@@ -1,0 +1,90 @@
+"""A person at a terminal: starts a lesson, looks, stops the robot, leaves; nothing stays behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+from tests.e2e import marked
+from tests.e2e.conftest import Deck
+from tests.waiting import wait_until
+
+BRAIN = ("09-brain", "--lang", "en")
+
+SCREENS = {
+    "f3": "std_msgs/Float32",
+    "f4": '"commands"',
+    "f5": "safety_stop",
+    "f2": "Sonar",
+    "f1": "^p",
+}
+"""Function key to what stands on the screen that it opens."""
+
+
+def test_enter_starts_lesson_nine_and_q_leaves_nothing_running(deck: Deck) -> None:
+    terminal = deck.open("--lang", "en")
+    terminal.wait_for("One screen instead of five terminals")
+    terminal.press("enter")
+    terminal.wait_for("8/8")
+    assert len(marked.nodes(deck.mark)) == 8
+    terminal.press("q")
+    assert terminal.wait_exit() == 0
+    assert marked.alive(deck.mark) == {}
+
+
+def test_every_screen_answers_to_its_key_and_none_breaks_when_resized(deck: Deck) -> None:
+    terminal = deck.open("02-sonar-safety", "--lang", "en")
+    terminal.wait_for("2/2")
+    for key, shown in SCREENS.items():
+        terminal.press(key)
+        terminal.wait_for(shown)
+        for columns, rows in ((200, 60), (80, 24), (40, 10), (120, 40)):
+            terminal.resize(columns, rows)
+        terminal.wait_for(shown)
+    assert terminal.process.poll() is None
+
+
+def test_the_space_bar_holds_the_wheels_until_the_stop_is_released(deck: Deck) -> None:
+    terminal = deck.open(*BRAIN)
+    terminal.wait_for("8/8")
+    terminal.press("space")
+    terminal.wait_for("EMERGENCY STOP")
+    terminal.wait_until(lambda text: "emergency stop" in text.lower(), "the gate's own word")
+    terminal.press("ctrl+r")
+    terminal.wait_gone("EMERGENCY STOP")
+
+
+def test_a_closed_window_stops_the_robot(deck: Deck) -> None:
+    terminal = deck.open("02-sonar-safety")
+    terminal.wait_for("2/2")
+    terminal.hang_up()
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
+
+
+def test_a_killed_screen_leaves_no_node(deck: Deck) -> None:
+    terminal = deck.open(*BRAIN)
+    terminal.wait_for("8/8")
+    os.kill(terminal.process.pid, signal.SIGKILL)
+    terminal.wait_exit()
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
+
+
+def test_a_terminated_screen_gives_the_terminal_back(deck: Deck) -> None:
+    terminal = deck.open("01-hello", "--lang", "en")
+    terminal.wait_for("1/1")
+    terminal.process.send_signal(signal.SIGTERM)
+    terminal.wait_exit()
+    terminal.wait_gone("1/1")
+    assert marked.alive(deck.mark) == {}
+
+
+def test_a_killed_supervisor_is_said_and_leaves_no_node(deck: Deck) -> None:
+    terminal = deck.open("02-sonar-safety", "--lang", "en")
+    terminal.wait_for("2/2")
+    (supervisor,) = [
+        pid for pid, line in marked.alive(deck.mark).items() if "launcher.supervisor" in line
+    ]
+    os.kill(supervisor, signal.SIGKILL)
+    wait_until(lambda: not marked.nodes(deck.mark), "every node gone")
+    assert terminal.process.poll() is None
+    terminal.wait_until(lambda text: "supervisor" in text, "a word about the supervisor")
