@@ -21,7 +21,6 @@ FOLLOWED = frozenset({TOPIC, SAFETY_TOPIC})
 
 NO_LISTENER = N_("nobody listens to /emergency_stop: all nodes are being stopped")
 NO_GRAPH = N_("ROS cannot be reached: all nodes are being stopped")
-NO_SESSION = N_("nothing runs here that could be stopped")
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,6 @@ class Panel(Vertical):
     Panel {
         width: 1fr; height: 1fr; padding: 0 1;
         border: round $primary 60%; border-title-color: $foreground; border-title-style: bold;
-        border-subtitle-color: $text-muted;
         &:focus-within { border: round $accent; }
     }
     """
@@ -37,9 +36,28 @@ class Panel(Vertical):
     across_below: ClassVar[int] = 0
     """Width of the shelf below which no other panel stands beside it."""
 
+    _source = ""
+    _page = ""
+
     def on_mount(self) -> None:
         """Show the title."""
-        self.border_title = _(self.title)
+        self._entitle()
+
+    def name_source(self, topic: str) -> None:
+        """Say in the title which topic is shown, where it is not the usual one."""
+        if topic != self._source:
+            self._source = topic
+            self._entitle()
+
+    def name_page(self, words: str) -> None:
+        """Say in the title that there are more pages."""
+        if words != self._page:
+            self._page = words
+            self._entitle()
+
+    def _entitle(self) -> None:
+        source = f"← {self._source}" if self._source else ""
+        self.border_title = " ".join(filter(None, (_(self.title), source, self._page)))
 
     def watched(self) -> set[str]:
         """Return the topics whose newest message is wanted."""
@@ -55,7 +73,7 @@ class Panel(Vertical):
 
     def words_changed(self) -> None:
         """Draw anew in another language."""
-        self.border_title = _(self.title)
+        self._entitle()
 
 
 def row_of(update: GraphUpdate, topic: str) -> TopicRow | None:

@@ -76,11 +76,12 @@ class Shelf(Container):
             panel.display = panel in shown
         for row in rows:
             row[-1].styles.column_span = columns - len(row) + 1
+        words = ""
+        if len(self._pages) > 1:
+            words = _("· page {page} of {pages}: v")
+            words = words.format(page=self._page + 1, pages=len(self._pages))
         for panel in self._panels:
-            panel.border_subtitle = ""
-        if shown and len(self._pages) > 1:
-            words = _("{page} of {pages} · v")
-            shown[-1].border_subtitle = words.format(page=self._page + 1, pages=len(self._pages))
+            panel.name_page(words if panel in shown[:1] else "")
 
 
 def in_rows(panels: Sequence[Panel], width: int) -> list[Row]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robot.kinematics import wheel_speeds
-from tui.i18n import N_, _
+from tui.i18n import N_
 from tui.panels.panel import Panel, first_published, newest, trouble_of
 from tui.widgets.wheels import WheelsPanel
 from tui.widgets.wheels_reading import Wheels, wheels_in
@@ -40,7 +40,7 @@ class WheelsFeed(Panel):
     def show(self, update: GraphUpdate) -> None:
         """Show the newest speeds."""
         topic = first_published(update, (WHEELS, DRIVE))
-        self.border_title = _(self.title) if topic == WHEELS else f"{_(self.title)} ← {topic}"
+        self.name_source("" if topic == WHEELS else topic)
         drawing = self.query_one(WheelsPanel)
         sample = newest(update, topic)
         if sample is not None:

@@ -38,7 +38,6 @@ PANELS = {
     "head": N_("head"),
     "voice": N_("voice"),
     "composer": N_("composer"),
-    "command": N_("commands"),
 }
 
 
