@@ -1,0 +1,77 @@
+"""Log files hold every byte, within bounds, and nobody waits for a disk."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from launcher import logs_files
+from launcher.logs_files import LogFiles, prune_runs
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def complain(reason: str) -> None:
+    pytest.fail(reason)
+
+
+def test_bytes_are_written_as_they_are(tmp_path: Path) -> None:
+    files = LogFiles(tmp_path / "run", complain)
+    files.write("sonar", b"\x1b[31mone\n")
+    files.write("camera", b"two\n")
+    files.write("sonar", b"\xff\n")
+    files.close()
+    assert (tmp_path / "run" / "sonar.log").read_bytes() == b"\x1b[31mone\n\xff\n"
+    assert (tmp_path / "run" / "camera.log").read_bytes() == b"two\n"
+
+
+def test_a_full_file_is_rotated_and_the_oldest_goes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(logs_files, "MAX_FILE_BYTES", 10)
+    files = LogFiles(tmp_path, complain)
+    for number in range(6):
+        files.write("sonar", b"line %d..\n" % number)
+    files.close()
+    left = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert left == {
+        "sonar.log": b"line 5..\n",
+        "sonar.log.1": b"line 4..\n",
+        "sonar.log.2": b"line 3..\n",
+        "sonar.log.3": b"line 2..\n",
+    }
+
+
+def test_a_disk_that_is_too_slow_loses_bytes_and_says_how_many(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(logs_files, "MAX_QUEUED_BYTES", 10)
+    files = LogFiles(tmp_path, complain)
+    files._queued = 5  # As if the writing thread had not come to it yet.
+    files.write("sonar", b"123456789\n")
+    files._queued = 0
+    files.write("sonar", b"after\n")
+    files.close()
+    text = (tmp_path / "sonar.log").read_bytes()
+    assert text == b"[deck: 10 bytes left out, the disk is slow]\nafter\n"
+
+
+def test_a_file_that_cannot_be_written_is_told_of_once(tmp_path: Path) -> None:
+    (tmp_path / "run").write_text("not a folder")
+    reasons: list[str] = []
+    files = LogFiles(tmp_path / "run", reasons.append)
+    files.write("sonar", b"one\n")
+    files.write("sonar", b"two\n")
+    files.close()
+    assert len(reasons) == 1
+
+
+def test_logs_of_old_runs_go_and_those_of_running_ones_stay(tmp_path: Path) -> None:
+    for day in range(10, 20):
+        (tmp_path / f"202601{day}-1-1").mkdir()
+    prune_runs(tmp_path, ["20260110-1-1"], keep=3)
+    left = sorted(path.name[:8] for path in tmp_path.iterdir())
+    assert left == ["20260110", "20260117", "20260118", "20260119"]
+    prune_runs(tmp_path / "nothing", [])
