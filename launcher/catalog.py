@@ -96,7 +96,7 @@ def _files_of(folder: Path) -> list[Path]:
 def _near(text: str, known: Iterable[str]) -> list[str]:
     """Return likely names, by the whole name and by the words that it is made of."""
     names = list(known)
-    near = get_close_matches(text, names, n=3, cutoff=0.5)
+    near = get_close_matches(text, names, n=3, cutoff=0.7)
     for stem in names:
         if get_close_matches(text, stem.split("-"), n=1, cutoff=0.7) and stem not in near:
             near.append(stem)

@@ -15,8 +15,9 @@ from tui.i18n import DOMAIN, LOCALE
 if TYPE_CHECKING:
     from babel.messages import Catalog
 
-SOURCES = Path(__file__).parent
-KEYWORDS = {"_": None, "N_": None, "ngettext": (1, 2)}
+ROOT = Path(__file__).parent.parent
+SOURCES = ("launcher", "tui")
+KEYWORDS = {"_": None, "N_": None, "ngettext": (1, 2), "say": None}
 
 
 def po_path(language: str) -> Path:
@@ -36,10 +37,10 @@ def used_messages() -> Iterator[tuple[str, str | tuple[str, str]]]:
     """Yield (place, message) for every string marked in the code of the screen."""
     from babel.messages.extract import extract
 
-    for path in sorted(SOURCES.rglob("*.py")):
+    for path in sorted(path for room in SOURCES for path in (ROOT / room).rglob("*.py")):
         with path.open("rb") as file:
             for line, message, _comments, _context in extract("python", file, KEYWORDS):
-                place = f"{path.relative_to(SOURCES.parent)}:{line}"
+                place = f"{path.relative_to(ROOT)}:{line}"
                 yield place, message if isinstance(message, str) else (message[0], message[1])
 
 
@@ -73,7 +74,7 @@ def main(arguments: list[str]) -> int:
     """Compile the catalogues, or list what is not translated."""
     if arguments == ["compile"]:
         for path in compile_all():
-            print(path.relative_to(SOURCES.parent))  # noqa: T201
+            print(path.relative_to(ROOT))  # noqa: T201
         return 0
     if arguments == ["missing"]:
         gaps = missing("ru")

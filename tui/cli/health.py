@@ -44,10 +44,15 @@ def over(nodes: Mapping[str, NodeStatus]) -> bool:
     )
 
 
-def well(node: NodeStatus, optional: Collection[str] = ()) -> bool:
-    """Whether a node has done what its profile promised; asked before anything is stopped."""
+def well(node: NodeStatus, optional: Collection[str] = (), *, on_the_way: bool = False) -> bool:
+    """Whether a node has done what its profile promised; asked before anything is stopped.
+
+    `on_the_way`: nobody waited until the nodes were up, so one that is not yet is none the worse.
+    """
     if node.name in optional:
         return True
+    if on_the_way and node.state in (NodeState.STARTING, NodeState.WAITING):
+        return not node.restarts
     if node.state is NodeState.EXITED:
         return not node.restarts and not node.exit_code and node.signal is None
     return serves(node) and not node.restarts

@@ -79,11 +79,11 @@ class LineWriter:
                 self._lock.wait_for(lambda: self._waiting)
                 data = b"".join(self._waiting)
                 self._waiting.clear()
-                self._size = 0
                 self._busy = True
             gone = not self._put(data)
             with self._lock:
                 self._busy = False
+                self._size -= len(data)
                 self.gone = gone
                 self._lock.notify_all()
             if gone:

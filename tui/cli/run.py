@@ -94,6 +94,7 @@ class Run:
         self._timer: asyncio.TimerHandle | None = None
         self._told: dict[str, tuple[object, ...]] = {}
         self._before_stop: dict[str, NodeStatus] = {}
+        self._on_the_way = False
         self._ever_bad: set[str] = set()
         self._asked_to_stop = 0
 
@@ -133,7 +134,9 @@ class Run:
             return
         if self._timer is not None:
             self._timer.cancel()
-        self._before_stop = self._before_stop or dict(client.nodes)
+        if not self._before_stop:
+            self._before_stop = dict(client.nodes)
+            self._on_the_way = not settled(client.nodes)
         shutdown = client.shutdown(now=self._asked_to_stop > 1)
         self._stopping.append(asyncio.ensure_future(shutdown))
 
@@ -184,7 +187,7 @@ class Run:
         nodes = self._before_stop or client.nodes
         optional = {name for name, node in self._profile.nodes.items() if node.optional}
         healthy = {
-            name: name not in self._ever_bad and well(node, optional)
+            name: name not in self._ever_bad and well(node, optional, on_the_way=self._on_the_way)
             for name, node in nodes.items()
         }
         cut_short = not self._asked_to_stop

@@ -1,0 +1,117 @@
+"""What can be typed after `deck`, and what a wrong word leads to: a line, the help, exit code 2."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tui.cli import main
+from tui.cli.arguments import COMMANDS, split
+from tui.i18n import set_language
+
+
+@pytest.fixture(autouse=True)
+def _english_after() -> Iterator[None]:
+    yield
+    set_language("en")
+
+
+@pytest.mark.parametrize(
+    ("words", "command", "rest"),
+    [
+        ([], "open", []),
+        (["09-brain"], "open", ["09-brain"]),
+        (["run", "09-brain"], "run", ["09-brain"]),
+        (["--lang", "ru", "run", "9"], "run", ["--lang", "ru", "9"]),
+        (["--lang=ru", "list"], "list", ["--lang=ru"]),
+        (["9", "--hardware", "mock"], "open", ["9", "--hardware", "mock"]),
+        (["./run"], "open", ["./run"]),
+        (["mylist", "run"], "open", ["mylist", "run"]),
+        (["--set", "run", "list"], "list", ["--set", "run"]),
+    ],
+)
+def test_the_command_word_is_found(words: list[str], command: str, rest: list[str]) -> None:
+    assert split(words) == (command, rest)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--bogus"], "unrecognized arguments: --bogus"),
+        (["run"], "the following arguments are required: PROFILE"),
+        (["run", "9", "--for", "soon"], "'soon' is no number of seconds"),
+        (["run", "9", "--for", "nan"], "'nan' is no number of seconds"),
+        (["run", "9", "--for", "-1"], "'-1' is no number of seconds"),
+        (["run", "9", "--domain", "233"], "'233' is no ROS domain; expected a whole number"),
+        (["run", "9", "--domain", "x"], "'x' is no ROS domain"),
+        (["9", "--hardware", "rael"], "invalid choice: 'rael'"),
+        (["list", "--lang", "fr"], "invalid choice: 'fr'"),
+        (["logs", "x", "-n", "many"], "'many' is no number of lines"),
+        (["logs", "x", "-n", "-3"], "'-3' is no number of lines"),
+        (["down", "a", "b"], "unrecognized arguments: b"),
+    ],
+)
+def test_a_wrong_word_is_told_with_the_way_to_the_help(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert told in output.err
+    assert "--help" in output.err
+    assert "Traceback" not in output.err
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_in_both_languages(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, "--help"]) == 0
+    english = capsys.readouterr().out
+    assert main([command, "--help", "--lang", "ru"]) == 0
+    russian = capsys.readouterr().out
+    assert english.startswith(f"usage: deck {command}")
+    assert russian.startswith(f"использование: deck {command}")
+    assert "show this help" not in russian
+
+
+def test_the_help_of_all_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    assert all(f"\n  {command:<8} " in text for command in COMMANDS)
+
+
+def test_without_a_terminal_a_profile_must_be_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    assert "name a profile: deck run 09-brain" in capsys.readouterr().err
+
+
+def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("deck 0.")
+
+
+def _imported_by(code: str, folder: Path) -> set[str]:
+    """Return the modules that there are after running `code`."""
+    script = f"import sys\n{code}\nsys.stderr.write(' '.join(sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=folder
+    )
+    return set(done.stderr.split())
+
+
+def test_list_is_quick_because_it_imports_neither_textual_nor_ros(tmp_path: Path) -> None:
+    modules = _imported_by("from tui.cli import main; main(['list'])", tmp_path)
+    assert not modules & {"textual", "rich", "rclpy", "numpy", "psutil", "asyncio"}
+
+
+def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
+    modules = _imported_by(
+        "import tui.cli.screen; from launcher.catalog import find_profile; find_profile('9')",
+        tmp_path,
+    )
+    assert not modules & {"textual", "rclpy", "pydantic", "yaml", "numpy", "asyncio"}

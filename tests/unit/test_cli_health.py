@@ -1,0 +1,76 @@
+"""Whether a run went well is told from the nodes' statuses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from launcher.status import NodeState, NodeStatus
+from tui.cli.health import over, settled, well
+
+
+def node(name: str, state: NodeState, **more: object) -> NodeStatus:
+    """Return a status."""
+    return replace(NodeStatus(name, "x", state), **more)  # type: ignore[arg-type]
+
+
+READY, RUNNING, FAILED = NodeState.READY, NodeState.RUNNING, NodeState.FAILED
+STARTING, WAITING, EXITED = NodeState.STARTING, NodeState.WAITING, NodeState.EXITED
+LATE = "not ready within 10 s: no publisher of /scan"
+
+
+def statuses(*nodes: NodeStatus) -> dict[str, NodeStatus]:
+    """Return the nodes by name."""
+    return {each.name: each for each in nodes}
+
+
+@pytest.mark.parametrize(
+    ("nodes", "is_settled", "is_over"),
+    [
+        ([node("a", READY), node("b", RUNNING)], True, False),
+        ([node("a", READY), node("b", STARTING)], False, False),
+        ([node("a", READY), node("b", WAITING, needs=("a",))], False, False),
+        ([node("a", STARTING), node("b", WAITING, needs=("a",))], False, False),
+        ([node("a", FAILED), node("b", WAITING, needs=("a",))], True, True),
+        ([node("a", RUNNING, detail=LATE), node("b", WAITING, needs=("a",))], True, False),
+        ([node("a", WAITING)], False, False),
+        ([node("a", EXITED), node("b", FAILED)], True, True),
+        ([node("a", EXITED), node("b", NodeState.BACKOFF)], True, False),
+        ([node("a", EXITED), node("b", NodeState.STOPPING)], True, False),
+    ],
+)
+def test_when_all_is_up_and_when_all_is_over(
+    nodes: list[NodeStatus], is_settled: bool, is_over: bool
+) -> None:
+    assert settled(statuses(*nodes)) is is_settled
+    assert over(statuses(*nodes)) is is_over
+
+
+@pytest.mark.parametrize(
+    ("status", "is_well"),
+    [
+        (node("a", READY), True),
+        (node("a", RUNNING), True),
+        (node("a", RUNNING, detail="whether it is ready cannot be seen"), True),
+        (node("a", RUNNING, detail=LATE), False),
+        (node("a", READY, restarts=1), False),
+        (node("a", EXITED, exit_code=0), True),
+        (node("a", EXITED, exit_code=3), False),
+        (node("a", EXITED, signal="SIGKILL"), False),
+        (node("a", FAILED), False),
+        (node("a", NodeState.BACKOFF), False),
+        (node("a", STARTING), False),
+        (node("a", WAITING), False),
+    ],
+)
+def test_which_nodes_are_well(status: NodeStatus, is_well: bool) -> None:
+    assert well(status) is is_well
+    assert well(status, {"a"})
+
+
+def test_a_node_on_its_way_up_is_none_the_worse_if_nobody_waited() -> None:
+    assert well(node("a", STARTING), on_the_way=True)
+    assert well(node("a", WAITING), on_the_way=True)
+    assert not well(node("a", STARTING, restarts=2), on_the_way=True)
+    assert not well(node("a", FAILED), on_the_way=True)
