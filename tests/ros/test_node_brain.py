@@ -1,0 +1,165 @@
+"""Lesson 9 from end to end: a voice is heard, and head, wheels and loudspeaker follow."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from ackermann_msgs.msg import AckermannDriveStamped
+from sensor_msgs.msg import JointState
+from std_msgs.msg import ByteMultiArray, Float32, String
+
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def voice(sound: bytes) -> ByteMultiArray:
+    return ByteMultiArray(data=[bytes((byte,)) for byte in sound])
+
+
+def text(message: ByteMultiArray) -> str:
+    return b"".join(message.data).decode()
+
+
+def wait_for(heard: list[Any], what: str) -> Any:
+    return wait_until(lambda: heard and heard[0], what)
+
+
+class Brain:
+    """The brain in a process of its own; the test is everything around it."""
+
+    def __init__(self, domain: int, lang: str = "en") -> None:
+        self.process = NodeProcess(
+            "nodes.ai_brain", domain, lang=lang, params={"stale_after_s": 60.0}
+        )
+        self.peer = Peer(domain)
+        self.commands = self.peer.hear("/ai_command", String)
+        self.spoken = self.peer.hear("/audio/speaker_raw", ByteMultiArray)
+        for topic in ("/ai_command", "/audio/speaker_raw"):
+            wait_until(lambda topic=topic: self.peer.node.count_publishers(topic), topic)  # type: ignore[misc]
+
+    def close(self) -> None:
+        self.peer.close()
+        self.process.close()
+
+    def see(self, distance: float) -> None:
+        """Let it know the distance for sure: it tells it with its next thought."""
+        self.peer.say("/sensor/sonar_front", Float32(data=distance))
+        shown, said = f"{distance:.2f} m ahead", 0
+
+        def knows() -> bool:
+            nonlocal said
+            self.peer.say("/audio/mic_raw", voice(b"stop"))
+            said += 1
+            return shown in self.process.output
+
+        wait_until(knows, shown, every_s=0.1)
+        for heard in (self.commands, self.spoken):
+            wait_until(lambda heard=heard: len(heard) == said, "every answer")  # type: ignore[misc]
+            heard.clear()
+
+    def hear(self, sound: bytes) -> tuple[str, str]:
+        """Say something to it; the word for the driver and the reply come back."""
+        self.peer.say("/audio/mic_raw", voice(sound))
+        reply = text(wait_for(self.spoken, "a reply"))
+        return wait_for(self.commands, "/ai_command").data, reply
+
+
+@pytest.fixture
+def brain(ros_domain: int) -> Iterator[Brain]:
+    brain = Brain(ros_domain)
+    yield brain
+    brain.close()
+
+
+def test_a_voice_sets_the_whole_robot_in_motion(ros_domain: int) -> None:
+    """Eight real nodes, started as lesson 9 starts them."""
+    nodes: list[tuple[str, str, dict[str, object]]] = [
+        ("nodes.mock_sonar", "sonar_front", {"pattern": "constant", "value": 2.0, "rate": 10.0}),
+        ("nodes.mock_camera", "camera", {}),
+        ("nodes.mock_audio", "audio", {"first_after": 4.0, "period": 4.0}),
+        ("nodes.head_controller", "", {}),
+        ("nodes.ai_driver", "ai_driver", {}),
+        ("nodes.safety_stop", "safety_stop", {"gate": True}),
+        ("nodes.electronic_differential", "", {"drive_topic": "/drive_safe", "max_age_s": 1.0}),
+        ("nodes.ai_brain", "", {}),
+    ]
+    started = [NodeProcess(module, ros_domain, name=name, params=p) for module, name, p in nodes]
+    try:
+        with Peer(ros_domain) as peer:
+            mic = peer.hear("/audio/mic_raw", ByteMultiArray)
+            heads = peer.hear("/head_state", JointState)
+            commands = peer.hear("/ai_command", String)
+            drives = peer.hear("/drive", AckermannDriveStamped)
+            wheels = peer.hear("/wheel_commands", JointState)
+            speaker = peer.hear("/audio/speaker_raw", ByteMultiArray)
+            assert "VOICE_COMMAND" in text(wait_for(mic, "a voice"))
+            wait_until(lambda: any(c.data == "вперед" for c in commands), "вперед")
+            wait_until(lambda: any(d.drive.speed == 0.5 for d in drives), "/drive forward")
+            wait_until(
+                lambda: any(w.velocity[0] == pytest.approx(0.5 / 0.0325) for w in wheels),
+                "turning wheels",
+            )
+            wait_until(
+                lambda: heads and heads[-1].position[0] == pytest.approx(math.radians(45)),
+                "the head at 45 degrees",
+            )
+            assert "drive on" in text(wait_for(speaker, "a reply"))
+            started[2].wait_for_words("The loudspeaker plays")
+            started[-1].wait_for_words("with the voice, a picture and 2.00 m ahead", "has turned")
+        for node in started:
+            assert node.process.poll() is None, node.output
+            assert "Traceback" not in node.output
+    finally:
+        for node in started:
+            node.close()
+
+
+@pytest.mark.parametrize("distance", [0.99, 0.0, math.nan, -math.inf])
+def test_an_obstacle_or_a_broken_sonar_means_stop(brain: Brain, distance: float) -> None:
+    brain.see(distance)
+    command, reply = brain.hear(b"VOICE_COMMAND: go")
+    assert command == "стоп"
+    assert "I stand still" in reply
+
+
+def test_without_a_sonar_it_does_not_drive(brain: Brain) -> None:
+    command, reply = brain.hear(b"VOICE_COMMAND: go")
+    assert command == "стоп"
+    assert "cannot see" in reply
+
+
+def test_with_a_free_way_and_no_head_it_drives_and_tells_what_is_missing(brain: Brain) -> None:
+    brain.see(1.5)
+    command, reply = brain.hear(b"VOICE_COMMAND: go")
+    assert command == "вперед"
+    assert "drive on" in reply
+    brain.process.wait_for_words("[WARN]", "set_head_position is not there")
+
+
+@pytest.mark.parametrize(
+    ("distance", "said", "command"),
+    [
+        (2.0, "left", "налево"),
+        (2.0, "Вперёд!", "вперед"),
+        (0.3, "forward", "стоп"),
+        (0.3, "назад", "назад"),
+        (2.0, "stop", "стоп"),
+    ],
+)
+def test_a_word_that_drives_is_obeyed_if_it_is_safe(
+    brain: Brain, distance: float, said: str, command: str
+) -> None:
+    brain.see(distance)
+    assert brain.hear(said.encode())[0] == command
+
+
+@pytest.mark.parametrize("sound", [b"\xff\xfe\x00\x80", b"", b"\xd0", bytes(range(256)) * 40])
+def test_any_bytes_are_heard_without_harm(brain: Brain, sound: bytes) -> None:
+    assert brain.hear(sound)[0] == "стоп"
+    assert brain.process.process.poll() is None

@@ -1,0 +1,160 @@
+"""The LLM's JSON: carried out in order when it is right, and not at all when it is not."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from ackermann_msgs.msg import AckermannDriveStamped
+from example_interfaces.srv import AddTwoInts
+from std_msgs.msg import String
+
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+DRIVE = {"action": "drive", "speed": 0.2, "steering": -0.3}
+HEAD = {"action": "turn_head", "pan": -45, "tilt": 10}
+
+
+class Parser:
+    """The parser in a process of its own; the test plays the LLM, the chassis and the head."""
+
+    def __init__(self, domain: int, *, lang: str, params: dict[str, object], head: bool) -> None:
+        self.peer = Peer(domain)
+        self.asked: list[tuple[int, int]] = []
+        self.sum = 1
+        if head:
+            self.peer.node.create_service(AddTwoInts, "set_head_position", self._turn)
+        self.drives = self.peer.hear("/drive", AckermannDriveStamped)
+        self._results = self.peer.hear("/llm_result", String)
+        self.process = NodeProcess("nodes.llm_parser", domain, lang=lang, params=params)
+        wait_until(lambda: self.peer.node.count_publishers("/llm_result"), "/llm_result")
+
+    def close(self) -> None:
+        self.peer.close()
+        self.process.close()
+
+    def send(self, *commands: object, thought: str = "why") -> None:
+        self.send_text(json.dumps({"thought": thought, "commands": commands}))
+
+    def send_text(self, text: str) -> None:
+        self.peer.say("/llm_raw_json", String(data=text))
+
+    def results(self, count: int) -> list[dict[str, Any]]:
+        wait_until(lambda: len(self._results) >= count, f"{count} results")
+        return [json.loads(result.data) for result in self._results]
+
+    def _turn(
+        self, request: AddTwoInts.Request, response: AddTwoInts.Response
+    ) -> AddTwoInts.Response:
+        self.asked.append((request.a, request.b))
+        response.sum = self.sum
+        return response
+
+
+@pytest.fixture
+def parser(ros_domain: int, request: pytest.FixtureRequest) -> Iterator[Parser]:
+    options = {"lang": "en", "params": {}, "head": True, **getattr(request, "param", {})}
+    parser = Parser(ros_domain, **options)
+    yield parser
+    parser.close()
+
+
+def test_the_course_s_example_turns_the_head_and_drives(parser: Parser) -> None:
+    parser.send(HEAD, DRIVE, thought="Вижу тень справа.")
+    results = parser.results(3)
+    accepted = {"event": "accepted", "commands": 2, "thought": "Вижу тень справа."}
+    assert results[0] == accepted
+    assert {"event": "drive", "speed": 0.2, "steering": -0.3} in results
+    assert {"event": "head", "pan": -45, "tilt": 10, "sum": 1} in results
+    wait_until(lambda: parser.drives, "/drive")
+    assert parser.drives[0].drive.speed == pytest.approx(0.2)
+    assert parser.drives[0].drive.steering_angle == pytest.approx(-0.3)
+    parser.process.wait_for_words('thinks: "Вижу тень справа."')
+
+
+def test_many_commands_are_carried_out_in_order(parser: Parser) -> None:
+    heads = [{**HEAD, "pan": pan} for pan in (10, 20, 30)]
+    drives = [{**DRIVE, "speed": speed} for speed in (0.1, 0.2, 0.0)]
+    parser.send(heads[0], drives[0], heads[1], drives[1], heads[2], drives[2])
+    results = parser.results(7)
+    assert [pan for pan, _tilt in parser.asked] == [10, 20, 30]
+    assert [result["speed"] for result in results if result["event"] == "drive"] == [0.1, 0.2, 0.0]
+    wait_until(lambda: len(parser.drives) == 3, "three /drive")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        json.dumps({"thought": "", "commands": [DRIVE, HEAD, {**DRIVE, "speed": 0.51}]}),
+        json.dumps({"thought": "", "commands": [DRIVE, {"action": "fly"}]}),
+        json.dumps({"thought": "", "commands": [DRIVE] * 33}),
+        json.dumps({"thought": "", "commands": [DRIVE, {**DRIVE, "speed": float("nan")}]}),
+        json.dumps({"thought": "x" * 70_000, "commands": [DRIVE]}),
+        '{"thought": "", "commands": [',
+        "[" * 50_000,
+        "",
+    ],
+    ids=lambda text: f"{text[:20]}...{len(text)}",
+)
+def test_one_bad_command_and_nothing_moves(parser: Parser, text: str) -> None:
+    parser.send_text(text)
+    (refused,) = parser.results(1)
+    assert refused["event"] == "refused"
+    assert refused["problems"]
+    assert all({"field", "line", "column", "message"} <= set(p) for p in refused["problems"])
+    parser.process.wait_for_words("[ERROR]", "Refused, nothing is done")
+    # What comes through is the next response only.
+    parser.send({**DRIVE, "speed": 0.05})
+    wait_until(lambda: parser.drives, "/drive")
+    assert [drive.drive.speed for drive in parser.drives] == [pytest.approx(0.05)]
+    assert parser.asked == []
+
+
+@pytest.mark.parametrize("parser", [{"lang": "ru"}], indirect=True)
+def test_a_refusal_names_the_place_in_the_node_s_language(parser: Parser) -> None:
+    parser.send_text(
+        '{"thought": "x",\n "commands": [{"action": "drive", "speed": 7, "steering": 0}]}'
+    )
+    problem = parser.results(1)[0]["problems"][0]
+    place = problem["field"], problem["line"], problem["column"]
+    assert place == ("commands[0].speed", 2, 44)
+    assert problem["message"] == "должно быть от -0.5 до 0.5 m/s, а не 7"
+    assert (problem["code"], problem["args"]["high"]) == ("range", 0.5)
+    parser.process.wait_for_words("2:44 commands[0].speed: должно быть")
+
+
+def test_a_refusing_head_is_reported(parser: Parser) -> None:
+    parser.sum = 0
+    parser.send(HEAD)
+    assert parser.results(2)[1] == {"event": "head", "pan": -45, "tilt": 10, "sum": 0}
+    parser.process.wait_for_words("refused")
+
+
+@pytest.mark.parametrize("parser", [{"head": False}], indirect=True)
+def test_a_missing_head_is_told_and_does_not_keep_the_chassis_waiting(parser: Parser) -> None:
+    parser.send(HEAD, DRIVE)
+    wait_until(lambda: parser.drives, "/drive")
+    head = parser.results(3)[2]
+    assert (head["event"], head["pan"]) == ("head", -45)
+    assert "set_head_position is not there" in head["error"]
+
+
+def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(ros_domain: int) -> None:
+    slow = NodeProcess("nodes.head_controller", ros_domain, params={"move_time": 30.0})
+    params: dict[str, object] = {"head_timeout": 1.0}
+    parser = Parser(ros_domain, lang="en", params=params, head=False)
+    with slow:
+        parser.send(HEAD, {**HEAD, "pan": 5})
+        slow.wait_for_words("pan -45")
+        parser.send({**HEAD, "pan": 7})
+        heads = [result for result in parser.results(5) if result["event"] == "head"]
+        assert [head["pan"] for head in heads] == [5, -45, 7]
+        assert "dropped for newer commands" in heads[0]["error"]
+        assert "no answer from set_head_position for 1 s" in heads[1]["error"]
+        parser.close()
