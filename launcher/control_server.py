@@ -25,7 +25,7 @@ from launcher.words import say
 
 if TYPE_CHECKING:
     import socket
-    from collections.abc import Coroutine, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 
     from launcher.logs_ring import LogRing
     from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
@@ -204,6 +204,10 @@ class ControlServer:
             )
         except BadRequestError as error:
             client.refuse(request_id, "bad_request", str(error))
+        except Exception as error:
+            # A fault of ours, to be found in the supervisor's log; who asked must not wait for it.
+            client.refuse(request_id, "fault", f"{type(error).__name__}: {error}")
+            raise
         else:
             # Whoever hears that it is done finds it done.
             client.tell(client.feed.status_news(self._controlled.statuses()))
@@ -230,8 +234,10 @@ class ControlServer:
 
     def _history(self, request: dict[str, Any]) -> list[Any]:
         node, limit = request.get("node"), request.get("limit")
+        if not isinstance(node, (str, type(None))):
+            raise BadRequestError(say("node: expected a name, found {x!r}", x=node))
         if node is not None and node not in self._controlled.rings():
-            raise UnknownNodeError(str(node), self._controlled.statuses())
+            raise UnknownNodeError(node, self._controlled.statuses())
         if not isinstance(limit, int) or limit < 0:
             raise BadRequestError(say("limit: expected a whole number, found {x!r}", x=limit))
         lines = self._controlled.history(node, min(limit, MAX_HISTORY_LINES))
@@ -241,11 +247,17 @@ class ControlServer:
 class _Client:
     """One connection."""
 
-    def __init__(self, writer: asyncio.StreamWriter, feed: ClientFeed) -> None:
+    def __init__(
+        self,
+        writer: asyncio.StreamWriter,
+        feed: ClientFeed,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
         self.writer = writer
         self.feed = feed
         self.task: asyncio.Task[Any] | None = None
         self._requests: set[asyncio.Task[None]] = set()
+        self._now = now
         self._behind_since: float | None = None
 
     def begin(self, serving: Coroutine[Any, Any, None]) -> None:
@@ -262,7 +274,7 @@ class _Client:
         if self.writer.transport.get_write_buffer_size() < MAX_UNSENT_BYTES:
             self._behind_since = None
             return True
-        now = time.monotonic()
+        now = self._now()
         if self._behind_since is None:
             self._behind_since = now
         elif now - self._behind_since > STUCK_S:

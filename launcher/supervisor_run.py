@@ -48,9 +48,8 @@ async def run(run_id: str, spawn_server: SpawnServerHandle) -> None:
     if record is None:
         return
     _keep_last_words(Path(record.session.log_dir))
-    supervisor = Supervisor(plan, record, spawn_server)
     try:
-        await supervisor.run(stdin)
+        await Supervisor(plan, record, spawn_server).run(stdin)
     finally:
         record.remove()
 
@@ -155,9 +154,11 @@ class Supervisor:
         await self._stop_all()
         for helper in helpers:
             helper.cancel()
-        await self.control.close(self._reason)
         self._spawner.close()
+        # Whoever hears that it is over finds the logs complete, and nothing in the way.
         self._files.close()
+        self._record.remove()
+        await self.control.close(self._reason)
 
     # What clients ask.
 
