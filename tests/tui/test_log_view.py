@@ -403,7 +403,7 @@ def test_every_severity_and_a_gap(
     async def prepare(pilot: Pilot[None]) -> None:
         view = await shown(pilot, sample_lines())
         view.log_filter = replace(view.log_filter, search="дистан")
-        await pilot.press("up", "up", "shift+up")
+        await pilot.press("up", "up", *["shift+up"] * 4)
 
     assert snap_compare(LogApp(), terminal_size=(90, 20), run_before=prepare)
 

@@ -13,6 +13,7 @@ from textual.containers import Horizontal
 from launcher.status import Severity
 from tui.actions import bindings
 from tui.actions.logs import LOGS_ACTIONS
+from tui.i18n import N_
 from tui.screens.base import DeckScreen
 from tui.widgets.log_filter_nodes import LogNodes
 from tui.widgets.log_view import LogView
@@ -31,6 +32,11 @@ class LogsScreen(DeckScreen):
     """The log of every node; at the left the nodes, which on a narrow screen come when asked."""
 
     tab: ClassVar[str] = "logs"
+    about: ClassVar[str] = N_(
+        "What all nodes say. The arrow keys choose lines, with Shift several; that pauses the log, "
+        "End follows it again. The list has the nodes with their lines, warnings (W) and errors "
+        "(E): ● is heard, ○ is mute, ★ is heard alone."
+    )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bindings(*LOGS_ACTIONS),
         Binding("escape", "close_nodes", show=False),
@@ -47,6 +53,8 @@ class LogsScreen(DeckScreen):
         dock: left;
         width: 42;
         max-width: 100%;
+        height: auto;
+        max-height: 80%;
         border: round $primary;
     }
     LogsScreen.-compact LogNodes.-open, LogsScreen.-tiny LogNodes.-open { display: block; }
@@ -79,14 +87,13 @@ class LogsScreen(DeckScreen):
 
     def on_mount(self) -> None:
         """Begin at the newest line."""
-        super().on_mount()
         self.pane.view.focus()
         self.set_interval(COUNTS_EVERY_S, self._show_nodes)
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Another session begins with an empty log; one that has ended keeps its lines."""
-        super().on_session_changed(message)
-        session = self.deck.feed.session
+        del message
+        session = self.feed.session
         if session is not None:
             self.pane.save_folder = session.log_dir
             if self.pane.view.ring.entries:
@@ -94,7 +101,6 @@ class LogsScreen(DeckScreen):
 
     def on_status_changed(self, message: StatusChanged) -> None:
         """Know the nodes before they speak."""
-        super().on_status_changed(message)
         self.pane.view.know_nodes(message.nodes)
         self._show_nodes()
 
@@ -107,7 +113,7 @@ class LogsScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Draw anew."""
-        super().on_language_changed(message)
+        del message
         self.pane.words_changed()
         self._show_nodes()
 
@@ -148,9 +154,9 @@ class LogsScreen(DeckScreen):
 
     def _show_nodes(self) -> None:
         view = self.pane.view
-        names = dict.fromkeys((*self.deck.feed.nodes, *view.ring.counts))
+        names = dict.fromkeys((*self.feed.nodes, *view.ring.counts))
         self.node_list.show_nodes(names, view.ring.counts, view.log_filter)
 
     def _file_of(self, node: str) -> str:
-        session = self.deck.feed.session
+        session = self.feed.session
         return f"{session.log_dir}/{node}.log" if session and session.log_dir else ""

@@ -54,7 +54,10 @@ class RowPainter:
         chosen: bool,
     ) -> Strip:
         """Row number `part` of an entry, with what was found and what the mouse has selected."""
-        lead = self._gutter(entry, node_style)
+        under = self.palette.cursor if chosen else Style()
+        lead = self._gutter(entry, node_style, under)
+        if chosen and not part:
+            lead[0] = Segment(CHOSEN + lead[0].text[1:], lead[0].style)
         lead_length = sum(len(segment.text) for segment in lead)
         start, piece, more = self._piece(text, part)
         spans: list[Span] = []
@@ -68,26 +71,26 @@ class RowPainter:
             spans.append((first - lead_length, last - lead_length, self.palette.selection))
             if not part:
                 lead = _laid_over(lead, (first, last, self.palette.selection))
-        body = painted(
-            piece, self._text_style(entry), [(a - start, b - start, s) for a, b, s in spans]
-        )
+        places = [(first - start, last - start, style) for first, last, style in spans]
+        body = painted(piece, self._text_style(entry) + under, places)
         if part:
-            gutter = Strip([Segment(" " * self.columns.gutter, self.palette.muted)])
+            blank = (CHOSEN if chosen else " ").ljust(self.columns.gutter)
+            gutter = Strip([Segment(blank, self.palette.muted + under)])
         else:
             gutter = Strip(lead).apply_offsets(0, entry.id)
         strips = [gutter, Strip(body).apply_offsets(lead_length + start, entry.id)]
         if more:
-            strips.append(Strip([Segment(MORE, self.palette.muted)]))
-        row = Strip.join(strips)
-        return self._chosen(row) if chosen else row
+            strips.append(Strip([Segment(MORE, self.palette.muted + under)]))
+        width = self.columns.gutter + self.width
+        return Strip.join(strips).extend_cell_length(width, self.palette.base + under)
 
-    def _gutter(self, entry: Entry, node_style: Style) -> list[Segment]:
+    def _gutter(self, entry: Entry, node_style: Style, under: Style) -> list[Segment]:
         when, word, node = gutter_texts(entry, self.columns)
-        muted = self.palette.muted
+        muted, node_style = self.palette.muted + under, node_style + under
         if entry.skipped or entry.rank <= Severity.INFO.rank:
             segments = [Segment(when + word, muted), Segment(node, node_style)]
         else:
-            severity = self.palette.severities[entry.rank]
+            severity = self.palette.severities[entry.rank] + under
             segments = [Segment(when, muted), Segment(word[:-1], severity)]
             segments += [Segment(word[-1:], muted), Segment(node, node_style)]
         return [segment for segment in segments if segment.text]
@@ -113,16 +116,6 @@ class RowPainter:
         whole = Strip([Segment(text)])
         start = len(whole.crop(0, self.shift).text)
         return start, whole.crop(self.shift, self.shift + self.width - more).text, more
-
-    def _chosen(self, row: Strip) -> Strip:
-        width = self.columns.gutter + self.width
-        cursor = self.palette.cursor
-        padded = row.extend_cell_length(width, self.palette.base)
-        first, *others = padded
-        mark = Segment(CHOSEN + first.text[1:], first.style)
-        return Strip(
-            [Segment(text, (style or Style()) + cursor) for text, style, _ in (mark, *others)]
-        )
 
 
 def _laid_over(segments: Iterable[Segment], span: Span) -> list[Segment]:

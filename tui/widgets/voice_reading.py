@@ -43,7 +43,7 @@ class Heard:
 
     def and_then(self, later: Heard) -> Heard:
         """Two pieces of one sound."""
-        levels = (self.levels + later.levels)[-2 * SLICES :]
+        levels = (self.levels + later.levels)[-SLICES:]
         return Heard("", self.seconds + later.seconds, levels)
 
 

@@ -1,0 +1,99 @@
+"""The head: where it looks, in degrees and drawn, and what it was told."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from graph.data import Trouble
+from tests.tui.panel_stage import Stage, alone, rows
+from tests.tui.snapshots import SnapCompare
+from tui.i18n import set_language
+from tui.widgets.head import HeadPanel
+from tui.widgets.head_reading import Pose, head_in
+
+
+def test_radians_become_degrees_left_and_up() -> None:
+    value = {"name": ["tilt_joint", "pan_joint"], "position": [math.pi / 18, math.pi / 4]}
+    pose = head_in(value)
+    assert pose is not None
+    assert (pose.pan_words, pose.tilt_words) == ("45° left", "10° up")
+    assert (Pose(-45, -10).pan_words, Pose(-45, -10).tilt_words) == ("45° right", "10° down")
+    assert Pose(0.2, -0.2).pan_words == "0°"
+
+
+def test_other_joints_are_no_head_and_missing_ones_no_number() -> None:
+    assert head_in({"name": ["steering_joint"], "position": [1.0]}) is None
+    assert head_in({}) is None
+    pose = head_in({"name": ["pan_joint"], "position": []})
+    assert pose is not None
+    assert (pose.pan_words, pose.tilt_words) == ("---", "---")
+
+
+@pytest.mark.parametrize(("width", "height"), [(50, 1), (40, 3), (18, 3), (30, 8), (60, 20)])
+async def test_the_angles_are_numbers_at_every_size(width: int, height: int) -> None:
+    panel = HeadPanel()
+    async with alone(panel, width, height).run_test(size=(80, 30)):
+        panel.show(Pose(45, 10))
+        shown = "\n".join(rows(panel))
+        assert "45° left" in shown
+        assert "10° up" in shown
+
+
+async def test_it_moves_while_the_pose_changes_and_rests_when_it_does_not() -> None:
+    panel = HeadPanel()
+    async with alone(panel, 44, 10).run_test(size=(60, 30)):
+        panel.show(Pose(0, 0))
+        assert "at rest" in "\n".join(rows(panel))
+        panel.show(Pose(10, 0))
+        assert "moving" in "\n".join(rows(panel))
+        panel.show(Pose(10, 0))
+        assert "at rest" in "\n".join(rows(panel))
+
+
+async def test_what_it_was_told_and_the_answer_are_shown_harmlessly() -> None:
+    panel = HeadPanel()
+    async with alone(panel, 60, 10).run_test(size=(80, 30)):
+        panel.show(Pose(0, 0))
+        panel.command(Pose(-90, 15))
+        assert "told: 90° right, 15° up" in "\n".join(rows(panel))
+        panel.answer("[red]no[/red]\x1b[31m")
+        assert "[red]no[/red]␛[31m" in "\n".join(rows(panel))
+        panel.command(Pose(0, 0))
+        assert "[red]" not in "\n".join(rows(panel))
+
+
+@pytest.mark.parametrize("pose", [Pose(math.nan, math.inf), Pose(1e9, -1e9)])
+@pytest.mark.parametrize("size", [(1, 1), (22, 6), (60, 20)])
+async def test_impossible_angles_and_sizes_do_no_harm(pose: Pose, size: tuple[int, int]) -> None:
+    panel = HeadPanel()
+    async with alone(panel, *size).run_test(size=(80, 30)):
+        panel.show(pose)
+        panel.command(pose)
+        assert len(rows(panel)) == size[1]
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_looks(language: str, snap_compare: SnapCompare) -> None:
+    """A needle on half a circle from above and from the side, a stroke where it was told to be."""
+    set_language(language)
+    panels = [HeadPanel() for _panel in range(5)]
+
+    def fill() -> None:
+        panels[0].show(Pose(40, 5))
+        panels[0].command(Pose(60, 20))
+        panels[0].show(Pose(45, 10))
+        panels[1].show(Pose(-90, -45))
+        panels[1].answer("1")
+        panels[2].show(Pose(0, 0))
+        panels[2].show_trouble(Trouble.QUIET, "", 5.0)
+        panels[3].show(Pose(45, 10))
+        panels[4].show_trouble(Trouble.NO_PUBLISHER, "Start head_controller.")
+
+    stage = Stage(
+        [(panels[0], (44, 14)), (panels[1], (44, 8))],
+        [(panels[2], (40, 10)), (panels[3], (40, 2)), (panels[4], (40, 4))],
+        fill=fill,
+    )
+    assert snap_compare(stage, terminal_size=(92, 28), run_before=stage.filled)

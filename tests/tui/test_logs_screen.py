@@ -1,0 +1,178 @@
+"""The Logs screen: all nodes, chosen ones, searched, and the keys for it in both alphabets."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from launcher.events import LogEvent
+from launcher.status import Severity
+from tests.tui.recorded import LINES, RecordedPad, RecordedSession, line
+from tests.tui.snapshots import Look, SnapCompare, every_look, settle
+from tui.screens.logs import LogsScreen
+from tui.widgets.log_view_bar import LogBar
+
+HOME = Look((120, 40), "en")
+
+
+@pytest.fixture(autouse=True)
+def _utc(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Times of day are those of the recording."""
+    monkeypatch.setenv("TZ", "UTC")
+    time.tzset()
+    yield
+    monkeypatch.undo()
+    time.tzset()
+
+
+def screen_of(pilot: Pilot[Any]) -> LogsScreen:
+    screen = pilot.app.screen
+    assert isinstance(screen, LogsScreen)
+    return screen
+
+
+def nodes_shown(screen: LogsScreen) -> set[str]:
+    return {entry.node for entry in screen.pane.view.index.shown}
+
+
+async def test_opened_late_it_has_every_line_once() -> None:
+    async with HOME.app("deck").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        await pilot.press("4")
+        await pilot.pause()
+        entries = screen_of(pilot).pane.view.ring.entries
+        assert [entry.text for entry in entries] == [one.text for one in LINES]
+
+
+async def test_lines_that_come_are_appended_whatever_screen_is_in_front() -> None:
+    session = RecordedSession()
+    async with HOME.app("logs", RecordedPad(link=session)).run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        screen = screen_of(pilot)
+        await pilot.press("1")
+        session.say(LogEvent((line("audio", 2, "while away"),), {}))
+        await pilot.pause()
+        await pilot.press("4")
+        await pilot.pause()
+        assert screen.pane.view.ring.entries[-1].text == "while away"
+
+
+@pytest.mark.parametrize("keys", ["lmo", "дьщ"])
+async def test_mute_and_only_this_work_on_the_row_of_the_list(keys: str) -> None:
+    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        screen, (go, mute, only) = screen_of(pilot), keys
+        everybody = nodes_shown(screen)
+        await pilot.press(go, mute)
+        assert nodes_shown(screen) == everybody - {"sonar_front"}
+        await pilot.press("down", only)
+        assert nodes_shown(screen) == {"camera"}
+        assert "only camera" in screen.query_one(LogBar).words
+        await pilot.press(only)
+        assert nodes_shown(screen) == everybody - {"sonar_front"}
+        await pilot.press("a")
+        assert nodes_shown(screen) == everybody
+
+
+async def test_enter_in_the_list_mutes_and_escape_goes_back_to_the_lines() -> None:
+    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        screen = screen_of(pilot)
+        await pilot.press("l", "enter")
+        assert "sonar_front" not in nodes_shown(screen)
+        await pilot.press("escape")
+        assert screen.pane.view.has_focus
+
+
+async def test_mute_works_on_the_node_of_the_chosen_line() -> None:
+    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        screen = screen_of(pilot)
+        await pilot.press("up", "o")
+        assert nodes_shown(screen) == {LINES[-1].node}
+
+
+async def test_each_press_leaves_out_one_severity_more() -> None:
+    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        screen = screen_of(pilot)
+        await pilot.press("s", "s")
+        assert {entry.rank for entry in screen.pane.view.index.shown} == {
+            Severity.WARN.rank,
+            Severity.ERROR.rank,
+        }
+        assert "WARN and worse" in screen.query_one(LogBar).words
+
+
+async def test_in_the_search_field_letters_and_space_are_text() -> None:
+    app = HOME.app("logs")
+    async with app.run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        screen = screen_of(pilot)
+        await pilot.press("slash")
+        await pilot.pause()
+        await pilot.press(*"way", "space", *"is")
+        assert screen.pane.view.log_filter.search == "way is"
+        assert len(screen.pane.view.index.found) == 2
+        assert not app.brake.state.engaged
+        await pilot.press("enter", "f")
+        assert len(screen.pane.view.index.shown) == 2
+        await pilot.press("f", "N")
+        assert screen.pane.view.found_number == 1
+
+
+async def test_on_a_narrow_screen_the_list_comes_and_goes() -> None:
+    async with HOME.app("logs").run_test(size=(80, 24)) as pilot:
+        await settle(pilot)
+        screen = screen_of(pilot)
+        assert not screen.node_list.display
+        await pilot.press("l")
+        assert screen.node_list.display
+        await pilot.press("l")
+        assert not screen.node_list.display
+
+
+@pytest.mark.parametrize("size", [(1, 1), (20, 5), (40, 10), (300, 80)])
+async def test_it_fits_any_terminal(size: tuple[int, int]) -> None:
+    async with HOME.app("logs").run_test(size=size) as pilot:
+        await settle(pilot)
+        await pilot.press("up", "l", "down", "slash", "x", "escape", "ctrl+s", "escape")
+        await pilot.resize_terminal(80, 24)
+        await pilot.pause()
+        assert len(screen_of(pilot).pane.view.index.shown) == len(LINES)
+
+
+@every_look
+def test_logs(look: Look, snap_compare: SnapCompare) -> None:
+    """Newest lines at the bottom, WARN and ERROR by word and colour; nodes at the left if wide."""
+    assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=look.settle)
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_nodes_over_a_narrow_log(language: str, snap_compare: SnapCompare) -> None:
+    """The list lies over the log; camera is mute, and the line below the log says so."""
+    look = Look((80, 24), language)
+
+    async def prepare(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        await pilot.press("l", "down", "enter")
+
+    assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_a_search_and_chosen_lines(language: str, snap_compare: SnapCompare) -> None:
+    """The text found is marked, two lines are chosen, the log is paused, and all that is told."""
+    look = Look((120, 40), language)
+
+    async def prepare(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        await pilot.press("slash")
+        await pilot.pause()
+        await pilot.press(*"way", "enter", "shift+up")
+
+    assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)
