@@ -1,0 +1,247 @@
+"""Warm nodes, and when they count as ready: real rclpy, real DDS."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from launcher.process_table import NODE_MARK, command_line, processes, read_marks, read_process
+from launcher.process_usage import proportional_memory
+from launcher.status import NodeState, Severity
+from tests.ros.supervised import (
+    SLEEPER,
+    Launch,
+    alive,
+    kill,
+    running_pid,
+    said,
+    until,
+    until_state,
+)
+
+if TYPE_CHECKING:
+    import pytest
+
+    from launcher.client import SupervisorClient
+
+TALKER = """
+import signal, sys, time
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import String
+from example_interfaces.srv import AddTwoInts
+
+def main():
+    rclpy.init(args=sys.argv)
+    node = rclpy.create_node("talker")
+    node.declare_parameter("delay", 0.0)
+    time.sleep(node.get_parameter("delay").value)
+    node.create_publisher(String, "/said", 1)
+    node.create_service(AddTwoInts, "add", lambda request, response: response)
+    node.get_logger().info("talking")
+    try: rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException): pass
+    rclpy.try_shutdown()
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+def module(folder: Path, name: str, text: str) -> dict[str, Any]:
+    """Write a module beside the profile, return a node that runs it."""
+    (folder / f"{name}.py").write_text(textwrap.dedent(text), encoding="utf-8")
+    return {"run": name}
+
+
+def probes(client: SupervisorClient) -> list[int]:
+    """The probe processes of a session."""
+    return [
+        process.pid
+        for process in processes()
+        if process.parent == client.session.supervisor_pid
+        and (read_marks(process.pid) or {}).get(NODE_MARK) == "deck_probe"
+    ]
+
+
+async def test_nodes_become_ready_in_the_order_of_their_needs(
+    start: Launch, tmp_path: Path
+) -> None:
+    """By their name in the graph, a topic's publisher and a service; the probe goes after."""
+    talker = module(tmp_path, "talker_module", TALKER)
+    client = await start(
+        {
+            "third": {**talker, "needs": ["second"], "ready": {"service": "add"}},
+            "second": {**talker, "needs": ["first"], "ready": {"topic": "said"}},
+            "first": talker,
+        }
+    )
+    assert client.nodes["third"].state is NodeState.WAITING
+    for name in ("first", "second", "third"):
+        await until_state(client, name, NodeState.READY)
+    begins = {
+        name: next(line for line in await client.history(name, 100) if "started" in line.text)
+        for name in client.nodes
+    }
+    order = sorted(begins, key=lambda name: begins[name].time_s)
+    assert order == ["first", "second", "third"]
+    talking = next(line for line in await client.history("first", 99) if line.text == "talking")
+    assert (talking.logger, talking.severity, talking.source) == ("first", Severity.INFO, "stderr")
+    await until(lambda: not probes(client), "the end of the probe")
+
+
+async def test_a_warm_node_is_a_process_of_its_own_in_every_respect(
+    start: Launch, tmp_path: Path
+) -> None:
+    """Its title, session, parent and marks; and its pages are shared with the others."""
+    talker = module(tmp_path, "talker_module", TALKER)
+    client = await start({"one": talker, "two": {**talker, "params": {"delay": 0.0}}})
+    pids = []
+    for name in client.nodes:
+        status = await until_state(client, name, NodeState.READY)
+        pid = status.pid
+        assert pid is not None
+        pids.append(pid)
+        process = read_process(pid)
+        assert process is not None
+        assert command_line(pid) == f"deck: {name} (talker_module)"
+        assert (process.name, process.parent) == (name, client.session.supervisor_pid)
+        assert (process.group, process.session) == (pid, pid)
+        marks = read_marks(pid) or {}
+        assert marks == {"DECK_RUN_ID": client.session.run_id, "DECK_NODE": name}
+    memory = proportional_memory(pids)
+    assert memory is not None
+    assert memory < 2 * 40_000_000
+    await client.stop("one")
+    assert (client.nodes["one"].exit_code, client.nodes["one"].signal) == (0, None)
+    assert alive(pids[1])
+
+
+async def test_how_a_warm_node_ends_is_told_as_of_any_other(start: Launch, tmp_path: Path) -> None:
+    client = await start(
+        {
+            "code": module(tmp_path, "leaves", "import sys; print('bye', end=''); sys.exit(7)"),
+            "word": module(tmp_path, "complains", "import sys; sys.exit('no such port')"),
+            "error": module(tmp_path, "fails", "def f(): return 1 / 0\nf()"),
+            "hook": module(tmp_path, "tidies", "import atexit; atexit.register(print, 'tidied')"),
+            "abort": module(tmp_path, "aborts", "import os; os.abort()"),
+        }
+    )
+    ends = {}
+    for name in client.nodes:
+        status = await until_state(client, name, NodeState.EXITED, NodeState.FAILED)
+        ends[name] = (status.exit_code, status.signal)
+    assert ends == {
+        "code": (7, None),
+        "word": (1, None),
+        "error": (1, None),
+        "hook": (0, None),
+        "abort": (None, "SIGABRT"),
+    }
+    assert "bye" in [line.text for line in await client.history("code", 9)]
+    assert "tidied" in [line.text for line in await client.history("hook", 9)]
+    assert client.nodes["word"].detail == "exit code 1: no such port"
+    lines = [line.text for line in await client.history("error", 99) if line.source == "stderr"]
+    assert lines[0] == "Traceback (most recent call last):"
+    assert lines[1].endswith('fails.py", line 2, in <module>'), "no frame of the launcher's"
+    assert lines[-1] == "ZeroDivisionError: division by zero"
+
+
+async def test_a_warm_node_runs_the_file_as_it_is_now(start: Launch, tmp_path: Path) -> None:
+    node = module(tmp_path, "edited", "print('before'); import time; time.sleep(1000)")
+    client = await start({"node": {**node, "ready": {"topic": "never"}}})
+    await said(client, "node", "before")
+    module(tmp_path, "edited", "print('after!'); import time; time.sleep(1000)")
+    await client.restart("node")
+    await said(client, "node", "after!")
+
+
+async def test_a_cold_node_is_the_same_but_started_as_any_program(
+    start: Launch, tmp_path: Path
+) -> None:
+    talker = module(tmp_path, "talker_module", TALKER)
+    client = await start(
+        {"cold": {**talker, "warm": False}, "env": {**talker, "env": {"PYTHONHASHSEED": "1"}}}
+    )
+    for name in client.nodes:
+        status = await until_state(client, name, NodeState.READY)
+        assert status.pid is not None
+        assert "-m talker_module" in command_line(status.pid)
+
+
+async def test_a_node_that_is_late_says_so_and_becomes_ready_all_the_same(
+    start: Launch, tmp_path: Path
+) -> None:
+    talker = module(tmp_path, "talker_module", TALKER)
+    client = await start(
+        {
+            "late": {**talker, "params": {"delay": 3.0}, "ready": {"topic": "/said", "within": 1}},
+            "eager": {"exec": SLEEPER, "needs": ["late"]},
+        }
+    )
+    status = await until_state(client, "late", NodeState.RUNNING)
+    assert status.detail == "not ready within 1 s: no publisher of /said"
+    assert client.nodes["eager"].detail == "waits for late (not ready)"
+    await until_state(client, "late", NodeState.READY)
+    await running_pid(client, "eager")
+
+
+async def test_a_node_that_never_gets_ready_leaves_others_waiting_till_started_by_hand(
+    start: Launch,
+) -> None:
+    client = await start(
+        {
+            "mute": {"exec": SLEEPER, "ready": {"topic": "/said", "within": 1}},
+            "eager": {"exec": SLEEPER, "needs": ["mute"]},
+        }
+    )
+    await until(lambda: "(not ready)" in client.nodes["eager"].detail, "the reason")
+    await client.start("eager")
+    await running_pid(client, "eager")
+
+
+async def test_a_killed_node_is_not_ready_before_it_really_is(
+    start: Launch, tmp_path: Path
+) -> None:
+    """Who has seen it alive sees it in the graph for seconds after its death."""
+    talker = module(tmp_path, "talker_module", TALKER)
+    client = await start(
+        {
+            "node": {**talker, "restart": "on-failure"},
+            # It keeps a probe alive that has seen the node.
+            "mute": {"exec": SLEEPER, "ready": {"topic": "/never", "within": 60}},
+        }
+    )
+    status = await until_state(client, "node", NodeState.READY)
+    assert status.pid is not None
+    # What is started instead never makes a node.
+    module(tmp_path, "talker_module", "import time; time.sleep(1000)")
+    kill(status.pid, signal.SIGKILL)
+    await until_state(client, "node", NodeState.BACKOFF)
+    await until_state(client, "node", NodeState.STARTING)
+    await asyncio.sleep(2)
+    assert client.nodes["node"].state is NodeState.STARTING
+
+
+async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
+    start: Launch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = tmp_path / "broken"
+    broken.mkdir()
+    (broken / "rclpy.py").write_text("raise ImportError('no rclpy here')")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(broken), *_python_path()]))
+    node = module(tmp_path, "plain", "print('running'); import time; time.sleep(1000)")
+    client = await start({"node": node, "other": {"exec": SLEEPER, "needs": ["node"]}})
+    await said(client, "node", "running")
+    status = await until_state(client, "node", NodeState.RUNNING)
+    assert status.detail == "whether it is ready cannot be seen"
+    await running_pid(client, "other")
+
+
+def _python_path() -> list[str]:
+    before = os.environ.get("PYTHONPATH")
+    return [before] if before else []
