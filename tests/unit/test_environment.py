@@ -1,0 +1,158 @@
+"""The marks by which `make` knows an environment that is whole from one that is not."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from tests.unit.scripts_of_setup import ROOT, load
+
+environment = load("environment")
+LOG = Path("/dev/null")
+
+
+@pytest.fixture
+def made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """A tree with a blank in its name, an environment in it, and nothing installed for real."""
+    tree = tmp_path / "a tree"
+    (tree / ".venv" / "bin").mkdir(parents=True)
+    (tree / ".venv" / "bin" / "python").symlink_to(sys.executable)
+    (tree / "scripts").symlink_to(ROOT / "scripts")
+    subject = environment.Environment(tree / ".venv")
+    steps: list[str] = []
+    monkeypatch.delenv("PYTHON", raising=False)
+    monkeypatch.setattr(
+        environment,
+        "Step",
+        lambda what, *_command, **_environ: SimpleNamespace(finish=lambda: steps.append(what)),
+    )
+    monkeypatch.setattr(environment.Environment, "install", lambda _self: steps.append("install"))
+    return SimpleNamespace(tree=tree, subject=subject, steps=steps)
+
+
+def shell_says_sound(tree: Path) -> bool:
+    """Ask what the Makefile asks before each target."""
+    return subprocess.call(["/bin/sh", "scripts/sound.sh"], cwd=tree) == 0
+
+
+def both_say_sound(made: SimpleNamespace) -> bool:
+    """The shell and Python read the same marks and must agree."""
+    sound: bool = made.subject.is_sound()
+    assert shell_says_sound(made.tree) == sound
+    return sound
+
+
+def test_an_environment_is_sound_when_its_set_up_has_ended(made: SimpleNamespace) -> None:
+    assert not both_say_sound(made)
+    made.subject.update()
+    assert made.steps == ["Virtual environment", "install"]
+    assert both_say_sound(made)
+
+
+def test_a_sound_environment_is_brought_up_to_date_in_place(made: SimpleNamespace) -> None:
+    made.subject.update()
+    made.steps.clear()
+    made.subject.update()
+    assert made.steps == ["install"]
+
+
+def test_a_moved_tree_is_not_sound(made: SimpleNamespace) -> None:
+    made.subject.update()
+    moved = made.tree.rename(made.tree.with_name("elsewhere"))
+    assert not shell_says_sound(moved)
+    assert not environment.Environment(moved / ".venv").is_sound()
+
+
+def test_an_environment_whose_python_is_gone_is_not_sound(made: SimpleNamespace) -> None:
+    made.subject.update()
+    made.subject.python.unlink()
+    made.subject.python.symlink_to("/nowhere/python3")
+    assert not both_say_sound(made)
+
+
+def test_an_environment_of_another_python_than_asked_for_is_not_sound(
+    made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made.subject.update()
+    monkeypatch.setattr(sys, "executable", "/bin/sh")
+    assert made.subject.is_sound()
+    monkeypatch.setenv("PYTHON", "/bin/sh")
+    assert not made.subject.is_sound()
+
+
+def test_a_killed_set_up_is_begun_anew(
+    made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Half an installation looks whole to pip."""
+    made.subject.update()
+
+    def killed(_self: object) -> None:
+        raise ChildProcessError("killed by signal 9")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(environment.Environment, "install", killed)
+        with pytest.raises(ChildProcessError):
+            made.subject.update()
+    assert not both_say_sound(made)
+    made.steps.clear()
+    made.subject.update()
+    assert made.steps == ["Virtual environment", "install"]
+    assert both_say_sound(made)
+
+
+def test_a_set_up_that_failed_for_want_of_a_network_harms_nothing(
+    made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made.subject.update()
+    before = made.subject.ready.stat().st_mtime_ns
+
+    def fails(_self: object) -> None:
+        raise environment.StepError("libraries", LOG)
+
+    monkeypatch.setattr(environment.Environment, "install", fails)
+    with pytest.raises(environment.StepError):
+        made.subject.update()
+    assert both_say_sound(made)
+    assert made.subject.ready.stat().st_mtime_ns == before
+
+
+def test_a_failing_step_shows_the_end_of_its_log_and_where_it_lies(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(environment, "WORK", tmp_path)
+
+    def fails(_self: object) -> None:
+        words = "import sys; print('\\n'.join(map(str, range(100)))); sys.exit('no network')"
+        environment.Step("Libraries", sys.executable, "-c", words).finish()
+
+    monkeypatch.setattr(environment.Environment, "update", fails)
+    assert environment.main(str(tmp_path)) == 1
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "no network" in said.err
+    assert "\n50\n" not in said.err
+    assert said.err.endswith(f"{tmp_path / 'libraries.log'}\n")
+
+
+def test_a_tree_that_cannot_be_written_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(environment, "WORK", tmp_path / "file" / "build")
+    assert environment.main(str(tmp_path / ".venv")) == 1
+    assert "deck: cannot set up here" in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_the_message_types_are_built_again_only_when_they_change(tmp_path: Path) -> None:
+    (tmp_path / "msg").mkdir()
+    definition = tmp_path / "msg" / "Point.msg"
+    definition.write_text("float64 x\n")
+    before = environment.fingerprint(tmp_path)
+    definition.touch()
+    assert environment.fingerprint(tmp_path) == before
+    definition.rename(definition.with_name("Spot.msg"))
+    assert environment.fingerprint(tmp_path) != before

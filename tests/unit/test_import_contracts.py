@@ -1,0 +1,80 @@
+"""Who may import whom: the contracts of pyproject.toml hold back what they should."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
+LINTER = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+ROOMS = ("graph", "launcher", "nodes", "robot", "tui")
+
+ALLOWED = {
+    "tui.app": ["graph", "launcher", "robot", "textual", "rich"],
+    "graph.observer": ["rclpy", "std_msgs.msg", "numpy", "yaml"],
+    "nodes.hello": ["rclpy", "robot", "cv2", "example_interfaces.srv"],
+    "launcher.profile": ["asyncio", "psutil", "pydantic", "yaml", "launcher.spawn_server_start"],
+    "launcher.spawn_server": ["launcher.spawn_server_node", "launcher.spawn_server_warm"],
+    "launcher.spawn_server_node": ["launcher.spawn_server_probe"],
+    "launcher.spawn_server_probe": ["rclpy"],
+    "launcher.spawn_server_start": ["socket"],
+    "launcher.spawn_server_warm": ["ctypes"],
+    "robot.commands": ["math", "numpy", "pydantic"],
+}
+
+FORBIDDEN = {
+    "tui.app": ["nodes", "rclpy", "sensor_msgs.msg"],
+    "graph.observer": ["launcher", "nodes", "robot", "textual", "tui"],
+    "nodes.hello": ["graph", "launcher", "textual", "tui"],
+    "launcher.profile": [
+        *("graph", "nodes", "rclpy", "robot", "std_msgs.msg", "textual", "tui"),
+        *("launcher.spawn_server", "launcher.spawn_server_probe", "launcher.spawn_server_warm"),
+    ],
+    "robot.commands": ["asyncio", "graph", "launcher", "nodes", "rclpy", "subprocess", "tui"],
+}
+
+
+def lint(tree: Path, *more: dict[str, list[str]]) -> subprocess.CompletedProcess[str]:
+    """Write the rooms with these imports, and run the linter with the project's contracts."""
+    for room in ROOMS:
+        (tree / room).mkdir()
+        (tree / room / "__init__.py").touch()
+    for imports in (ALLOWED, *more):
+        for module, names in imports.items():
+            with (tree / f"{module.replace('.', '/')}.py").open("a") as source:
+                source.writelines(f"import {name}\n" for name in names)
+    return subprocess.run(
+        [sys.executable, "-c", LINTER, "--config", str(PYPROJECT), "--no-cache"],
+        cwd=tree,
+        env={"PYTHONPATH": str(tree), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_what_the_rooms_need_is_allowed(tmp_path: Path) -> None:
+    linted = lint(tmp_path)
+    assert linted.returncode == 0, linted.stdout + linted.stderr
+
+
+@pytest.fixture(scope="module")
+def broken(tmp_path_factory: pytest.TempPathFactory) -> set[tuple[str, str]]:
+    """The imports that the linter refuses in a tree that does all that is forbidden."""
+    linted = lint(tmp_path_factory.mktemp("broken"), FORBIDDEN)
+    assert linted.returncode == 1, linted.stdout + linted.stderr
+    return set(re.findall(r"([\w.]+) -> ([\w.]+) \(l\.", linted.stdout))
+
+
+@pytest.mark.parametrize(
+    ("module", "name"), [(module, name) for module, names in FORBIDDEN.items() for name in names]
+)
+def test_what_a_room_must_not_know_is_refused(
+    broken: set[tuple[str, str]], module: str, name: str
+) -> None:
+    outside = name.split(".", maxsplit=1)[0] not in ROOMS
+    assert (module, name.split(".", maxsplit=1)[0] if outside else name) in broken

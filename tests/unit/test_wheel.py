@@ -1,0 +1,55 @@
+"""What an installed Deck consists of."""
+
+from __future__ import annotations
+
+import subprocess
+import zipfile
+from pathlib import Path
+
+import pytest
+from hatchling.builders.wheel import WheelBuilder
+
+ROOT = Path(__file__).parents[2]
+ROOMS = ("graph", "launcher", "nodes", "profiles", "robot", "tui")
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
+    """The wheel of this tree."""
+    (built,) = WheelBuilder(str(ROOT)).build(
+        directory=str(tmp_path_factory.mktemp("wheel")), versions=["standard"]
+    )
+    return zipfile.ZipFile(built)
+
+
+def test_the_wheel_holds_every_file_of_every_room(wheel: zipfile.ZipFile) -> None:
+    """Profiles, styles and language catalogues as well as modules."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "--", *ROOMS],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if listed.returncode:
+        pytest.skip("not a git checkout")
+    tracked = {name for name in listed.stdout.split("\0") if name and (ROOT / name).exists()}
+    assert tracked - set(wheel.namelist()) == set()
+
+
+def test_the_wheel_holds_nothing_besides(wheel: zipfile.ZipFile) -> None:
+    rooms = {name.split("/")[0] for name in wheel.namelist()}
+    assert {room for room in rooms if not room.endswith(".dist-info")} == set(ROOMS)
+
+
+def test_deck_is_a_command(wheel: zipfile.ZipFile) -> None:
+    (points,) = (name for name in wheel.namelist() if name.endswith("entry_points.txt"))
+    assert "deck = tui.cli:main" in wheel.read(points).decode()
+
+
+def test_ros_is_asked_of_pypi_only_where_it_is_there(wheel: zipfile.ZipFile) -> None:
+    (metadata,) = (name for name in wheel.namelist() if name.endswith("METADATA"))
+    asked = [line for line in wheel.read(metadata).decode().splitlines() if "ros-jazzy" in line]
+    assert len(asked) == 7
+    marks = ("platform_machine == 'x86_64'", "sys_platform == 'linux'", "extra == 'ros'")
+    assert all(mark in line for line in asked for mark in marks)
