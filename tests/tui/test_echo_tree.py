@@ -255,4 +255,6 @@ async def test_every_line_fills_its_width_at_any_size(size: tuple[int, int]) -> 
         app.tree.show("/wide", wide)
         await pilot.pause()
         tree = app.tree
-        assert {tree.render_line(y).cell_length for y in range(size[1])} == {tree.size.width}
+        assert {tree.render_line(y).cell_length for y in range(size[1])} == {
+            tree.scrollable_size.width
+        }

@@ -134,6 +134,13 @@ def test_a_narrow_table_gives_up_the_type_first_and_the_rate_last() -> None:
     assert len(placed(118)) == len(COLUMNS)
 
 
+def test_the_longest_name_is_whole_before_the_types_get_room() -> None:
+    widths = {place.column.id: place.width for place in placed(118, 30)}
+    assert widths["name"] == 30
+    assert widths["type"] > 18
+    assert placed(118, 30)[-1].x + placed(118, 30)[-1].width == 118
+
+
 def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
     rows = [
         topic("/c", FLOAT, 5.0),

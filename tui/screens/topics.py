@@ -61,7 +61,7 @@ class TopicsScreen(DeckScreen):
         TopicsTable { width: 3fr; height: 1fr; max-height: 100%; }
         TopicDetail { width: 2fr; border-top: none; border-left: solid $panel; }
     }
-    TopicsScreen.-low TopicHead, TopicsScreen.-flat TopicHead { height: 2; }
+    TopicsScreen.-low TopicHead, TopicsScreen.-flat TopicHead { max-height: 2; }
     TopicsScreen.-flat TopicDetail { border-top: none; }
     """
 

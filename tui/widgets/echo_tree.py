@@ -141,7 +141,7 @@ class EchoTree(ScrollView, can_focus=True):
 
     def render_line(self, y: int) -> Strip:
         """One line of the tree, or of the words."""
-        width = self.size.width
+        width = self.scrollable_size.width
         if self._message is None:
             strips = word_strips(self._words, width, self.rich_style, self.app.console)
             return strips[y] if y < len(strips) else Strip.blank(width, self.rich_style)
@@ -235,7 +235,7 @@ class EchoTree(ScrollView, can_focus=True):
         if before is after or before == after:
             return
         same = _same_cells(_line_text(before), _line_text(after))
-        width = self.size.width
+        width = self.scrollable_size.width
         if same < width:
             self.refresh(Region(same, index - self.scroll_offset.y, width - same, 1))
 

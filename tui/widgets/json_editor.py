@@ -53,6 +53,7 @@ class JsonEditor(TextArea):
         "json-editor--mark",
         "json-editor--bad",
         "json-editor--problem",
+        "json-editor--gutter",
     }
     DEFAULT_CSS = """
     JsonEditor {
@@ -65,6 +66,7 @@ class JsonEditor(TextArea):
         & .json-editor--mark { color: $text-muted; }
         & .json-editor--bad { color: $text-error; }
         & .json-editor--problem { color: $text-error; text-style: bold underline; }
+        & .json-editor--gutter { color: $text-error; text-style: bold; }
     }
     """
 
@@ -125,7 +127,7 @@ class JsonEditor(TextArea):
         if column or beyond or not any(place.line - 1 == row for place in self._places):
             return strip
         before, after = self.gutter_width - MARGIN, self.gutter_width - MARGIN + 1
-        mark = Strip([Segment(MARK, self._style("problem"))], 1)
+        mark = Strip([Segment(MARK, self._style("gutter"))], 1)
         return Strip.join([strip.crop(0, before), mark, strip.crop(after)])
 
     def _style(self, kind: str) -> Style:

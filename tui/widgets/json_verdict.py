@@ -34,7 +34,7 @@ class JsonVerdict(Vertical):
         height: auto; max-height: 40%;
         & > Static { height: 1; background: $panel; color: $text-success; padding: 0 1; }
         & > OptionList {
-            height: auto; max-height: 6; display: none; background: $background;
+            height: auto; max-height: 1fr; display: none; background: $background; padding: 0 1;
             scrollbar-size: 1 1;
         }
         &.-wrong > Static { color: $text-error; text-style: bold; }

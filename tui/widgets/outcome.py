@@ -76,8 +76,17 @@ class Outcome(ScrollView, can_focus=True):
         """Wrap anew."""
         self._draw()
 
+    def notify_style_update(self) -> None:
+        """Draw in the colours of another theme."""
+        super().notify_style_update()
+        self._draw()
+
+    def watch_show_vertical_scrollbar(self) -> None:
+        """Wrap anew at the width that the scroll bar leaves."""
+        self._draw()
+
     def _draw(self) -> None:
-        base, width = self.rich_style, max(1, self.size.width)
+        base, width = self.rich_style, max(1, self.scrollable_size.width)
         self._strips = []
         if self._headline:
             self._wrap([], 0, self._headline, base + Style(bold=True), width)

@@ -25,7 +25,10 @@ class TopicHead(Widget):
     """Name and type, rates, and who is on the topic: three lines, or two."""
 
     DEFAULT_CSS = """
-    TopicHead { height: 3; width: 1fr; background: $panel; color: $foreground; }
+    TopicHead {
+        height: auto; max-height: 3; width: 1fr; background: $panel; color: $foreground;
+        text-wrap: nowrap; text-overflow: ellipsis;
+    }
     """
 
     def __init__(self) -> None:
@@ -36,8 +39,9 @@ class TopicHead(Widget):
         """Show these texts, drawn only if one of them is new."""
         lines = (plain(name), plain(type_name), state, below)
         if lines != self._lines:
+            other_height = len(list(filter(None, lines))) != len(list(filter(None, self._lines)))
             self._lines = lines
-            self.refresh()
+            self.refresh(layout=other_height)
 
     def render(self) -> Content:
         """Draw the lines."""

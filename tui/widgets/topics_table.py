@@ -190,9 +190,11 @@ class TopicsTable(ScrollView, can_focus=True):
 
     def on_resize(self) -> None:
         """Place the columns anew."""
-        self._places = placed(max(1, self.size.width - MARK))
-        self._drawn.clear()
-        self.refresh()
+        self._place()
+
+    def watch_show_vertical_scrollbar(self) -> None:
+        """Make room for the scroll bar, or use what it has left."""
+        self._place()
 
     def on_focus(self) -> None:
         """Draw the cursor as that of the focused widget."""
@@ -207,6 +209,7 @@ class TopicsTable(ScrollView, can_focus=True):
         was_visible = at is not None and self._is_visible(at)
         count = len(self._shown)
         self._shown = self._order.arranged(self._rows)
+        self._place()
         if count != len(self._shown):
             self.virtual_size = Size(0, HEADER + len(self._shown))
             self.refresh()
@@ -215,6 +218,15 @@ class TopicsTable(ScrollView, can_focus=True):
         if was_visible and now is not None and now != at:
             self._bring_into_view(now)
         self._refresh_changed()
+
+    def _place(self) -> None:
+        """Place the columns, anew only if the room or the longest name has changed."""
+        longest = max((len(row.name) for row in self._shown), default=0)
+        places = placed(max(1, self.scrollable_size.width - MARK), longest)
+        if places != self._places:
+            self._places = places
+            self._drawn.clear()
+            self.refresh()
 
     def _keep_chosen(self, before: int | None) -> None:
         """Where the chosen topic has gone, take the one that has come in its place."""

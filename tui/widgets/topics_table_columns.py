@@ -177,8 +177,12 @@ class Place:
         return " " * blank + text if self.column.right else text + " " * blank
 
 
-def placed(width: int) -> tuple[Place, ...]:
-    """The columns that fit into so many cells, with their gaps."""
+def placed(width: int, longest_name: int = 0) -> tuple[Place, ...]:
+    """The columns that fit into so many cells, with their gaps.
+
+    What is left beyond the narrowest columns goes to the names until the longest is whole, and
+    then to the types; where these are left out, all of it goes to the names.
+    """
     kept = list(COLUMNS)
     for unneeded in _GIVEN_UP:
         if _least(kept) <= width:
@@ -189,9 +193,10 @@ def placed(width: int) -> tuple[Place, ...]:
     places: list[Place] = []
     x = 0
     for column in kept:
-        share = spare // len(flexible) if column in flexible else 0
-        if column is flexible[0]:
-            share += spare % len(flexible)
+        share = spare if column is flexible[-1] else 0
+        if column is flexible[0] and len(flexible) > 1:
+            share = min(spare, max(0, longest_name - column.least))
+            spare -= share
         wide = min(width, (column.width or column.least) + share)
         places.append(Place(column, x, wide))
         x += wide + _gap(column)

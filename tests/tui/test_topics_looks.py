@@ -1,0 +1,102 @@
+"""How the screen of topics looks, at three sizes and in both languages."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from graph.data import EndpointInfo, GraphUpdate, Trouble
+from tests.tui.recorded import TOPICS, RecordedPad, lesson_update, sample
+from tests.tui.snapshots import Look, SnapCompare, every_look, settle
+from tui.app import DeckApp
+from tui.screens.topics import TopicsScreen
+
+HOSTILE = (
+    "[red]красный[/red] \x1b[31m\x1b]52;c;aGVsbG8=\x07\x00 \ud800 \u202eназад " + "1 MB " * 200_000
+)
+
+Before = Callable[[Pilot[Any]], Awaitable[None]]
+
+
+def shown(topic: str, update: GraphUpdate | None = None, *keys: str) -> Before:
+    """Choose this topic, let the graph be `update`, and press these keys."""
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        app = pilot.app
+        assert isinstance(app, DeckApp)
+        screen, graph = app.screen, app.feed.graph
+        assert isinstance(screen, TopicsScreen)
+        screen.table.choose(topic)
+        await pilot.pause()
+        graph.show(update or lesson_update())  # type: ignore[union-attr]
+        await pilot.pause()
+        await pilot.press(*keys)
+        for _round in range(3):
+            await pilot.pause()
+
+    return before
+
+
+@every_look
+def test_a_message(look: Look, snap_compare: SnapCompare) -> None:
+    """Topics with rates; /drive is chosen and stands as a tree: speed 0.3, steering 0.5."""
+    before = shown("/drive")
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_a_picture(look: Look, snap_compare: SnapCompare) -> None:
+    """The camera is chosen: colour bars over a grey ramp, with encoding, size and rate below."""
+    before = shown("/camera/color/image_raw")
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
+    """Sorted by state, troubles first, each a mark and a word; the QoS mismatch is explained."""
+    publisher = EndpointInfo("/lidar", "std_msgs/msg/Float32", "best_effort", "volatile")
+    subscriber = EndpointInfo("/ai_brain", "std_msgs/msg/Float32", "reliable", "volatile")
+    facts = {
+        "policy": "reliability", "publisher": "/lidar", "subscriber": "/ai_brain",
+        "offered": "best_effort", "requested": "reliable",
+    }  # fmt: skip
+    empty = {"hz": None, "bytes_per_s": None, "age_s": None}
+    changed = {
+        "/sensor/sonar_front": {
+            "trouble": Trouble.QOS_MISMATCH, "facts": facts, "published_by": (publisher,),
+            "subscribed_by": (subscriber,), **empty,
+        },
+        "/safety_state": {"trouble": Trouble.QUIET, "hz": 0.0, "age_s": 71.0},
+        "/head_state": {"trouble": Trouble.UNKNOWN_TYPE, **empty},
+        "/camera/color/image_raw": {"measured": False, **empty},
+    }  # fmt: skip
+    rows = tuple(replace(row, **changed.get(row.name, {})) for row in TOPICS)
+    update = lesson_update(topics=rows, samples={})
+    keys = ("s",) * (7 if look.size[0] >= 100 else 6)
+    before = shown("/sensor/sonar_front", update, *keys)
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_hostile_text(language: str, snap_compare: SnapCompare) -> None:
+    """A megabyte of escape sequences, markup and half characters: cut, and shown as it is."""
+    look = Look((80, 24), language)
+    rows = (
+        *TOPICS,
+        replace(TOPICS[0], name="/\x1b[2J[blink]", type_names=("evil_msgs/msg/\x1b]0;title\x07",)),
+    )
+    word = sample("/ai_command", "std_msgs/msg/String", {"data": HOSTILE})
+    update = lesson_update(topics=rows, samples={"/ai_command": (word,)})
+    before = shown("/ai_command", update, "tab", "enter")
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+def test_a_tiny_terminal(snap_compare: SnapCompare) -> None:
+    """At 40x12 name and rate are left of the table, and a few lines of the message."""
+    app = Look((40, 12), "en").app("topics", RecordedPad())
+    assert snap_compare(app, terminal_size=(40, 12), run_before=shown("/drive"))
