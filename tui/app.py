@@ -309,6 +309,14 @@ class DeckApp(App[int], Acting):
         """Speak the next language."""
         self.speak(LANGUAGES[(LANGUAGES.index(language()) + 1) % len(LANGUAGES)])
 
+    def redraw(self) -> None:
+        """Draw everything anew."""
+        self.refresh(layout=True)
+
+    def get_key_display(self, binding: Binding) -> str:
+        """Return how a key is written, in the language spoken now."""
+        return _("space") if binding.key == "space" else super().get_key_display(binding)
+
     def next_theme(self) -> None:
         """Take the next theme of the cycle."""
         self.theme = after(self.theme)

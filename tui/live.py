@@ -64,6 +64,12 @@ class LiveApp(DeckApp):
         self.leave(code)
         self.set_timer(PATIENCE_S, self.stop_now)
 
+    def redraw(self) -> None:
+        """Draw everything anew, whatever the terminal may show."""
+        if isinstance(self._driver, DeckDriver):
+            self._driver.forget()
+        super().redraw()
+
     def watch_theme(self, theme: str) -> None:
         """Remember the theme."""
         self._remember(theme=theme)

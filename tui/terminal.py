@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING
 
 from textual.drivers.linux_driver import LinuxDriver
 
+from tui.thrift import Thrift
+
 if TYPE_CHECKING:
     from textual.app import App
 
@@ -42,6 +44,8 @@ class Terminal:
     def __init__(self, fd: int, on_caught_up: Callable[[], object]) -> None:
         """Write to `fd` on a thread of its own."""
         self._fd = fd
+        self._thrift = Thrift()
+        self._terminal_size = (0, 0)
         self._on_caught_up = on_caught_up
         self._lock = threading.Condition()
         self._waiting: deque[bytes] = deque()
@@ -56,17 +60,38 @@ class Terminal:
 
     def write(self, text: str) -> None:
         """Have `text` written some time, or never if the terminal is stalled."""
-        data = text.encode("utf-8", "replace")
         with self._lock:
             if self.gone or (self._stalled and not self.leaving):
                 return
+            data = self._spared(text).encode("utf-8", "replace")
             self._waiting.append(data)
             self._size += len(data)
             if self._size > MOST_WAITING:
                 self._stalled = True
+                self._terminal_size = (0, 0)
                 self._waiting.clear()
                 self._size = 0
             self._lock.notify_all()
+
+    def _spared(self, text: str) -> str:
+        size = self.size()
+        if size != self._terminal_size:
+            self._terminal_size = size
+            self._thrift.forget(*size)
+        return self._thrift.spare(text)
+
+    def forget(self) -> None:
+        """Assume nothing of what the terminal shows: somebody else may have written to it."""
+        with self._lock:
+            self._terminal_size = (0, 0)
+
+    def size(self) -> tuple[int, int]:
+        """Return columns and lines, those of any terminal where it does not tell."""
+        try:
+            columns, lines = os.get_terminal_size(self._fd)
+        except OSError:
+            return 80, 24
+        return columns or 80, lines or 24
 
     def flush(self) -> None:
         """Do nothing: what was written is on its way."""
@@ -138,12 +163,11 @@ class DeckDriver(LinuxDriver):
             super().run_input_thread()
 
     def _get_terminal_size(self) -> tuple[int, int]:
-        """Return columns and lines, those of any terminal where it does not tell."""
-        try:
-            size = os.get_terminal_size(self._terminal.fileno())
-        except OSError:
-            return 80, 24
-        return size.columns or 80, size.lines or 24
+        return self._terminal.size()
+
+    def forget(self) -> None:
+        """Send everything anew with the next frame."""
+        self._terminal.forget()
 
     def stop_application_mode(self) -> None:
         """Leave the terminal as it was found, a stalled one too once it takes again."""

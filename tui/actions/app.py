@@ -178,6 +178,20 @@ class CloseSession(OpenedAction):
         target.close_session()
 
 
+class Redraw(AppAction):
+    """Everything anew."""
+
+    id = "app.redraw"
+    key = "ctrl+l"
+    title = N_("Redraw")
+    tooltip = N_("Draw everything anew, if something else has written to the terminal.")
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Draw."""
+        target.redraw()
+
+
 class Quit(AppAction):
     """Leave."""
 
@@ -205,5 +219,6 @@ APP_ACTIONS = (
     CloseSession,
     SwitchLanguage,
     SwitchTheme,
+    Redraw,
     Quit,
 )

@@ -1,0 +1,211 @@
+"""Frames for the terminal with all left out that it shows already: SSH is a slow line.
+
+Textual redraws whole regions, and gives every piece of text its full style and a reset. Here the
+cells that the terminal shows are remembered, and only those that differ are sent, with only what
+changes of their style. What is not surely understood is sent as it is and forgotten.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import NamedTuple
+
+from rich.cells import cell_len
+
+_TOKENS = re.compile(
+    r"\x1b\[(?P<place>[\d;]*)H|\x1b\[(?P<sgr>[\d;]*)m|(?P<text>[^\x00-\x1f\x7f]+)|(?P<line>\n)"
+    r"|(?P<other>\x1b\[[?>=<]?[\d;]*[ $]?[@-~]|\x1b[^\[]|.)",
+    re.DOTALL,
+)
+_SYNC = re.compile(r"\x1b\[\?2026[hl]")
+_ODD = re.compile(r"\x1b\]|\x1b\[(?:[0-3]?[JK]|\d*[ABCDEFGSTLMPXd])")
+"""Sequences after which the cells remembered may not be those shown."""
+_PLAIN = re.compile(
+    "[\u0020-\u007e\u00a0-\u00ac\u00ae-\u02ff\u0370-\u03ff\u0400-\u0482\u048a-\u052f"
+    "\u2010-\u2027\u2030-\u205e\u2190-\u21ff\u2200-\u22ff\u2500-\u2595\u2598-\u259f\u2800-\u28ff"
+    "\u25a0\u25b2-\u25b8\u25bc-\u25c2\u25c6-\u25d7\u2713\u2717\u2718\u26a0\u2298]+"
+)
+"""Characters of one cell on every terminal."""
+
+
+class Cell(NamedTuple):
+    """What one cell shows: a character and its SGR parameters."""
+
+    char: str
+    sgr: str
+
+
+class Look(NamedTuple):
+    """SGR parameters taken apart."""
+
+    attributes: tuple[str, ...]
+    foreground: str
+    background: str
+
+
+class Thrift:
+    """Knows what the terminal shows; `spare` returns what has to be sent to make it show more."""
+
+    def __init__(self) -> None:
+        """Know nothing yet."""
+        self._width = self._height = 0
+        self._rows: list[list[Cell | None]] = []
+        self._at: tuple[int, int] | None = None
+        """Column and row of the terminal's cursor, None if not known."""
+        self._sgr: str | None = None
+        """The terminal's style, None if not known."""
+        self._out: list[str] = []
+
+    def forget(self, width: int, height: int) -> None:
+        """Know nothing any more of a terminal of this size."""
+        self._width, self._height = width, height
+        self._rows = [[None] * width for _row in range(height)]
+        self._at = self._sgr = None
+
+    def spare(self, frame: str) -> str:
+        """Return the least that makes the terminal show what `frame` would."""
+        if _SYNC.fullmatch(frame):
+            return frame
+        if _ODD.search(frame):
+            self.forget(self._width, self._height)
+            return frame
+        self._out = []
+        x = y = 0
+        sgr = ""
+        moved = False
+        for token in _TOKENS.finditer(frame):
+            kind, value = token.lastgroup, token.group()
+            moved = kind == "place"
+            if kind == "text":
+                x = self._text(x, y, value, sgr)
+            elif kind == "sgr":
+                sgr = _joined(sgr, token["sgr"])
+            elif kind == "place":
+                x, y = _place(token["place"])
+            elif kind == "line":
+                x, y = 0, y + 1
+            else:
+                self._other(value)
+        if moved and self._out:
+            self._go(x, y)
+        return "".join(self._out)
+
+    def _other(self, sequence: str) -> None:
+        """Pass on what is no drawing; modes are changed in the terminal's own style."""
+        if self._sgr != "":
+            self._out.append("\x1b[0m")
+            self._sgr = ""
+        self._out.append(sequence)
+        if "1049" in sequence or sequence == "\x1bc":
+            self.forget(self._width, self._height)
+
+    def _text(self, x: int, y: int, text: str, sgr: str) -> int:
+        """Send those cells of `text` that differ; return the column after it."""
+        if not (0 <= y < self._height and _PLAIN.fullmatch(text) and x + len(text) <= self._width):
+            return self._unsure(x, y, text, sgr)
+        row = self._rows[y]
+        first = -1
+        for at, char in enumerate(text, x):
+            cell = Cell(char, sgr)
+            if row[at] == cell:
+                if first >= 0:
+                    self._send(first, y, text[first - x : at - x], sgr)
+                    first = -1
+            else:
+                row[at] = cell
+                if first < 0:
+                    first = at
+        if first >= 0:
+            self._send(first, y, text[first - x :], sgr)
+        return x + len(text)
+
+    def _unsure(self, x: int, y: int, text: str, sgr: str) -> int:
+        """Send text of which it is not sure how many cells it takes, and forget them."""
+        self._go(x, y)
+        self._wear(sgr)
+        self._out.append(text)
+        self._at = None
+        if 0 <= y < self._height:
+            row = self._rows[y]
+            row[max(0, x - 1) :] = [None] * (self._width - max(0, x - 1))
+        return x + cell_len(text)
+
+    def _send(self, x: int, y: int, text: str, sgr: str) -> None:
+        self._go(x, y)
+        self._wear(sgr)
+        self._out.append(text)
+        end = x + len(text)
+        # In the last column terminals differ about where the cursor is.
+        self._at = (end, y) if end < self._width else None
+
+    def _go(self, x: int, y: int) -> None:
+        if self._at == (x, y):
+            return
+        if self._at is not None and self._at[1] == y and self._at[0] < x:
+            gap = x - self._at[0]
+            self._out.append(f"\x1b[{gap if gap > 1 else ''}C")
+        else:
+            self._out.append(f"\x1b[{y + 1};{x + 1}H")
+        self._at = (x, y)
+
+    def _wear(self, sgr: str) -> None:
+        if sgr != self._sgr:
+            self._out.append(_change(self._sgr, sgr))
+            self._sgr = sgr
+
+
+def _place(parameters: str) -> tuple[int, int]:
+    row, _, column = parameters.partition(";")
+    return int(column or 1) - 1, int(row or 1) - 1
+
+
+def _joined(before: str, parameters: str) -> str:
+    if parameters in {"", "0"}:
+        return ""
+    return f"{before};{parameters}" if before else parameters
+
+
+@lru_cache(4096)
+def _change(before: str | None, after: str) -> str:
+    """Return the shortest sequence from one style to the other."""
+    whole = f"\x1b[0;{after}m" if after else "\x1b[0m"
+    if before is None:
+        return whole
+    old, new = _look(before), _look(after)
+    if old.attributes != new.attributes:
+        return whole
+    parts = []
+    if old.foreground != new.foreground:
+        parts.append(new.foreground or "39")
+    if old.background != new.background:
+        parts.append(new.background or "49")
+    if not parts:
+        return ""
+    change = f"\x1b[{';'.join(parts)}m"
+    return min(change, whole, key=len)
+
+
+@lru_cache(4096)
+def _look(sgr: str) -> Look:
+    parts = sgr.split(";") if sgr else []
+    attributes: list[str] = []
+    foreground = background = ""
+    at = 0
+    while at < len(parts):
+        code = parts[at]
+        if code in {"38", "48"} and at + 1 < len(parts):
+            taken = 5 if parts[at + 1] == "2" else 3
+            colour = ";".join(parts[at : at + taken])
+            foreground, background = (colour, background) if code == "38" else (foreground, colour)
+            at += taken
+            continue
+        number = int(code or 0)
+        if 30 <= number <= 37 or 90 <= number <= 97:
+            foreground = code
+        elif 40 <= number <= 47 or 100 <= number <= 107:
+            background = code
+        else:
+            attributes.append(code)
+        at += 1
+    return Look(tuple(attributes), foreground, background)
