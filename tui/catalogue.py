@@ -51,7 +51,7 @@ def missing(language: str) -> list[str]:
     for place, message in used_messages():
         entry = catalogue.get(message if isinstance(message, str) else message[0])
         strings = () if entry is None else entry.string
-        done = bool(strings) if isinstance(strings, str) else bool(strings) and all(strings)
+        done = bool(strings) if isinstance(strings, str) else all(strings or [""])
         if not done or (entry is not None and entry.fuzzy):
             found.append(f"{place}: {message!r}")
     return found

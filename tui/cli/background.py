@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from launcher import client
 from launcher.catalog import find_profile
 from launcher.errors import ConnectionLostError, NotRunningError, SessionError, UnknownNodeError
-from launcher.events import LogEvent, StatusEvent
-from launcher.profile import load_profile
+from launcher.events import LogEvent
 from tui.cli.health import settled, well
 from tui.cli.output import BOLD, DIM, RED, Paint, say_error, table, write
 from tui.cli.report import TextReport, status_fields
@@ -21,10 +20,13 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Collection, Iterable, Sequence
 
-    from launcher.status import NodeStatus, SessionInfo
+    from launcher.status import NodeState, NodeStatus, SessionInfo
 
 UP_WITHIN_S = 60.0
 """When `up` stops waiting, whatever the profile's own limits are."""
+LOOK_S = 0.05
+STEADY_S = 0.5
+"""For so long nothing may change once all is up: what fails does so in its first moment."""
 
 
 def up_command(options: Namespace) -> int:
@@ -48,6 +50,9 @@ def down_command(options: Namespace) -> int:
 
 
 async def _up(options: Namespace) -> int:
+    # Validation takes pydantic along, which the other commands do without.
+    from launcher.profile import load_profile
+
     profile = load_profile(
         find_profile(options.profile),
         hardware=options.hardware,
@@ -73,11 +78,30 @@ async def _up(options: Namespace) -> int:
 
 
 async def _settle(link: client.SupervisorClient) -> None:
-    """Wait until every node is up, or has failed to come up."""
-    async for event in link.events():
-        if isinstance(event, StatusEvent) and settled(link.nodes):
-            return
-    raise ConnectionLostError(_("the supervisor ended while the nodes were starting"))
+    """Wait until every node is up, or has failed to come up, and stays so."""
+    listening = asyncio.ensure_future(_listen(link))
+    try:
+        while not settled(link.nodes) or _states(link) != await _states_later(link):
+            if listening.done():
+                raise ConnectionLostError(_("the supervisor ended while the nodes were starting"))
+            await asyncio.sleep(LOOK_S)
+    finally:
+        listening.cancel()
+
+
+async def _listen(link: client.SupervisorClient) -> None:
+    """Take what is said, so that what is known of the nodes is kept current."""
+    async for _event in link.events():
+        pass
+
+
+def _states(link: client.SupervisorClient) -> list[NodeState]:
+    return [node.state for node in link.nodes.values()]
+
+
+async def _states_later(link: client.SupervisorClient) -> list[NodeState]:
+    await asyncio.sleep(STEADY_S)
+    return _states(link)
 
 
 async def _ps(options: Namespace) -> int:

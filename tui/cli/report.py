@@ -125,7 +125,7 @@ class TextReport:
             words = _("not healthy: {names}").format(names=", ".join(bad))
         else:
             words = _("every node stayed healthy")
-        self._write(f"{words}; {seconds:.1f} s")
+        self._write(_("{words}; {seconds:.1f} s").format(words=words, seconds=seconds))
 
     def _line(self, node: str, text: str) -> None:
         prefix = f"[{node}]".ljust(self._width)

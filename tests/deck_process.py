@@ -1,0 +1,80 @@
+"""Deck as a process of its own, its output read as it comes."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from tests.waiting import wait_until
+
+
+class DeckProcess:
+    """`deck ARGUMENTS` without a terminal."""
+
+    def __init__(self, *arguments: str, cwd: Path | None = None) -> None:
+        """Start it."""
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "tui", *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+            cwd=cwd,
+        )
+        self.lines: list[str] = []
+        self.errors: list[str] = []
+        self._readers = [
+            threading.Thread(target=self._read, args=pair, daemon=True)
+            for pair in ((self.process.stdout, self.lines), (self.process.stderr, self.errors))
+        ]
+        for reader in self._readers:
+            reader.start()
+
+    def _read(self, stream: Any, lines: list[str]) -> None:
+        with stream:
+            for line in stream:
+                lines.append(line.rstrip("\n"))  # noqa: PERF401 - read while it grows
+
+    def said(self, text: str, within_s: float = 30.0) -> str:
+        """Wait for a line that contains `text`; return it."""
+        return wait_until(
+            lambda: next((line for line in self.lines if text in line), ""), text, within_s
+        )
+
+    def signal(self, number: signal.Signals) -> None:
+        """Send it a signal."""
+        self.process.send_signal(number)
+
+    def finish(self, within_s: float = 40.0) -> int:
+        """Wait for its end; return its exit code."""
+        code = self.process.wait(within_s)
+        for reader in self._readers:
+            reader.join(within_s)
+        return code
+
+    def events(self) -> list[dict[str, Any]]:
+        """Return its output as JSON objects."""
+        return [json.loads(line) for line in self.lines]
+
+
+def deck(*arguments: str, cwd: Path | None = None) -> DeckProcess:
+    """Run a command to its end."""
+    process = DeckProcess(*arguments, cwd=cwd)
+    process.finish()
+    return process
+
+
+def alive(pid: int) -> bool:
+    """Whether a process runs, zombies not counted."""
+    try:
+        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False

@@ -1,0 +1,103 @@
+"""`deck up`, `ps`, `logs`, `down`: a profile in the background, and two at once."""
+
+from __future__ import annotations
+
+import json
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.deck_process import DeckProcess, alive, deck
+from tests.unit.profile_files import written
+from tests.waiting import wait_until
+
+ONE = """\
+nodes:
+  ticker: {exec: [sh, -c, "n=0; while :; do n=$((n+1)); echo tick $n; sleep 0.1; done"]}
+  quiet: {exec: [sleep, 100]}
+"""
+TWO = "nodes: {other: {exec: [sleep, 100]}, quiet: {exec: [sleep, 100]}}"
+
+
+@pytest.fixture(autouse=True)
+def _domain(ros_domain: int) -> Iterator[int]:
+    yield ros_domain
+    for session in json.loads("\n".join(deck("ps", "--json").lines)):
+        deck("down", session["run_id"])
+
+
+def test_from_up_to_down(tmp_path: Path, ros_domain: int) -> None:
+    path = str(written(tmp_path, ONE, "one.yaml"))
+    up = deck("up", path)
+    assert (up.process.returncode, up.errors) == (0, [])
+    assert [line.split()[:2] for line in up.lines[1:4]] == [
+        ["NODE", "STATE"],
+        ["ticker", "running"],
+        ["quiet", "running"],
+    ]
+
+    (session,) = json.loads("\n".join(deck("ps", "--json").lines))
+    assert (session["name"], session["domain"]) == ("one", ros_domain)
+    assert session["foreground"] is False
+    pids = [node["pid"] for node in session["nodes"]]
+    assert all(map(alive, pids))
+
+    logs = deck("logs", "ticker", "-n", "3")
+    assert logs.process.returncode == 0
+    numbers = [int(line.split()[-1]) for line in logs.lines]
+    assert numbers == list(range(numbers[0], numbers[0] + 3))
+
+    unknown = deck("logs", "tickr")
+    assert unknown.process.returncode == 2
+    assert unknown.errors == ["no node 'tickr'; there are: ticker, quiet"]
+
+    again = deck("up", path)
+    assert again.process.returncode == 1
+    assert f"one runs already in domain {ros_domain}" in again.errors[0]
+
+    down = deck("down")
+    assert (down.process.returncode, down.lines) == (0, ["one stopped, 2 nodes"])
+    assert not any(map(alive, pids))
+    assert deck("ps").errors[0].startswith("nothing runs in the background")
+
+
+def test_logs_follow_without_a_gap_until_ctrl_c(tmp_path: Path) -> None:
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    logs = DeckProcess("logs", "ticker", "-f", "-n", "2")
+    wait_until(lambda: len(logs.lines) > 12, "ten lines more")
+    logs.signal(signal.SIGINT)
+    assert logs.finish() == 130
+    assert logs.errors == []
+    numbers = [int(line.split()[-1]) for line in logs.lines if "tick" in line]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+def test_up_says_what_did_not_come_up(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        'nodes: {bad: {exec: [sh, -c, "echo oh; exit 4"], ready: {topic: /never}}}',
+        "bad.yaml",
+    )
+    up = deck("up", str(path))
+    assert up.process.returncode == 1
+    assert "bad   failed" in up.lines[2]
+    assert "exit code 4: oh" in up.lines[2]
+    assert up.errors[0].startswith("not all is well; `deck logs NODE`")
+
+
+def test_two_at_once_are_told_apart_by_name(tmp_path: Path, domain_pool: Callable[[], int]) -> None:
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    deck("up", str(written(tmp_path, TWO, "two.yaml")), "--domain", str(domain_pool()))
+    for words in (["down"], ["logs", "quiet"]):
+        refused = deck(*words)
+        assert refused.process.returncode == 2
+        assert refused.errors == ["several profiles run, choose one by name: one, two"]
+    assert deck("logs", "other", "-n", "0").process.returncode == 0
+    assert deck("logs", "quiet", "--profile", "two").process.returncode == 0
+    missing = deck("down", "three")
+    assert missing.process.returncode == 1
+    assert missing.errors == ["'three' does not run; running: one, two"]
+    assert deck("down", "one").lines == ["one stopped, 2 nodes"]
+    assert deck("down").lines == ["two stopped, 2 nodes"]
