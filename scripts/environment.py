@@ -44,7 +44,11 @@ def only_one() -> Iterator[None]:
     # A pip that outlives this process still writes, so it keeps the lock.
     os.set_inheritable(folder, True)
     try:
-        fcntl.flock(folder, fcntl.LOCK_EX)
+        try:
+            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            say("deck: another `make` is setting up here, waiting for it")
+            fcntl.flock(folder, fcntl.LOCK_EX)
         yield
     finally:
         os.close(folder)

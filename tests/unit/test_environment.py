@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -156,3 +158,25 @@ def test_the_message_types_are_built_again_only_when_they_change(tmp_path: Path)
     assert environment.fingerprint(tmp_path) == before
     definition.rename(definition.with_name("Spot.msg"))
     assert environment.fingerprint(tmp_path) != before
+
+
+def test_a_second_make_waits_and_finds_the_work_done(
+    made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(environment, "ROOT", made.tree)
+    monkeypatch.setattr(environment, "WORK", made.tree / "build")
+    held = threading.Event()
+
+    def first() -> None:
+        with environment.only_one():
+            held.set()
+            while "waiting" not in capsys.readouterr().err:
+                time.sleep(0.01)
+            made.subject.update()
+
+    thread = threading.Thread(target=first)
+    thread.start()
+    held.wait()
+    environment.set_up(made.subject)
+    thread.join()
+    assert made.steps == ["Virtual environment", "install"]

@@ -1,0 +1,66 @@
+"""Make the README's pictures: lesson 9 at work, as the running program draws it in a terminal.
+
+`.venv/bin/python -m scripts.picture` writes docs/deck.en.png and docs/deck.ru.png; it needs
+`rsvg-convert` (Debian: librsvg2-bin) and a monospaced font (fonts-dejavu-core).
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from tests.e2e.terminal import Terminal
+
+ROOT = Path(__file__).resolve().parents[1]
+DOMAIN = 76
+WIDTH_PX = 1320
+SPOKEN = {"en": "wheel slower", "ru": "колесо медленнее"}
+"""What the deck says while the robot turns."""
+TURN_LEFT = "налево"
+
+
+def picture(language: str) -> None:
+    """Run lesson 9, have the robot turn left, and draw the screen then."""
+    with tempfile.TemporaryDirectory() as folder:
+        env = {
+            "DECK_RUN_DIR": f"{folder}/run",
+            "DECK_LOG_DIR": f"{folder}/logs",
+            "XDG_CONFIG_HOME": f"{folder}/config",
+            "XDG_STATE_HOME": f"{folder}/state",
+        }
+        arguments = ["09-brain", "--lang", language, "--domain", str(DOMAIN)]
+        sonar = ["--set", "sonar_front.pattern=sweep"]
+        terminal = Terminal([sys.executable, "-m", "tui", *arguments, *sonar], 120, 40, env)
+        try:
+            terminal.wait_for("8/8")
+            terminal.wait_for("◂", within_s=60)
+            terminal.press("c")
+            terminal.wait_for("^x STOP" if language == "en" else "^x СТОП")
+            terminal.type(TURN_LEFT)
+            terminal.press("enter", "escape")
+            terminal.wait_for(SPOKEN[language])
+            svg = Path(folder) / "deck.svg"
+            svg.write_text(terminal.svg("deck 09-brain"))
+        finally:
+            terminal.close()
+        png = ROOT / "docs" / f"deck.{language}.png"
+        png.parent.mkdir(exist_ok=True)
+        subprocess.run(["rsvg-convert", "-w", str(WIDTH_PX), "-o", png, svg], check=True)
+        print(f"{png.relative_to(ROOT)}: {png.stat().st_size // 1024} kB")
+
+
+def main() -> int:
+    """Make both pictures."""
+    if shutil.which("rsvg-convert") is None:
+        print("rsvg-convert is missing: apt install librsvg2-bin", file=sys.stderr)
+        return 1
+    for language in ("en", "ru"):
+        picture(language)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
