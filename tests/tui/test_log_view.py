@@ -376,6 +376,24 @@ async def test_a_flood_measures_and_draws_next_to_nothing() -> None:
         assert texts(view)[-1] == "line 10100"
 
 
+async def test_batches_that_come_close_together_are_drawn_once() -> None:
+    app = LogApp()
+    app.pane.view._period_s = 0.05
+    async with app.run_test(size=(80, 24)) as pilot:
+        view = await shown(pilot, lines(1, 10))
+        drawn = []
+        redraw = view.redraw
+        view.redraw = lambda **how: (drawn.append(1), redraw(**how))[1]  # type: ignore[method-assign]
+        for batch in range(20):
+            view.append(lines(11 + batch * 10, 10))
+        for _wait in range(200):
+            await pilot.pause(0.01)
+            if drawn:
+                break
+        assert len(drawn) == 1
+        assert texts(view)[-1] == "line 210"
+
+
 def sample_lines() -> list[LogLine]:
     severities = list(Severity)
     names = ("sonar_front", "safety_stop", "ai_brain", "electronic_differential")

@@ -48,7 +48,7 @@ class Drawing(Widget):
         .drawing--good { color: $text-success; text-style: bold; }
         .drawing--warn { color: $text-warning; text-style: bold; }
         .drawing--bad { color: $text-error; text-style: bold; }
-        .drawing--stop { background: $error; color: $background; text-style: bold; }
+        .drawing--stop { background: $error; color: auto 90%; text-style: bold; }
         .drawing--accent { color: $text-accent; text-style: bold; }
         .drawing--second { color: $text-primary; text-style: bold; }
         .drawing--strong { text-style: bold; }

@@ -33,7 +33,7 @@ class LogBar(Widget):
         width: 1fr;
         background: $panel;
         color: $foreground 80%;
-        .log-bar--paused { background: $warning; color: $background; text-style: bold; }
+        .log-bar--paused { background: $warning; color: auto 90%; text-style: bold; }
         .log-bar--chosen { text-style: bold; }
     }
     """

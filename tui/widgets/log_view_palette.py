@@ -18,14 +18,14 @@ PARTS = ("muted", "marker", "found", "cursor", *(word.lower() for word in WORDS)
 PALETTE_CLASSES = {f"log--{part}" for part in PARTS}
 PALETTE_CSS = """
     .log--muted { color: $foreground 60%; }
-    .log--marker { color: $warning; text-style: italic; }
-    .log--found { background: $warning; color: $background; text-style: bold; }
+    .log--marker { color: $text-warning; text-style: italic; }
+    .log--found { background: $warning; color: auto 90%; text-style: bold; }
     .log--cursor { background: $primary 35%; }
     .log--debug { color: $foreground 60%; }
     .log--info { color: $foreground; }
-    .log--warn { color: $warning; text-style: bold; }
-    .log--error { color: $error; text-style: bold; }
-    .log--fatal { color: $error; text-style: bold reverse; }
+    .log--warn { color: $text-warning; text-style: bold; }
+    .log--error { color: $text-error; text-style: bold; }
+    .log--fatal { background: $error; color: auto 90%; text-style: bold; }
 """
 
 

@@ -6,7 +6,6 @@ would look different.
 
 from __future__ import annotations
 
-from time import monotonic
 from typing import ClassVar
 
 from textual.binding import Binding, BindingType
@@ -17,7 +16,7 @@ from textual.widget import Widget
 
 
 class TailView(ScrollView, can_focus=True):
-    """Base of views with `total_rows` rows; draws at most once in `period_s` while rows come."""
+    """Base of views with `total_rows` rows; draws rows that come after `period_s`."""
 
     DEFAULT_CSS = """
     TailView {
@@ -55,7 +54,6 @@ class TailView(ScrollView, can_focus=True):
         super().__init__(id=id, classes=classes)
         self.following = True
         self._period_s = period_s
-        self._drawn_s = 0.0
         self._waiting = False
         self._steering = False
         self._thumb = (-1, -1)
@@ -89,19 +87,17 @@ class TailView(ScrollView, can_focus=True):
             self.follow()
 
     def rows_came(self) -> None:
-        """Draw soon, together with what comes until then."""
+        """Draw soon, together with what comes until then; the first rows of all at once."""
         if self._waiting:
             return
-        rest = self._drawn_s + self._period_s - monotonic()
-        if rest <= 0 or not self.is_running:
-            self._rows_came()
-        else:
+        if self._period_s and self.is_running and self.virtual_size.height:
             self._waiting = True
-            self.set_timer(rest, self._rows_came)
+            self.set_timer(self._period_s, self._rows_came)
+        else:
+            self._rows_came()
 
     def _rows_came(self) -> None:
         self._waiting = False
-        self._drawn_s = monotonic()
         had = self.virtual_size.height
         self.redraw(only_end=not self.following and self.total_rows >= had)
 
