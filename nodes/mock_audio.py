@@ -1,12 +1,14 @@
 """A microphone and a loudspeaker that are not there.
 
 Every `period` seconds somebody says a phrase into the microphone, as text in bytes where a real one
-would send sound; what comes for the loudspeaker is written to the log.
+would send sound; what comes for the loudspeaker is written to the log. The first phrase waits for
+somebody to listen, though not longer than a period.
 """
 
 from __future__ import annotations
 
 import sys
+import time
 
 from std_msgs.msg import ByteMultiArray
 
@@ -27,6 +29,9 @@ _PHRASE = Phrase(
     "VOICE_COMMAND: осмотрись и расскажи, что там",
 )
 
+_LOOK_EVERY_S = 0.5
+"""For a first listener."""
+
 
 class MockAudio(LessonNode):
     """Speaks now and then, and listens."""
@@ -42,7 +47,8 @@ class MockAudio(LessonNode):
 
     def __init__(self) -> None:
         super().__init__()
-        self._began = False
+        self._began = self._listened = False
+        self._started_s = time.monotonic()
         self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
         self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
         self._timer = self.every(self.number("first_after"), self._speak)
@@ -55,11 +61,24 @@ class MockAudio(LessonNode):
 
     def _speak(self) -> None:
         if not self._began:
+            if not self._has_listener():
+                change_period(self._timer, _LOOK_EVERY_S)
+                return
             self._began = True
             change_period(self._timer, self.number("period"))
         words = self.text("phrase") or self.say.text(_PHRASE)
         self._publisher.publish(to_message(words.encode("utf-8", "replace")))
         self.say.info(_SAID, words=words)
+
+    def _has_listener(self) -> bool:
+        """Whether the first phrase is worth saying: somebody listens, or has had time enough to.
+
+        Seen twice in a row, for the two ends do not find each other at the same moment.
+        """
+        listened, self._listened = self._listened, self._publisher.get_subscription_count() > 0
+        patience_s = self.number("first_after") + self.number("period")
+        overdue = time.monotonic() - self._started_s > patience_s
+        return overdue or (listened and self._listened)
 
     def _play(self, message: ByteMultiArray) -> None:
         self.say.info(_PLAYED, words=from_message(message).decode("utf-8", "replace"))
