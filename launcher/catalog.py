@@ -67,7 +67,7 @@ def find_profile(name: str | Path) -> Path:
     """
     text = str(name)
     path = Path(text)
-    if os.sep in text or text.endswith(ENDINGS) or path.is_file():
+    if os.sep in text or text.endswith(ENDINGS) or os.path.isfile(path):  # noqa: PTH113
         return path
     known = {
         file.stem: file for folder in (SHIPPED, Path("profiles")) for file in _files_of(folder)

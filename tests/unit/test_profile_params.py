@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from launcher.profile_params import NAME, flatten, written
 from launcher.profile_tree import Branch, Entry, Place, Problems, Scalar
-from launcher.profile_yaml import read_value
+from launcher.profile_yaml import EXPONENT, read_value
 from tests.unit.profile_files import loaded
 
 TEXTS = st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=40)
@@ -78,8 +78,11 @@ def test_what_is_written_reads_back_as_the_same_value_and_type(value: Any) -> No
 
 @given(VALUES)
 def test_what_yaml_says_is_what_the_argument_says(value: Any) -> None:
+    # PyYAML writes the text 1e3 without quotes, which is a number here as everywhere but there.
+    words = value if isinstance(value, list) else [value]
+    assume(not any(isinstance(word, str) and EXPONENT.fullmatch(word) for word in words))
     problems = Problems()
-    text = yaml.safe_dump({"p": value}, allow_unicode=True)
+    text = yaml.safe_dump({"p": value})
     tree = read_value(text, "test", problems)
     assert tree is not None
     assert problems.found == []
