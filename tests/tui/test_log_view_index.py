@@ -94,6 +94,25 @@ def test_dropped_lines_leave_the_rest_on_the_rows_of_a_new_index() -> None:
     ]
 
 
+@pytest.mark.parametrize("chosen", FILTERS)
+def test_marks_for_dropped_lines_stand_where_a_new_index_has_them(chosen: LogFilter) -> None:
+    ring, index, fresh = LogRing(max_lines=40), LogIndex(text_of), LogIndex(text_of)
+    for each in (index, fresh):
+        each.filter = chosen
+        each.fold(9)
+    lines = [LogLine(f"node{n % 3}", 1 + n, 0.0, Severity.INFO, TEXTS[2]) for n in range(0, 600, 3)]
+    lines += [LogLine("node1", n, 0.0, Severity.WARN, TEXTS[3]) for n in range(1, 200)]
+    index.extend(ring.append(lines[:20], {}))
+    ring.hold()
+    for start in range(20, len(lines), 30):
+        index.extend(ring.append(lines[start : start + 30], {}))
+        if ring.full:
+            index.prune(ring.trim())
+    fresh.rebuild(ring.entries)
+    assert (index.shown, index.found, index.rows) == (fresh.shown, fresh.found, fresh.rows)
+    assert any(entry.skipped > 2 for entry in ring.entries)
+
+
 def test_the_search_goes_around_the_ends() -> None:
     index = LogIndex(text_of)
     index.filter = LogFilter(search="folding")

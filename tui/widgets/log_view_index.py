@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
-from itertools import accumulate, chain
-from operator import attrgetter, sub
+from itertools import accumulate, chain, pairwise
+from operator import attrgetter
 
 from rich.cells import cell_len, chop_cells
 
@@ -113,19 +113,24 @@ class LogIndex:
         self.shown, self.found, self._ends, self.longest = [], [], [], 0
         self.extend(entries)
 
-    def prune(self) -> None:
-        """Leave out the entries that the ring has dropped."""
-        if self.fold_width is not None:
-            heights = map(sub, self._ends, chain((0,), self._ends))
-            kept = [
-                height
-                for entry, height in zip(self.shown, heights, strict=False)
-                if not entry.dropped
-            ]
-            self._ends = list(accumulate(kept))
+    def prune(self, marks: Sequence[Entry] = ()) -> None:
+        """Leave out the entries that the ring has dropped, put in the marks it made for them."""
+        shown = [entry for entry in self.shown if not entry.dropped]
+        heights = [end - start for start, end in pairwise(chain((0,), self._ends))]
+        kept = [
+            height for entry, height in zip(self.shown, heights, strict=False) if not entry.dropped
+        ]
         gone = {entry.id for entry in self.shown if entry.dropped}
-        self.shown = [entry for entry in self.shown if not entry.dropped]
         self.found = [entry_id for entry_id in self.found if entry_id not in gone]
+        self.shown = shown
+        only_found = self.filter.only_found and bool(self.filter.search)
+        for mark in () if only_found else marks:
+            if self.filter.shows_node(mark.node):
+                place = self.place_of(mark.id)
+                shown.insert(place, mark)
+                if self.fold_width is not None:
+                    kept.insert(place, folded_rows(self._text_of(mark), self.fold_width))
+        self._ends = list(accumulate(kept))
 
     def fold(self, width: int | None) -> None:
         """Fold the lines to so many cells, or not at all."""

@@ -82,11 +82,7 @@ class LogLines(TailView):
         shown = self.index.extend(entries)
         self.fresh += 0 if self.following else shown
         if self.ring.full:
-            self.ring.trim()
-            if self.following:
-                self.index.prune()
-            else:
-                self.index.rebuild(self.ring.entries)
+            self.index.prune(self.ring.trim())
         self.rows_came()
 
     def know_nodes(self, names: Iterable[str]) -> None:

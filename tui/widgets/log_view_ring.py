@@ -37,12 +37,9 @@ class Entry:
     """Harmless: no control characters."""
     skipped: int = 0
     """For a mark: how many lines are missing; 0 for a line."""
+    size: int = _OBJECT_BYTES
+    """Bytes that it takes, about."""
     dropped: bool = False
-
-    @property
-    def size(self) -> int:
-        """Bytes that it takes, about."""
-        return sys.getsizeof(self.text) + _OBJECT_BYTES
 
 
 class LogRing:
@@ -90,10 +87,11 @@ class LogRing:
     ) -> None:
         if len(text) > LONGEST_TEXT:
             text = f"{text[:LONGEST_TEXT]} … (+{len(text) - LONGEST_TEXT})"
-        entry = Entry(self._next_id, node, rank, time_s, plain(text), skipped)
+        text = plain(text)
+        size = sys.getsizeof(text) + _OBJECT_BYTES
+        self.entries.append(Entry(self._next_id, node, rank, time_s, text, skipped, size))
         self._next_id += 1
-        self._bytes += entry.size
-        self.entries.append(entry)
+        self._bytes += size
 
     def clear(self) -> None:
         """Forget every line."""
@@ -118,8 +116,8 @@ class LogRing:
         loose = len(self.entries) - self._held
         return loose > self.max_lines * SLACK or self._bytes > self.max_bytes * SLACK
 
-    def trim(self) -> None:
-        """Drop lines of those who wrote most, until the bounds hold."""
+    def trim(self) -> list[Entry]:
+        """Drop lines of those who wrote most, until the bounds hold; return new marks for them."""
         loose = self.entries[self._held :]
         lines = Counter(entry.node for entry in loose)
         over_lines = _surplus(lines, self.max_lines)
@@ -129,6 +127,7 @@ class LogRing:
         over_bytes = _surplus(sizes, self.max_bytes)
         gaps: Counter[str] = Counter()
         kept: list[Entry] = []
+        marks: list[Entry] = []
         for entry in loose:
             node = entry.node
             if over_lines[node] <= 0 and over_bytes[node] <= 0:
@@ -139,9 +138,11 @@ class LogRing:
             entry.dropped = True
             gaps[node] += entry.skipped or 1
             if self._held and over_lines[node] <= 0 and over_bytes[node] <= 0:
-                kept.append(Entry(entry.id, node, 0, entry.time_s, "", gaps[node]))
+                marks.append(Entry(entry.id, node, 0, entry.time_s, "", gaps[node]))
+                kept.append(marks[-1])
         self.entries[self._held :] = kept
         self._bytes = sum(entry.size for entry in kept)
+        return marks
 
 
 def _surplus(amounts: Mapping[str, int], budget: int) -> Counter[str]:
