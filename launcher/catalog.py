@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -95,6 +94,8 @@ def _files_of(folder: Path) -> list[Path]:
 
 def _near(text: str, known: Iterable[str]) -> list[str]:
     """Return likely names, by the whole name and by the words that it is made of."""
+    from difflib import get_close_matches  # Rarely needed, and slow to import.
+
     names = list(known)
     near = get_close_matches(text, names, n=3, cutoff=0.7)
     for stem in names:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping as AbstractMapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from launcher.errors import ProfileProblem
@@ -143,5 +142,7 @@ def place_of(tree: Tree, where: Where, *, key: bool = False) -> Place:
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return the hint that names what was probably meant, empty if nothing comes near."""
+    from difflib import get_close_matches  # Rarely needed, and slow to import.
+
     near = get_close_matches(word, list(known), n=1, cutoff=0.6)
     return say("did you mean {word}?", word=near[0]) if near else ""

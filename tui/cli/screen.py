@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib import metadata
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile
@@ -19,6 +18,8 @@ if TYPE_CHECKING:
 def open_command(options: Namespace) -> int:
     """Show the screen; without a terminal do as `deck run` does."""
     if options.version:
+        from importlib import metadata
+
         write(f"deck {metadata.version('deck-robot')}")
         return 0
     if not has_terminal():
