@@ -312,11 +312,17 @@ class TopicsTable(ScrollView, can_focus=True):
     def _strip(
         self, mark: str, cells: tuple[str, ...], styles: list[Style], width: int, base: Style
     ) -> Strip:
-        segments = [Segment(mark.ljust(MARK), base)]
+        runs: list[tuple[str, Style]] = [(mark.ljust(MARK), base)]
         end = 0
         for place, text, style in zip(self._places, cells, styles, strict=True):
-            segments += [Segment(" " * (place.x - end), base), Segment(text, style)]
+            padded = " " * (place.x - end) + text
             end = place.x + place.width
+            # Every segment costs the terminal some forty bytes of colours.
+            if style == runs[-1][1]:
+                runs[-1] = (runs[-1][0] + padded, style)
+            else:
+                runs.append((padded, style))
+        segments = [Segment(text, style) for text, style in runs]
         return Strip(segments).adjust_cell_length(width, base)
 
     def _empty_words(self) -> tuple[str, str]:
