@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from textual.driver import Driver
     from textual.screen import Screen
 
+    from launcher.status import Stray
     from tui.seams import Launchpad
 
 SCREENS = {
@@ -68,6 +69,7 @@ class DeckApp(App[int], Acting):
         """Said on the terminal after the screen has gone."""
         self._picking = order.profile is None and order.attach is None
         self._first_screen = "picker" if self._picking else first_screen
+        self._strays_asked: set[Stray] = set()
         self._opening = ""
         self._leaving = False
         self.register_theme(HIGH_CONTRAST)
@@ -120,8 +122,6 @@ class DeckApp(App[int], Acting):
         self.feed.connect(link, self.pad.observe(link.session))
         self.brake.prepare()
         self.refresh_bindings()
-        if link.strays:
-            self.ask_about(link.strays)
         await self.feed.listen()
         self.refresh_bindings()
 
@@ -138,10 +138,14 @@ class DeckApp(App[int], Acting):
         self.push_screen(RefusedScreen(reason))
 
     @work(group="strays")
-    async def ask_about(self, strays: tuple[Any, ...]) -> None:
-        """Offer to stop what an earlier run left behind."""
+    async def ask_about(self, found: tuple[Stray, ...]) -> None:
+        """Offer to stop what an earlier run left behind, once."""
         from tui.screens.strays import StraysScreen
 
+        strays = tuple(stray for stray in found if stray not in self._strays_asked)
+        self._strays_asked.update(strays)
+        if not strays:
+            return
         if await self.push_screen_wait(StraysScreen(strays)) and self.feed.link is not None:
             with contextlib.suppress(LauncherError):
                 await self.feed.link.stop_strays(strays)
@@ -155,14 +159,14 @@ class DeckApp(App[int], Acting):
     async def _show_picker(self) -> None:
         """Go back to the list; the screens of the session go with it."""
         self._picking = True
-        old = [self.get_screen(name) for name in SCREENS if self.is_screen_installed(name)]
-        for screen in old:
-            self.uninstall_screen(screen)
         self.feed.close()
         await self.show_screen("picker")
-        for screen in old:
-            if screen.is_running:
-                await screen.remove()
+        for name in SCREENS:
+            if name != "picker" and self.is_screen_installed(name):
+                old = self.get_screen(name)
+                self.uninstall_screen(old)
+                if old.is_running:
+                    await old.remove()
 
     async def _end_session(self) -> None:
         """Stop or let go of the session, with a dialog that shows what is waited for."""

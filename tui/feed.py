@@ -16,7 +16,7 @@ from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEve
 from tui.emergency import FOLLOWED
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
-from tui.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged, StraysChanged
+from tui.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
 from tui.screens.base import DeckScreen
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ class Feed:
             self.history.add(event.lines)
             self.tell(lambda: LogArrived(event.lines, event.skipped))
         elif isinstance(event, StraysEvent):
-            self.tell(lambda: StraysChanged(event.strays))
+            self._app.ask_about(event.strays)
         elif isinstance(event, ClosedEvent):
             await self.disconnect(event.reason)
 

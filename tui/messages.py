@@ -13,7 +13,7 @@ from textual.message import Message
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
-    from launcher.status import LogLine, NodeStatus, Stray
+    from launcher.status import LogLine, NodeStatus
     from tui.emergency import Emergency
 
 
@@ -25,15 +25,6 @@ class StatusChanged(Message, bubble=False):
         super().__init__()
         self.nodes = nodes
         self.changed = changed
-
-
-class StraysChanged(Message, bubble=False):
-    """What an earlier run left behind is not what it was."""
-
-    def __init__(self, strays: tuple[Stray, ...]) -> None:
-        """Carry all of them."""
-        super().__init__()
-        self.strays = strays
 
 
 class LogArrived(Message, bubble=False):

@@ -246,6 +246,9 @@ class RecordedSession:
         self.strays: tuple[Stray, ...] = ()
         self.asked: list[tuple[str, ...]] = []
         """What was asked: ("stop", "camera"), ("shutdown", "now"), ("aclose",)."""
+        self.hold_shutdown = False
+        """Set: the nodes do not stop until they are made to."""
+        self._killed = asyncio.Event()
         self._lines = list(lines)
         self._queue: asyncio.Queue[Event] = asyncio.Queue()
         if self._lines:
@@ -290,6 +293,10 @@ class RecordedSession:
 
     async def shutdown(self, now: bool = False) -> None:
         self.asked.append(("shutdown", "now") if now else ("shutdown",))
+        if now:
+            self._killed.set()
+        elif self.hold_shutdown:
+            await self._killed.wait()
 
     async def aclose(self) -> None:
         self.asked.append(("aclose",))

@@ -24,7 +24,9 @@ from textual.pilot import Pilot
 from tests.tui.recorded import RecordedPad
 from tui.app import DeckApp
 from tui.i18n import set_language
+from tui.screens.picker import PickerScreen
 from tui.seams import Order
+from tui.widgets.rows import Rows
 
 SnapCompare = Callable[..., bool]
 SIZES = ((80, 24), (120, 40), (200, 60))
@@ -51,14 +53,19 @@ class Look:
 
 
 async def settle(pilot: Pilot[Any]) -> None:
-    """Wait until the recorded session is open and every message of it is handled."""
+    """Wait until the recorded session, or the picker, is there and every message is handled."""
     app = pilot.app
-    for _round in range(200):
+    for _round in range(500):
         await pilot.pause(0.01)
-        if isinstance(app, DeckApp) and app.feed.update is not None:
+        if isinstance(app, DeckApp) and (app.feed.update is not None or _lists(app)):
             break
     for _round in range(3):
         await pilot.pause()
+
+
+def _lists(app: DeckApp) -> bool:
+    """Whether the picker is in front and has its lessons."""
+    return isinstance(app.screen, PickerScreen) and bool(app.screen.query_one(Rows).chosen)
 
 
 every_look = pytest.mark.parametrize(

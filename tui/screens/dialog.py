@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from tui.app import DeckApp
+    from tui.messages import LanguageChanged
 
 Answer = TypeVar("Answer")
 
@@ -64,6 +65,11 @@ class Dialog(ModalScreen[Answer], Acting):
 
     def on_mount(self) -> None:
         """Show the text."""
+        self.redraw()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw anew."""
+        del message
         self.redraw()
 
     def redraw(self) -> None:

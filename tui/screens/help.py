@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from textual.binding import BindingType
     from textual.screen import Screen
 
+    from tui.messages import LanguageChanged
+
 
 class CloseHelp(Action["HelpScreen"]):
     """Back to the screen."""
@@ -54,6 +56,11 @@ class HelpScreen(Dialog[None]):
         """Explain this screen."""
         super().__init__()
         self._explained = explained
+
+    async def on_language_changed(self, message: LanguageChanged) -> None:  # type: ignore[override]
+        """Write the page anew."""
+        await self.recompose()
+        super().on_language_changed(message)
 
     def title_words(self) -> str:
         """Name the page."""

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from launcher.status import SessionInfo
     from tui.app import DeckApp
+    from tui.messages import LanguageChanged
     from tui.seams import Lesson, Order
 
 FIRST = "09-brain"
@@ -66,8 +67,8 @@ class PickerScreen(Screen[None], Acting):
     """A list of lessons, and beside or below it all about the chosen one."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StartLesson)
-    HORIZONTAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = BREAKPOINTS
-    VERTICAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = HEIGHTS
+    HORIZONTAL_BREAKPOINTS = BREAKPOINTS
+    VERTICAL_BREAKPOINTS = HEIGHTS
     DEFAULT_CSS = """
     PickerScreen {
         #picker { height: 1fr; layout: vertical; }
@@ -75,7 +76,7 @@ class PickerScreen(Screen[None], Acting):
         #about { height: 1fr; min-height: 9; padding: 0 2; border-top: solid $panel; }
         #about-text { height: auto; }
         &.-home #picker, &.-wide #picker { layout: horizontal; }
-        &.-home #lessons, &.-wide #lessons { width: 1fr; height: 1fr; padding: 1 1; }
+        &.-home #lessons, &.-wide #lessons { width: 1fr; height: 1fr; margin: 1 1; }
         &.-home #about, &.-wide #about {
             width: 1fr; height: 1fr; padding: 2 3; border-top: none; border-left: solid $panel;
         }
@@ -158,6 +159,11 @@ class PickerScreen(Screen[None], Acting):
         order = self.order()
         if order is not None:
             self.deck.open(order)
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw anew."""
+        del message
+        self.redraw()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
         """Tell about the chosen one."""

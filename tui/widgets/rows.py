@@ -187,8 +187,9 @@ class Rows(ScrollView, can_focus=True):
         return next((i for i, row in enumerate(self._rows) if row.key and row.key == key), None)
 
     def _choose_near(self, index: int, step: int = 1) -> None:
-        """Choose this row or, where it is a heading, the next that is none."""
-        places = range(index, len(self._rows)) if step > 0 else range(index, -1, -1)
+        """Choose this row or, where it is a heading, the nearest that is none, `step` first."""
+        below, above = range(index, len(self._rows)), range(index, -1, -1) if self._rows else ()
+        places = (*below, *above) if step > 0 else (*above, *below)
         found = next((place for place in places if self._rows[place].key), None)
         if found is not None:
             self._choose(found)

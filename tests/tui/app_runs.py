@@ -1,0 +1,31 @@
+"""The app at work with the recorded lesson 9, for tests that press its keys."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+from textual.pilot import Pilot
+
+from tests.tui.recorded import RecordedPad
+from tests.tui.snapshots import settle
+from tui.app import DeckApp
+from tui.seams import Order
+
+LESSON_9 = Order(Path("profiles/09-brain.yaml"))
+
+
+@asynccontextmanager
+async def opened(
+    pad: RecordedPad | None = None,
+    screen: str = "deck",
+    size: tuple[int, int] = (120, 40),
+    order: Order = LESSON_9,
+) -> AsyncIterator[tuple[DeckApp, Pilot[Any]]]:
+    """Run the app until the recorded session, or the picker, is on the screen."""
+    app = DeckApp(pad or RecordedPad(), order, screen)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        yield app, pilot

@@ -1,0 +1,235 @@
+"""The app and its session: opened, fed, closed, left; nothing lost and nothing left behind."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import pytest
+
+from graph.data import GraphUpdate, Sample
+from launcher.errors import ProfileError, ProfileProblem, SessionError
+from launcher.events import ClosedEvent, LogEvent, StraysEvent
+from launcher.status import Severity, Stray
+from launcher.words import say
+from tests.tui.app_runs import LESSON_9, opened
+from tests.tui.recorded import (
+    LINES,
+    NOW_S,
+    SESSION,
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    lesson_update,
+    line,
+)
+from tests.tui.snapshots import settle
+from tui.app import DeckApp
+from tui.history import LogHistory
+from tui.inbox import GraphInbox
+from tui.screens.logs import LogsScreen
+from tui.screens.picker import PickerScreen
+from tui.screens.stopping import StoppingScreen
+from tui.screens.strays import StraysScreen
+from tui.screens.topics import TopicsScreen
+
+ATTACHED = replace(SESSION, foreground=False)
+STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")
+
+
+def update_of(number: int) -> GraphUpdate:
+    """An update with one sample of its own."""
+    one = Sample("/a", "std_msgs/msg/Int32", NOW_S, 0.0, 4, {"data": number})
+    return GraphUpdate(time_s=float(number), samples={"/a": (one,)})
+
+
+def test_updates_that_wait_are_merged_and_no_sample_is_lost() -> None:
+    wakes: list[int] = []
+    inbox = GraphInbox(lambda: wakes.append(1))
+    for number in range(5):
+        inbox.put(update_of(number))
+    taken = inbox.take()
+    assert taken is not None
+    assert taken.time_s == 4.0
+    assert [sample.value["data"] for sample in taken.samples["/a"]] == [0, 1, 2, 3, 4]
+    assert wakes == [1]
+    assert inbox.take() is None
+
+
+def test_a_flood_of_updates_is_bounded_while_the_app_is_busy() -> None:
+    inbox = GraphInbox(lambda: None)
+    threads = [
+        threading.Thread(target=lambda: [inbox.put(update_of(n)) for n in range(500)])
+        for _thread in range(4)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    taken = inbox.take()
+    assert taken is not None
+    assert len(taken.samples["/a"]) <= 256
+
+
+def test_the_history_of_the_log_is_bounded_in_lines_and_in_characters() -> None:
+    history = LogHistory(lines=10, characters=100)
+    history.add(line("camera", n, "x") for n in range(50))
+    assert [one.seq for one in history.all()] == list(range(40, 50))
+    history.add([line("camera", 51, "y" * 95)])
+    assert sum(len(one.text) for one in history.all()) <= 100
+
+
+async def test_a_screen_opened_late_knows_the_log_and_the_nodes_from_the_beginning() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("4")
+        await pilot.pause()
+        await pilot.pause()
+        assert isinstance(app.screen, LogsScreen)
+        entries = app.screen.pane.view.ring.entries
+        assert [entry.text for entry in entries] == [one.text for one in LINES]
+
+
+async def test_a_screen_in_the_background_misses_no_line() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("4", "1")
+        pad.link.say(LogEvent((line("camera", 4, "while away", Severity.WARN),)))
+        await pilot.pause()
+        await pilot.press("4")
+        await pilot.pause()
+        assert app.screen.pane.view.ring.entries[-1].text == "while away"
+
+
+@pytest.mark.parametrize(
+    ("keys", "screen"), [("2", TopicsScreen), ("f3", TopicsScreen), ("f5", LogsScreen)]
+)
+async def test_screens_are_switched_by_digits_and_function_keys(keys: str, screen: type) -> None:
+    async with opened() as (app, pilot):
+        await pilot.press(keys)
+        await pilot.pause()
+        assert isinstance(app.screen, screen)
+
+
+async def test_screens_are_switched_by_a_click_on_the_title() -> None:
+    async with opened() as (app, pilot):
+        at = str(app.screen.query_one("TitleBar").render()).index("4 Logs")
+        await pilot.click("TitleBar", offset=(at + 1, 0))
+        await pilot.pause()
+        assert isinstance(app.screen, LogsScreen)
+
+
+async def test_leaving_stops_the_nodes_that_this_screen_has_started() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("q")
+        await pilot.pause()
+        assert pad.link.asked == [("shutdown",), ("aclose",)]
+        assert pad.graph.stopped
+        assert app.return_code == 0
+
+
+async def test_leaving_an_attached_session_leaves_it_running() -> None:
+    pad = RecordedPad(RecordedSession(ATTACHED))
+    async with opened(pad) as (_app, pilot):
+        await pilot.press("ctrl+q")
+        await pilot.pause()
+        assert pad.link.asked == [("aclose",)]
+
+
+async def test_while_nodes_are_stopping_it_says_which_and_q_again_does_not_wait() -> None:
+    pad = RecordedPad()
+    pad.link.hold_shutdown = True
+    async with opened(pad) as (app, pilot):
+        await pilot.press("q")
+        await pilot.pause()
+        assert isinstance(app.screen, StoppingScreen)
+        assert "safety_stop" in str(app.screen.words())
+        await pilot.press("q")
+        await pilot.pause()
+        assert ("shutdown", "now") in pad.link.asked
+
+
+async def test_closing_a_session_goes_back_to_the_lessons_and_another_can_be_opened() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("4", "f8")
+        await settle(pilot)
+        assert isinstance(app.screen, PickerScreen)
+        assert pad.link.asked == [("shutdown",), ("aclose",)]
+        pad.link = RecordedSession()
+        await pilot.press("enter")
+        await settle(pilot)
+        assert app.feed.session is SESSION
+        assert [one.text for one in app.feed.history.all()] == [one.text for one in LINES]
+
+
+async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.link.say(ClosedEvent(say("the supervisor is gone")))
+        await pilot.pause()
+        await pilot.pause()
+        assert app.state_words()[0] == "the supervisor is gone"
+        assert pad.graph.stopped
+        await pilot.press("4")
+        await pilot.pause()
+        assert isinstance(app.screen, LogsScreen)
+        assert app.screen.pane.view.ring.entries
+        await pilot.press("f8")
+        await settle(pilot)
+        assert isinstance(app.screen, PickerScreen)
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (ProfileError([ProfileProblem("a.yaml", 3, 5, "nodes", say("unknown key"))]), 2),
+        (SessionError(say("the supervisor does not answer")), 1),
+    ],
+)
+async def test_what_was_named_and_cannot_be_opened_ends_the_program_with_words(
+    error: Exception, code: int
+) -> None:
+    app = DeckApp(RecordedPad(refusal=error), LESSON_9)
+    async with app.run_test() as pilot:
+        await pilot.pause()
+        await pilot.pause()
+    assert app.return_code == code
+    assert app.parting_words == str(error)
+
+
+async def test_what_an_earlier_run_left_behind_is_offered_for_stopping() -> None:
+    pad = RecordedPad()
+    pad.link.say(StraysEvent((STRAY,)))
+    async with opened(pad) as (app, pilot):
+        await pilot.pause()
+        assert isinstance(app.screen, StraysScreen)
+        assert "4711" in str(app.screen.words())
+        await pilot.press("enter")
+        await pilot.pause()
+        assert pad.link.asked == [("stop_strays", "camera")]
+
+
+async def test_what_is_left_behind_may_be_let_be_and_is_asked_about_once() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.link.say(StraysEvent((STRAY,)))
+        await pilot.pause()
+        await pilot.pause()
+        assert isinstance(app.screen, StraysScreen)
+        await pilot.press("escape")
+        pad.link.say(StraysEvent((STRAY,)))
+        await pilot.pause()
+        await pilot.pause()
+        assert not isinstance(app.screen, StraysScreen)
+        assert pad.link.asked == []
+
+
+async def test_a_graph_that_cannot_be_observed_says_so_and_the_rest_works() -> None:
+    pad = RecordedPad(graph=RecordedGraph(lesson_update(error="ROS cannot be used: no rclpy")))
+    async with opened(pad) as (app, pilot):
+        await pilot.pause()
+        assert any("no rclpy" in note.message for note in app._notifications)
+        await pilot.press("x")
+        await pilot.pause()
+        assert pad.link.asked == [("stop", "sonar_front")]

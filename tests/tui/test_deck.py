@@ -1,0 +1,311 @@
+"""The Deck: nodes and what can be done to them, panels by the profile, the log."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from graph.data import Trouble
+from launcher.events import LogEvent
+from launcher.status import NodeState, Severity
+from tests.tui.app_runs import opened
+from tests.tui.recorded import (
+    NODES,
+    SESSION,
+    TOPICS,
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    lesson_update,
+    line,
+    topic,
+)
+from tests.tui.snapshots import Look, SnapCompare, every_look
+from tui.app import DeckApp
+from tui.panels.camera import CameraFeed
+from tui.panels.shelf import Shelf
+from tui.panels.sonar import SonarFeed
+from tui.panels.wheels import WheelsFeed
+from tui.screens.deck import LessonDeck
+from tui.widgets.image_view import ImageView
+from tui.widgets.nodes_table import NodesTable, duration
+from tui.widgets.sonar import SonarPanel
+from tui.widgets.wheels import WheelsPanel
+
+HELLO = replace(SESSION, name="01-hello", lesson="1", title={"en": "The first node"}, panels=())
+
+
+def hello() -> RecordedPad:
+    """Lesson 1: one node, no panels."""
+    node = replace(NODES["camera"], name="hello_node", command="nodes.hello")
+    lines = [line("hello_node", n, f"I have worked for {n} s", at_s=n) for n in range(1, 12)]
+    session = RecordedSession(HELLO, {"hello_node": node}, lines)
+    return RecordedPad(session, RecordedGraph(lesson_update(topics=(), samples={})))
+
+
+def troubled() -> RecordedPad:
+    """Lesson 9 on a bad day: nodes waiting, restarting, failed; every panel without data."""
+    session = RecordedSession()
+    session.nodes["camera"] = replace(
+        NODES["camera"],
+        state=NodeState.FAILED,
+        pid=None,
+        uptime_s=None,
+        cpu_percent=None,
+        memory_bytes=None,
+        exit_code=1,
+        restarts=5,
+        detail="given up after 5 ends in 12 s",
+    )
+    session.nodes["audio"] = replace(
+        NODES["audio"],
+        state=NodeState.BACKOFF,
+        pid=None,
+        uptime_s=None,
+        restarts=2,
+        cpu_percent=None,
+        memory_bytes=None,
+        signal="SIGKILL",
+    )
+    session.nodes["ai_brain"] = replace(
+        NODES["ai_brain"],
+        state=NodeState.WAITING,
+        pid=None,
+        uptime_s=None,
+        cpu_percent=None,
+        memory_bytes=None,
+        detail="waits for camera, audio",
+    )
+    troubles = {
+        "/sensor/sonar_front": (Trouble.QUIET, ""),
+        "/wheel_commands": (Trouble.QOS_MISMATCH, "reliable here, best effort there"),
+        "/camera/color/image_raw": (Trouble.NO_PUBLISHER, ""),
+        "/head_state": (Trouble.UNKNOWN_TYPE, "head_msgs/msg/Head"),
+    }
+    rows = tuple(
+        replace(row, trouble=troubles[row.name][0], detail=troubles[row.name][1], age_s=None)
+        if row.name in troubles
+        else row
+        for row in TOPICS
+    )
+    return RecordedPad(session, RecordedGraph(lesson_update(topics=rows, samples={})))
+
+
+@every_look
+def test_deck_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Eight nodes ready, sonar 1.84 m free, left turn, colour bars, head 45° left, the log."""
+    assert snap_compare(look.app(), terminal_size=look.size, run_before=look.settle)
+
+
+@every_look
+def test_deck_of_the_first_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """One node above, its log below over the whole width, no panels and no empty frames."""
+    assert snap_compare(look.app(pad=hello()), terminal_size=look.size, run_before=look.settle)
+
+
+@every_look
+def test_deck_in_trouble_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Failed, restarting and waiting nodes by sign and word; each empty panel says why."""
+    assert snap_compare(look.app(pad=troubled()), terminal_size=look.size, run_before=look.settle)
+
+
+@every_look
+def test_deck_stopped_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """The red line with the word and the key that releases stands under the title."""
+
+    async def stop(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await pilot.press("space")
+
+    assert snap_compare(look.app(), terminal_size=look.size, run_before=stop)
+
+
+def deck_of(app: DeckApp) -> LessonDeck:
+    """Return the screen."""
+    assert isinstance(app.screen, LessonDeck)
+    return app.screen
+
+
+@pytest.mark.parametrize(
+    ("key", "asked"), [("s", "start"), ("x", "stop"), ("r", "restart"), ("ч", "stop")]
+)
+async def test_one_node_is_started_stopped_restarted(key: str, asked: str) -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (_app, pilot):
+        await pilot.press("down", key)
+        await pilot.pause()
+        assert pad.link.asked == [(asked, "camera")]
+
+
+@pytest.mark.parametrize(("key", "asked"), [("S", "start"), ("X", "stop"), ("R", "restart")])
+async def test_all_nodes_are_started_stopped_restarted(key: str, asked: str) -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (_app, pilot):
+        await pilot.press(key)
+        await pilot.pause()
+        assert pad.link.asked == [(asked,)]
+
+
+async def test_a_node_is_chosen_by_a_click_and_stopped_by_a_click() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.click(NodesTable, offset=(8, 4))
+        assert deck_of(app).chosen_node == "head_controller"
+        keys = app.screen.query_one("KeyBar")
+        at = str(keys.render()).index("x Stop")
+        await pilot.click("KeyBar", offset=(at + 2, 0))
+        await pilot.pause()
+        assert pad.link.asked == [("stop", "head_controller")]
+
+
+async def test_a_node_is_muted_heard_alone_and_heard_again() -> None:
+    async with opened() as (app, pilot):
+        deck = deck_of(app)
+        await pilot.press("m")
+        assert deck.log_filter.muted == {"sonar_front"}
+        await pilot.press("down", "o")
+        assert deck.log_filter.only == "camera"
+        shown = {entry.node for entry in deck.pane.view.index.shown}
+        assert shown == {"camera"}
+        await pilot.press("l", "l", "a")
+        assert deck.log_filter.muted == frozenset()
+        assert deck.log_filter.minimum is Severity.DEBUG
+
+
+async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
+    pad = RecordedPad()
+    async with opened(pad, size=(200, 60)) as (app, pilot):
+        pad.link.set_state("camera", NodeState.BACKOFF, signal="SIGKILL", restarts=1, pid=None)
+        await pilot.pause()
+        await pilot.pause()
+        table = app.screen.query_one(NodesTable)
+        row = table.render_line(2).text
+        assert "↻ restarts" in row
+        assert "ended by SIGKILL" in row
+        assert "◔ 7/8" in app.state_words()[0]
+
+
+async def test_hostile_log_lines_and_names_are_shown_harmlessly() -> None:
+    bad = "\x1b]52;c;aGk=\x07[red]no markup[/red]\x00\u202egnp"
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.link.say(LogEvent((line("[b]evil[/b]", 1, "x" * 1_000_000), line("camera", 9, bad))))
+        screen = ""
+        for _round in range(100):
+            await pilot.pause(0.02)
+            screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+            if "[red]no markup[/red]" in screen:
+                break
+        assert "[red]no markup[/red]" in screen
+        assert "\x1b" not in screen
+        assert "\u202e" not in screen
+
+
+async def test_panels_show_what_their_topics_say() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.pause()
+        gauge = app.screen.query_one(SonarFeed).query_one(SonarPanel)
+        assert gauge.query_one("#front").has_value
+        assert app.screen.query_one(CameraFeed).query_one(ImageView).has_picture
+        wheels = app.screen.query_one(WheelsFeed).query_one(WheelsPanel)
+        assert "left wheel slower" in "\n".join(
+            wheels.render_line(y).text for y in range(wheels.size.height)
+        )
+
+
+async def test_without_a_differential_the_wheels_show_what_drive_would_do() -> None:
+    rows = (topic("/drive", "ackermann_msgs/msg/AckermannDriveStamped", 1.0),)
+    pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=rows)))
+    async with opened(pad) as (app, pilot):
+        await pilot.pause()
+        wheels = app.screen.query_one(WheelsFeed)
+        assert "← /drive" in wheels.border_title
+        drawn = wheels.query_one(WheelsPanel)
+        text = "\n".join(drawn.render_line(y).text for y in range(drawn.size.height))
+        assert "0.25 m/s" in text
+        assert "0.35 m/s" in text
+
+
+async def test_the_rear_sonar_comes_with_its_publisher_and_stays_without_it() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        gauge = app.screen.query_one(SonarPanel)
+        assert not gauge.has_class("-both")
+        rear = topic("/sensor/sonar_rear", "std_msgs/msg/Float32", 1.0)
+        pad.graph.show(lesson_update(topics=(*TOPICS, rear)))
+        await pilot.pause()
+        await pilot.pause()
+        assert gauge.has_class("-both")
+        pad.graph.show(lesson_update(topics=(*TOPICS, replace(rear, publishers=0))))
+        await pilot.pause()
+        await pilot.pause()
+        assert gauge.has_class("-both")
+
+
+async def test_only_what_is_shown_is_asked_for() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (_app, pilot):
+        assert "/camera/color/image_raw" in pad.graph.watched
+        assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= pad.graph.followed
+        assert not pad.graph.measured
+        await pilot.press("2")
+        await pilot.pause()
+        assert pad.graph.measured
+        assert "/camera/color/image_raw" not in pad.graph.watched
+        assert "/audio/mic_raw" in pad.graph.followed
+
+
+async def test_a_command_is_written_and_published() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("c", *"left", "enter")
+        await pilot.pause()
+        sent = ("/ai_command", "std_msgs/msg/String", {"data": "left"}, False)
+        assert pad.graph.published == [sent]
+        await pilot.press("escape")
+        assert not isinstance(app.focused, Input)
+
+
+async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:
+    async with opened(size=(80, 24)) as (app, pilot):
+        shelf = app.screen.query_one(Shelf)
+
+        def shown() -> list[str]:
+            return [type(panel).__name__ for panel in shelf.panels if panel.display]
+
+        first = shown()
+        assert 0 < len(first) < 5
+        await pilot.press("v")
+        await pilot.pause()
+        assert set(first).isdisjoint(shown())
+        await pilot.press("v")
+        await pilot.pause()
+        assert shown() == first
+
+
+@pytest.mark.parametrize("size", [(40, 10), (20, 5), (3, 2), (59, 60), (300, 8)])
+async def test_any_size_is_survived(size: tuple[int, int]) -> None:
+    async with opened() as (app, pilot):
+        for columns, rows in (size, (80, 24), size, (120, 40)):
+            await pilot.resize_terminal(columns, rows)
+            await pilot.pause()
+        assert "sonar_front" in app.screen.query_one(NodesTable).render_line(1).text
+
+
+async def test_a_terminal_too_small_for_panels_says_so() -> None:
+    async with opened(size=(50, 30)) as (app, _pilot):
+        assert app.screen.query_one("#small").display
+        assert not app.screen.query_one(Shelf).display
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(None, ""), (0, "0s"), (59.9, "59s"), (83, "1m23"), (3660, "1h01"), (90_000, "1d01")],
+)
+def test_a_time_is_told_in_its_two_greatest_units(seconds: float | None, words: str) -> None:
+    assert duration(seconds) == words

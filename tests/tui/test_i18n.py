@@ -1,0 +1,112 @@
+"""Two languages: which is spoken, and that Russian is complete and compiled."""
+
+from __future__ import annotations
+
+import gettext
+import subprocess
+import sys
+
+import pytest
+
+from launcher.words import say
+from tui.catalogue import missing, po_path, read_po
+from tui.i18n import _, detect, language, ngettext, pick, said, set_language
+
+
+@pytest.mark.parametrize(
+    ("option", "environ", "settled", "spoken"),
+    [
+        ("ru", {"DECK_LANG": "en", "LANG": "en_US.UTF-8"}, "en", "ru"),
+        (None, {"DECK_LANG": "ru", "LANG": "en_US.UTF-8"}, "en", "ru"),
+        (None, {"LANG": "en_US.UTF-8"}, "ru", "ru"),
+        (None, {"LC_ALL": "ru_RU.UTF-8", "LANG": "en_US.UTF-8"}, "", "ru"),
+        (None, {"LC_MESSAGES": "ru_RU", "LANG": "en_US.UTF-8"}, "", "ru"),
+        (None, {"LANG": "ru-RU"}, "", "ru"),
+        (None, {"LANG": "C.UTF-8"}, "", "en"),
+        (None, {"LANG": "de_DE.UTF-8"}, "", "en"),
+        (None, {}, "", "en"),
+    ],
+)
+def test_the_nearest_wish_for_a_language_counts(
+    option: str | None, environ: dict[str, str], settled: str, spoken: str
+) -> None:
+    assert detect(option, environ, settled) == spoken
+
+
+def test_the_language_can_be_switched_while_running() -> None:
+    assert _("Quit") == "Quit"
+    set_language("ru")
+    assert (language(), _("Quit")) == ("ru", "Выход")
+    set_language("en")
+    assert _("Quit") == "Quit"
+
+
+def test_russian_counts_by_its_own_rules() -> None:
+    set_language("ru")
+    said = [
+        ngettext("Starts {n} node", "Starts {n} nodes", n).format(n=n) for n in (1, 2, 5, 11, 21)
+    ]
+    assert said == [
+        "Запускает 1 узел",
+        "Запускает 2 узла",
+        "Запускает 5 узлов",
+        "Запускает 11 узлов",
+        "Запускает 21 узел",
+    ]
+
+
+def test_an_unknown_language_is_refused_by_name() -> None:
+    with pytest.raises(ValueError, match=r"'fr'.*en or ru"):
+        set_language("fr")
+
+
+def test_a_sentence_of_the_launcher_is_translated_where_it_is_shown() -> None:
+    words = say("domain {domain}", domain=42)
+    assert said(words) == "domain 42"
+    set_language("ru")
+    assert said(words) == "домен 42"
+    assert said("a plain text") == "a plain text"
+
+
+def test_a_title_is_picked_in_the_language_spoken_else_in_english_else_in_any() -> None:
+    set_language("ru")
+    assert pick({"en": "one", "ru": "один"}) == "один"
+    assert pick({"en": "one"}) == "one"
+    assert pick({"de": "eins"}) == "eins"
+    assert pick({}) == ""
+
+
+def test_everything_said_on_screen_has_a_russian_translation() -> None:
+    assert missing("ru") == []
+
+
+def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
+    with po_path("ru").with_suffix(".mo").open("rb") as file:
+        compiled = gettext.GNUTranslations(file)
+    for entry in read_po("ru"):
+        if not entry.id:
+            continue
+        if entry.pluralizable:
+            said = tuple(compiled.ngettext(*entry.id, number) for number in (1, 2, 5))
+            assert said == tuple(entry.string), "run: python -m tui.i18n compile"
+        else:
+            assert compiled.gettext(entry.id) == entry.string, "run: python -m tui.i18n compile"
+
+
+def test_translations_fill_in_the_same_values() -> None:
+    def fields(text: str) -> set[str]:
+        return {part.split("}")[0].split(":")[0].split("!")[0] for part in text.split("{")[1:]}
+
+    for entry in read_po("ru"):
+        ids = entry.id if isinstance(entry.id, (tuple, list)) else (entry.id,)
+        texts = entry.string if isinstance(entry.string, (tuple, list)) else (entry.string,)
+        if entry.id:
+            for text in texts:
+                assert fields(text) <= fields(ids[0]) | fields(ids[-1]), entry.id
+
+
+def test_asking_for_words_costs_no_heavy_import() -> None:
+    heavy = ("textual", "rich", "numpy", "pydantic", "babel", "yaml", "rclpy")
+    code = f"import sys, tui.i18n; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

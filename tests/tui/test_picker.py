@@ -1,0 +1,121 @@
+"""The picker: what there is to be opened, and opening it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from textual.widgets import Static
+
+from launcher.errors import ProfileError, ProfileProblem
+from launcher.words import say
+from tests.tui.app_runs import opened
+from tests.tui.recorded import LESSONS, SESSION, RecordedPad
+from tests.tui.snapshots import Look, SnapCompare, every_look
+from tui.screens.picker import PickerScreen
+from tui.screens.refused import RefusedScreen
+from tui.seams import Order
+from tui.widgets.rows import Rows
+
+PICK = Order(hardware="mock", domain=42)
+RUNNING = replace(SESSION, foreground=False, name="02-sonar-safety", domain=17)
+
+
+def about(screen: PickerScreen) -> str:
+    """Return what is said of the chosen row."""
+    return str(screen.query_one("#about-text", Static).render())
+
+
+@every_look
+def test_picker_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Lessons with their numbers, lesson 9 chosen and described, the broken profile marked ✗."""
+    assert snap_compare(look.app("picker"), terminal_size=look.size, run_before=look.settle)
+
+
+@every_look
+def test_picker_with_a_session_in_the_background_looks(
+    look: Look, snap_compare: SnapCompare
+) -> None:
+    """What runs in the background stands above the lessons, is chosen, and is told apart."""
+    pad = RecordedPad(sessions=[RUNNING])
+    assert snap_compare(look.app("picker", pad), terminal_size=look.size, run_before=look.settle)
+
+
+async def test_enter_starts_lesson_nine() -> None:
+    pad = RecordedPad()
+    async with opened(pad, order=PICK) as (app, pilot):
+        assert isinstance(app.screen, PickerScreen)
+        await pilot.press("enter")
+        await pilot.pause()
+        lesson_9 = next(lesson for lesson in LESSONS if lesson.name == "09-brain")
+        assert pad.orders == [replace(PICK, profile=lesson_9.path)]
+        assert app.feed.session is SESSION
+
+
+async def test_another_lesson_is_chosen_by_keys_and_told_about() -> None:
+    pad = RecordedPad()
+    async with opened(pad, order=PICK) as (app, pilot):
+        await pilot.press("home")
+        await pilot.pause()
+        assert "Starts 1 node: hello_node" in about(app.screen)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert pad.orders[0].profile == Path("profiles/01-hello.yaml")
+
+
+async def test_one_click_chooses_a_lesson_and_two_open_it() -> None:
+    pad = RecordedPad()
+    async with opened(pad, order=PICK) as (app, pilot):
+        await pilot.click(Rows, offset=(10, 2))
+        await pilot.pause()
+        assert "Topics: sonar" in about(app.screen)
+        assert pad.orders == []
+        await pilot.click(Rows, offset=(10, 2), times=2)
+        await pilot.pause()
+        assert pad.orders[0].profile == Path("profiles/02-sonar-safety.yaml")
+
+
+async def test_a_broken_profile_says_what_is_wrong_and_is_not_started() -> None:
+    pad = RecordedPad()
+    async with opened(pad, order=PICK) as (app, pilot):
+        await pilot.press("end", "enter")
+        await pilot.pause()
+        assert "cannot be started" in about(app.screen)
+        assert "my-robot.yaml:7:5" in about(app.screen)
+        assert pad.orders == []
+
+
+async def test_what_runs_in_the_background_is_attached_to() -> None:
+    pad = RecordedPad(sessions=[RUNNING])
+    async with opened(pad, order=PICK) as (app, pilot):
+        assert "Runs already" in about(app.screen)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert pad.orders == [replace(PICK, attach="02-sonar-safety")]
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+async def test_a_lesson_that_cannot_be_opened_says_why_and_the_picker_is_back(
+    language: str,
+) -> None:
+    problem = ProfileProblem("a.yaml", 3, 5, "nodes.x", say("unknown key"))
+    pad = RecordedPad(refusal=ProfileError([problem]))
+    async with opened(pad, order=PICK) as (app, pilot):
+        app.speak(language)
+        await pilot.press("enter")
+        await pilot.pause()
+        await pilot.pause()
+        assert isinstance(app.screen, RefusedScreen)
+        said = "неизвестный ключ" if language == "ru" else "unknown key"
+        assert f"a.yaml:3:5: nodes.x: {said}" in str(app.screen.words())
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(app.screen, PickerScreen)
+
+
+async def test_all_words_change_with_the_language() -> None:
+    async with opened(order=PICK) as (app, pilot):
+        await pilot.press("f9")
+        await pilot.pause()
+        assert "Запускает 8 узлов" in about(app.screen)
