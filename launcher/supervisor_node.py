@@ -31,7 +31,9 @@ LATE_S = 60.0
 """For so long after its time was up a node may still become ready."""
 ASKED_TWICE_S = 0.3
 """Two requests to stop that are closer together are one."""
-_NO_SUCH_COMMAND = (126, 127)
+NOT_EXECUTABLE, NOT_FOUND = 126, 127
+NOT_FOUND_WORDS = "deck: command not found"
+"""How a process that was to become a command says that there is none."""
 
 
 class RunningProcess(Target, Protocol):
@@ -220,6 +222,7 @@ class Node:
             end = Exit(None)
             lasted = 0.0
             why: str = say("cannot be started: {reason}", reason=problem)
+            self._around.say(self.plan.name, Severity.ERROR, why)
         else:
             end, lasted = await self._see_through(process)
             why = self._end_words(end)
@@ -245,11 +248,7 @@ class Node:
         end = await process.ended
         await process.close()
         self._now, self._last = None, end
-        self._around.say(
-            self.plan.name,
-            Severity.INFO if end.clean or self._down else Severity.ERROR,
-            self._end_words(end),
-        )
+        self._around.say(self.plan.name, self._gravity(end), self._end_words(end))
         return end, lasted
 
     async def _end_all_of_it(self, now: _Now) -> None:
@@ -303,7 +302,7 @@ class Node:
     async def _after(self, end: Exit, lasted: float, why: str) -> bool:
         """Do what the restart policy says; return whether to start it again."""
         clock = self._around.clock
-        hopeless = end.code in _NO_SUCH_COMMAND and not self.plan.module
+        hopeless = end.code in (NOT_EXECUTABLE, NOT_FOUND) and not self.plan.module
         verdict = (
             GivenUp(1)
             if hopeless
@@ -328,14 +327,24 @@ class Node:
                 seconds=verdict.within_s,
                 why=why,
             )
+            self._around.say(self.plan.name, Severity.ERROR, why)
         self._become(NodeState.FAILED, why)
-        self._around.say(self.plan.name, Severity.ERROR, why)
         return False
+
+    def _gravity(self, end: Exit) -> Severity:
+        if end.clean or self._down:
+            return Severity.INFO
+        return Severity.WARN if self.plan.optional else Severity.ERROR
 
     def _end_words(self, end: Exit) -> str:
         if end.clean:
             return say("ended")
         last = self._around.last_words(self.plan.name)
+        if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not self.plan.module:
+            program = self.plan.argv[0]
+            if self.plan.optional:
+                return say("{program} is not installed; it goes on without", program=program)
+            return say("{program} is not installed", program=program)
         how = (
             say("killed by {signal}", signal=end.signal)
             if end.signal is not None

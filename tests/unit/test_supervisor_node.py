@@ -64,6 +64,8 @@ class FakeSession:
         self.absent = ""
         self.states: list[NodeState] = []
         self.lines: list[str] = []
+        self.gravest = Severity.DEBUG
+        self.said_last = "no such port"
 
     @property
     def process(self) -> FakeProcess:
@@ -85,10 +87,11 @@ class FakeSession:
         return self.absent
 
     def last_words(self, _name: str) -> str:
-        return "no such port"
+        return self.said_last
 
-    def say(self, _name: str, _severity: Severity, words: str) -> None:
+    def say(self, _name: str, severity: Severity, words: str) -> None:
         self.lines.append(words)
+        self.gravest = max(self.gravest, severity, key=lambda each: each.rank)
 
     def changed(self, node: Node) -> None:
         self.states.append(node.state)
@@ -374,6 +377,25 @@ async def test_an_optional_node_does_not_fail(session: FakeSession) -> None:
     session.process.end(100, Exit(127))
     await settle()
     assert (node.state, node.detail) == (NodeState.EXITED, "exit code 127: no such port")
+
+
+@pytest.mark.parametrize(
+    ("optional", "state", "detail", "gravest"),
+    [
+        (True, NodeState.EXITED, "sonar is not installed; it goes on without", Severity.WARN),
+        (False, NodeState.FAILED, "sonar is not installed", Severity.ERROR),
+    ],
+)
+async def test_a_program_that_is_not_installed_is_told_and_no_alarm_if_optional(
+    session: FakeSession, optional: bool, state: NodeState, detail: str, gravest: Severity
+) -> None:
+    node = await started(session, replace(PLAN, optional=optional))
+    session.said_last = "deck: command not found: sonar"
+    session.process.end(100, Exit(127))
+    await settle()
+    assert (node.state, node.detail) == (state, detail)
+    assert session.gravest is gravest
+    assert session.lines.count(detail) == 1
 
 
 def test_words_can_be_translated() -> None:
