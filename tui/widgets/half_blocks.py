@@ -99,5 +99,6 @@ def _style(upper: int | None, lower: int) -> Style:
     return Style.from_color(foreground, _color(lower))
 
 
+@lru_cache(maxsize=65536)
 def _color(packed: int) -> Color:
     return Color.from_rgb(packed >> 16, packed >> 8 & 255, packed & 255)
