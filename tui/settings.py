@@ -83,8 +83,8 @@ def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collect
             found = _keys_problem(value, actions())
             if found:
                 return found
-        elif value not in (themes if name == "theme" else LANGUAGES):
-            known = ", ".join(sorted(themes if name == "theme" else LANGUAGES))
+        elif value not in (known_values := sorted(themes if name == "theme" else LANGUAGES)):
+            known = ", ".join(known_values)
             return _("{name}: no {value!r}; there are: {known}").format(
                 name=name, value=value, known=known
             )

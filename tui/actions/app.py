@@ -143,6 +143,7 @@ class SwitchLanguage(AppAction):
     key = "f9"
     title = N_("English / Русский")
     tooltip = N_("Switch the language of the screen.")
+    priority = True
 
     @classmethod
     async def run(cls, target: DeckApp) -> None:
@@ -157,6 +158,7 @@ class SwitchTheme(AppAction):
     key = "f10"
     title = N_("Theme")
     tooltip = N_("Dark, light, high contrast.")
+    priority = True
 
     @classmethod
     async def run(cls, target: DeckApp) -> None:
@@ -185,6 +187,7 @@ class Redraw(AppAction):
     key = "ctrl+l"
     title = N_("Redraw")
     tooltip = N_("Draw everything anew, if something else has written to the terminal.")
+    priority = True
 
     @classmethod
     async def run(cls, target: DeckApp) -> None:

@@ -1,0 +1,195 @@
+"""One class per action: keys, footer, palette, help and keymap all come from it."""
+
+from __future__ import annotations
+
+import string
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from launcher.status import NodeState
+from tests.tui.app_runs import opened
+from tests.tui.recorded import RecordedPad
+from tests.tui.snapshots import Look, SnapCompare, every_look
+from tui.actions import REGISTRY, Action, bindings
+from tui.app import DeckApp, every_action
+from tui.i18n import N_
+from tui.screens.help import HelpScreen
+from tui.widgets.key_bar import KeyBar
+
+
+def footer(app: DeckApp) -> str:
+    """Return the keys that are shown."""
+    return str(app.screen.query_one(KeyBar).render())
+
+
+def help_text(app: DeckApp) -> str:
+    """Return the whole help page."""
+    assert isinstance(app.screen, HelpScreen)
+    return "\n".join(str(text.render()) for text in app.screen.query("Static"))
+
+
+@every_look
+def test_help_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """What the Deck shows, its keys, the keys of every screen; each with what it does."""
+
+    async def ask(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await pilot.press("f1")
+
+    assert snap_compare(look.app(), terminal_size=look.size, run_before=ask)
+
+
+def test_every_action_has_its_own_id_a_title_and_a_sentence() -> None:
+    for name in every_action():
+        action = REGISTRY[name]
+        assert action.id == name
+        assert action.title
+        assert action.tooltip.endswith("."), name
+
+
+def test_two_actions_cannot_have_one_id() -> None:
+    with pytest.raises(TypeError, match=r"app\.quit"):
+        type("Again", (Action,), {"id": "app.quit", "__module__": __name__})
+
+
+def test_a_binding_carries_all_that_the_action_says() -> None:
+    class Dance(Action[DeckApp]):
+        id = "test.dance"
+        key = "d,D"
+        title = N_("Quit")
+        tooltip = N_("Every topic with its rates; the chosen one live.")
+        footer = True
+
+    try:
+        (binding,) = bindings(Dance)
+    finally:
+        del REGISTRY["test.dance"]
+    assert (binding.key, binding.id, binding.show) == ("d,D", "test.dance", True)
+    assert binding.action == "act('test.dance')"
+
+
+def test_no_key_of_a_screen_hides_one_that_works_everywhere() -> None:
+    everywhere = {
+        key
+        for name in every_action()
+        if name.split(".")[0] in {"app", "emergency", "screen", "session"}
+        for key in REGISTRY[name].key.split(",")
+    }
+    for name in every_action():
+        if name.split(".")[0] not in {"app", "emergency", "screen", "session", "stopping", "help"}:
+            assert everywhere.isdisjoint(REGISTRY[name].key.split(",")), name
+
+
+def test_letters_work_on_a_russian_keyboard_too() -> None:
+    for name in every_action():
+        keys = REGISTRY[name].key.split(",")
+        letters = [key for key in keys if key in string.ascii_letters]
+        if letters and name != "app.quit":
+            assert any("Ѐ" <= key <= "ӿ" for key in keys), name
+
+
+async def test_the_footer_shows_what_can_be_done_now() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        assert "space STOP" in footer(app)
+        assert "Release" not in footer(app)
+        await pilot.press("space")
+        await pilot.pause()
+        assert "^r Release" in footer(app)
+        await pilot.press("c")
+        await pilot.pause()
+        assert "^x STOP" in footer(app)
+        assert "Restart" not in footer(app)
+
+
+async def test_the_footer_keeps_the_stop_on_the_narrowest_terminal() -> None:
+    async with opened(size=(40, 12)) as (app, _pilot):
+        assert "space STOP" in footer(app)
+        assert "q Quit" in footer(app)
+
+
+async def test_help_lists_every_key_of_the_screen_and_closes_again() -> None:
+    async with opened() as (app, pilot):
+        deck = app.screen
+        await pilot.press("f1")
+        await pilot.pause()
+        page = help_text(app)
+        for action in (*map(REGISTRY.get, ("node.restart", "log.only", "emergency.release")),):
+            assert action is not None
+            assert action.title in page
+            assert action.tooltip in page
+        await pilot.press("escape")
+        await pilot.pause()
+        assert app.screen is deck
+
+
+async def test_help_changes_its_language_while_it_is_open() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("f1", "f9")
+        await pilot.pause()
+        await pilot.pause()
+        assert "Остановить выбранный узел и запустить его снова." in help_text(app)
+
+
+async def test_the_palette_finds_an_action_by_name_and_does_it() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("down", "ctrl+p")
+        await pilot.pause()
+        await pilot.press(*"restart")
+        for _round in range(100):
+            await pilot.pause(0.02)
+            if len(app.screen.query_one("CommandList").options) == 2:
+                break
+        await pilot.press("enter", "enter")
+        for _round in range(100):
+            await pilot.pause(0.02)
+            if pad.link.asked:
+                break
+        assert pad.link.asked == [("restart", "camera")]
+
+
+async def test_the_palette_offers_only_what_is_possible() -> None:
+    async with opened() as (app, _pilot):
+        titles = {command.title for command in app.get_system_commands(app.screen)}
+        assert {"Restart", "STOP", "Русский", "Theme: textual-light"} <= titles
+        assert "Release" not in titles
+
+
+async def test_a_keymap_changes_key_footer_and_help() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        app.set_keymap({"node.restart": "f7"})
+        await pilot.press("f7", "r")
+        await pilot.pause()
+        assert pad.link.asked == [("restart", "sonar_front")]
+        assert "f7 Restart" in footer(app)
+        await pilot.press("f1")
+        await pilot.pause()
+        assert "f7" in help_text(app)
+
+
+async def test_themes_are_gone_through_by_a_key() -> None:
+    async with opened() as (app, pilot):
+        seen = [app.theme]
+        for _press in range(3):
+            await pilot.press("f10")
+            await pilot.pause()
+            seen.append(app.theme)
+        assert seen == ["textual-dark", "textual-light", "high-contrast", "textual-dark"]
+
+
+async def test_language_is_switched_by_a_key_and_everything_visible_changes() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.link.set_state("camera", NodeState.FAILED)
+        await pilot.press("f9")
+        await pilot.pause()
+        await pilot.pause()
+        screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+        for words in ("Пульт", "Узел", "✗ отказал", "Сонар", "Колёса", "домен 42", "пробел СТОП"):
+            assert words in screen
+        for words in ("failed", "Sonar", "domain", "STOP"):
+            assert words not in screen

@@ -1,0 +1,79 @@
+"""What a person has settled: read, checked with clear words, kept."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tui.app import every_action
+from tui.i18n import set_language
+from tui.settings import Settings, SettingsError, load, save
+
+THEMES = {"textual-dark", "textual-light"}
+
+
+def read(path: Path) -> Settings:
+    return load(path, THEMES, every_action)
+
+
+def test_without_a_file_nothing_is_settled(tmp_path: Path) -> None:
+    assert read(tmp_path / "settings.json") == Settings()
+
+
+def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
+    path = tmp_path / "deck" / "settings.json"
+    settings = Settings("textual-light", "ru", {"node.restart": "f7"})
+    save(path, settings)
+    assert read(path) == settings
+    assert [file.name for file in path.parent.iterdir()] == ["settings.json"]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('{"theme": ', "settings.json:1:11: "),
+        ("[]", "expected an object"),
+        ('{"colour": "red"}', "unknown setting 'colour'; there are: theme, language, keys"),
+        ('{"theme": "pink"}', "theme: no 'pink'; there are: textual-dark, textual-light"),
+        ('{"language": "fr"}', "language: no 'fr'; there are: en, ru"),
+        ('{"theme": 7}', "theme: no 7"),
+        ('{"theme": []}', "theme: no []"),
+        ('{"keys": ["f7"]}', "keys: expected an object"),
+        ('{"keys": {"node.dance": "f7"}}', "no action 'node.dance'"),
+        ('{"keys": {"node.restart": 7}}', 'node.restart: expected a key such as "f7"'),
+        ('{"keys": {"node.restart": " "}}', 'node.restart: expected a key such as "f7"'),
+        ("\x00", "settings.json:1:1: "),
+    ],
+)
+def test_a_broken_file_is_refused_with_place_and_mend(
+    tmp_path: Path, text: str, words: str
+) -> None:
+    path = tmp_path / "settings.json"
+    path.write_text(text)
+    with pytest.raises(SettingsError) as refused:
+        read(path)
+    assert str(path) in str(refused.value)
+    assert words in str(refused.value)
+
+
+def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "settings.json"
+    path.write_bytes(b"\xff\xfe{}")
+    with pytest.raises(SettingsError, match=r"settings\.json"):
+        read(path)
+
+
+def test_the_refusal_speaks_the_language(tmp_path: Path) -> None:
+    path = tmp_path / "settings.json"
+    path.write_text(json.dumps({"colour": "red"}))
+    set_language("ru")
+    with pytest.raises(SettingsError, match="нет настройки 'colour'"):
+        read(path)
+
+
+def test_a_disk_that_refuses_is_told_and_no_more(tmp_path: Path) -> None:
+    (tmp_path / "deck").write_text("a file in the way")
+    with pytest.raises(SettingsError, match="deck"):
+        save(tmp_path / "deck" / "settings.json", Settings("textual-light"))
