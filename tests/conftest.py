@@ -8,6 +8,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# A loaded machine is no failure of the code.
+settings.register_profile("deck", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("deck")
 
 DOMAINS = range(1, 102)
 """Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
