@@ -9,8 +9,8 @@ from nodes._node import LessonNode
 from nodes._parameters import Number
 from nodes._speech import Phrase
 
-_AWAKE = Phrase("Hello, ROS 2! The robot is awake.", "Привет, ROS 2! Робот проснулся!")
-_COUNT = Phrase("Running for {seconds:g} s. All is well.", "Работаю уже {seconds:g} с. Всё хорошо.")
+_AWAKE = Phrase("Hello! The first node is awake.", "Привет! Первый узел проснулся.")
+_COUNT = Phrase("{seconds:g} s passed, all is well.", "Прошло {seconds:g} с, всё хорошо.")
 
 
 class Hello(LessonNode):

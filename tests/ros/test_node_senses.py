@@ -108,4 +108,4 @@ def test_the_place_of_the_camera_is_latched(peer: Peer, ros_domain: int) -> None
 
 def test_hello_counts(ros_domain: int) -> None:
     with NodeProcess("nodes.hello", ros_domain, params={"period": 0.05}) as node:
-        node.wait_for_words("Hello, ROS 2!", "Running for 0.1 s", "Running for 0.3 s")
+        node.wait_for_words("Hello!", "0.1 s passed", "0.3 s passed")
