@@ -36,7 +36,7 @@ def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.fixture(scope="session")
 def domain_pool() -> Iterator[Callable[[], int]]:
     """Hand out ROS domains that no other test run on this machine holds, by file locks."""
-    folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"  # noqa: S108 - shared on purpose
+    folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"
     folder.mkdir(exist_ok=True)
     held: list[int] = []
 
