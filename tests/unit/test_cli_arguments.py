@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -115,3 +116,19 @@ def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
         tmp_path,
     )
     assert not modules & {"textual", "rclpy", "pydantic", "yaml", "numpy", "asyncio"}
+
+
+@pytest.mark.parametrize(
+    ("redirection", "code", "told"),
+    [(">/dev/full", 1, "No space left"), (">&-", 0, ""), ("| true", None, ""), ("<&-", 0, "")],
+)
+def test_whatever_becomes_of_the_output_there_is_no_traceback(
+    redirection: str, code: int | None, told: str, tmp_path: Path
+) -> None:
+    command = f"{shlex.quote(sys.executable)} -m tui list {redirection}"
+    done = subprocess.run(
+        ["sh", "-c", command], capture_output=True, text=True, cwd=tmp_path, check=False
+    )
+    assert code in (None, done.returncode)
+    assert "Traceback" not in done.stderr
+    assert told in done.stderr

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from launcher.errors import LauncherError
 from tui.cli.arguments import parser_of, speak, split, wanted_language
-from tui.cli.output import drop_output, say_error
+from tui.cli.output import drop_output, make_streams_safe, say_error
 from tui.i18n import LANGUAGES, detect, said, set_language
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ READER_GONE = 141
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return what to exit with."""
+    make_streams_safe()
     words = list(sys.argv[1:] if arguments is None else arguments)
     asked = wanted_language(words)
     set_language(detect(asked if asked in LANGUAGES else None))
@@ -55,6 +56,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         drop_output()
         return READER_GONE
+    except OSError as error:
+        drop_output()
+        say_error(f"deck: {error}")
+        return 1
 
 
 def complain(error: LauncherError) -> int:

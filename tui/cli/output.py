@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
+from io import TextIOWrapper
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
@@ -25,6 +27,17 @@ class Paint:
     def __call__(self, text: str, *codes: str) -> str:
         """Return the text in these colours."""
         return f"\x1b[{';'.join(codes)}m{text}\x1b[0m" if self.wanted and codes else text
+
+
+def make_streams_safe() -> None:
+    """Have nobody trip over a stream that is closed, or that lacks a character."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            nowhere = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - for good
+            setattr(sys, name, nowhere)
+        elif isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 def say_error(text: str) -> None:

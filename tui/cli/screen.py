@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from launcher.catalog import find_profile
 from launcher.errors import NotRunningError, SeveralRunningError
 from tui.cli.output import say_error, write
-from tui.i18n import _, language
+from tui.i18n import _
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -31,7 +31,7 @@ def open_command(options: Namespace) -> int:
         hardware=options.hardware,
         overrides=tuple(options.overrides),
         domain=options.domain,
-        lang=language(),
+        lang=options.lang,
         attach=None,
     )
 
@@ -44,7 +44,7 @@ def attach_command(options: Namespace) -> int:
     name = options.name or _the_only_one()
     from tui.app import run_screen
 
-    return run_screen(None, lang=language(), attach=name)
+    return run_screen(None, lang=options.lang, attach=name)
 
 
 def _the_only_one() -> str:
