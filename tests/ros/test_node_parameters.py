@@ -14,7 +14,7 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 
 from nodes._node import LessonNode
 from nodes._parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
-from tests.ros.node_process import NodeProcess
+from tests.ros.node_process import ROOT, NodeProcess
 from tests.ros.peer import Peer
 
 if TYPE_CHECKING:
@@ -177,3 +177,13 @@ def test_values_that_contradict_each_other_are_refused(peer: Peer) -> None:
     taken, reason = set_parameter(peer, "min_distance", a_double(50.0))
     assert not taken
     assert "max_distance" in reason
+
+
+@pytest.mark.parametrize(("module", "setting"), all_settings(), ids=lambda item: str(item)[:40])
+def test_the_documentation_tells_every_parameter(module: str, setting: Setting) -> None:
+    document = (ROOT / "docs" / "nodes.md").read_text(encoding="utf-8")
+    section = document.split(f"### nodes.{module}\n")[1].split("###")[0]
+    shown = str(setting.default).lower() if setting.default in (True, False) else setting.default
+    default = '""' if setting.default == "" else shown
+    row = f"| {setting.name} | {default} | {setting.expected()} | {setting.about} |"
+    assert row in section
