@@ -13,7 +13,7 @@ The recorded session and graph are those of `tests.tui.recorded`; the clock stan
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -68,11 +68,16 @@ def _lists(app: DeckApp) -> bool:
     return isinstance(app.screen, PickerScreen) and bool(app.screen.query_one(Rows).chosen)
 
 
-every_look = pytest.mark.parametrize(
-    "look",
-    [
-        pytest.param(Look(size, language), id=f"{size[0]}x{size[1]}-{language}")
-        for size in SIZES
-        for language in LANGUAGES
-    ],
-)
+def _looks(chosen: Sequence[tuple[tuple[int, int], str]]) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize(
+        "look",
+        [
+            pytest.param(Look(size, language), id=f"{size[0]}x{size[1]}-{language}")
+            for size, language in chosen
+        ],
+    )
+
+
+every_look = _looks([(size, language) for size in SIZES for language in LANGUAGES])
+each_size = _looks(list(zip(SIZES, ("en", "ru", "en"), strict=True)))
+"""For a state of a screen of which `every_look` is shown already."""

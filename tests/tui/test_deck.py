@@ -24,7 +24,7 @@ from tests.tui.recorded import (
     line,
     topic,
 )
-from tests.tui.snapshots import Look, SnapCompare, every_look
+from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
 from tui.app import DeckApp
 from tui.panels.camera import CameraFeed
 from tui.panels.shelf import Shelf
@@ -101,19 +101,19 @@ def test_deck_looks(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app(), terminal_size=look.size, run_before=look.settle)
 
 
-@every_look
+@each_size
 def test_deck_of_the_first_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
     """One node above, its log below over the whole width, no panels and no empty frames."""
     assert snap_compare(look.app(pad=hello()), terminal_size=look.size, run_before=look.settle)
 
 
-@every_look
+@each_size
 def test_deck_in_trouble_looks(look: Look, snap_compare: SnapCompare) -> None:
     """Failed, restarting and waiting nodes by sign and word; each empty panel says why."""
     assert snap_compare(look.app(pad=troubled()), terminal_size=look.size, run_before=look.settle)
 
 
-@every_look
+@each_size
 def test_deck_stopped_looks(look: Look, snap_compare: SnapCompare) -> None:
     """The red line with the word and the key that releases stands under the title."""
 

@@ -93,8 +93,8 @@ def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, fl
     if row is None:
         return Trouble.NO_PUBLISHER, topic, None
     # Nobody there, or nobody speaking, is said by the headline already.
-    plain = row.trouble in {Trouble.NO_PUBLISHER, Trouble.QUIET}
-    return row.trouble, topic if plain else f"{topic}: {row.detail}", row.age_s
+    told = row.trouble in {None, Trouble.NO_PUBLISHER, Trouble.QUIET} or not row.detail
+    return row.trouble, topic if told else f"{topic}: {row.detail}", row.age_s
 
 
 def first_published(update: GraphUpdate, topics: Iterable[str]) -> str:

@@ -33,9 +33,9 @@ class Dialog(ModalScreen[Answer], Acting):
             background: $surface; border: round $accent; padding: 0 1;
             border-title-color: $accent; border-title-style: bold;
         }
-        #dialog-scroll { height: auto; max-height: 1fr; }
+        #dialog-scroll { height: auto; max-height: 100%; margin-bottom: 1; }
         #dialog-text { height: auto; padding: 1 1; }
-        KeyBar { dock: none; background: $surface; }
+        KeyBar { background: $surface; }
     }
     """
 

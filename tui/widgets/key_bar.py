@@ -13,7 +13,8 @@ from tui.actions import REGISTRY
 from tui.i18n import _
 
 if TYPE_CHECKING:
-    from textual.app import ActiveBinding
+    from textual.binding import ActiveBinding
+    from textual.events import MouseMove
     from textual.screen import Screen
 
     from tui.actions import Action
@@ -78,6 +79,11 @@ class KeyBar(Widget):
         everywhere = first.node is self.app
         return Key(key, _(action.title), action.id, first.enabled, everywhere)
 
+    def on_mouse_move(self, event: MouseMove) -> None:
+        """Explain the key under the pointer."""
+        name = event.style.meta.get("key-bar", "")
+        self.tooltip = _(REGISTRY[name].tooltip) if name in REGISTRY else None
+
     async def action_press(self, name: str) -> None:
         """Do what was clicked, as its key would."""
         for active in self.screen.active_bindings.values():
@@ -99,7 +105,8 @@ class KeyBar(Widget):
     def _drawn(self, entry: Key) -> Content:
         key_style = self.get_visual_style("key-bar--key" if entry.enabled else "key-bar--off")
         title_style = self.get_visual_style("key-bar--title" if entry.enabled else "key-bar--off")
-        click = Style.from_meta({"@click": f"press({entry.id!r})"}) if entry.enabled else Style()
+        meta = {"@click": f"press({entry.id!r})"} if entry.enabled else {}
+        click = Style.from_meta({"key-bar": entry.id, **meta})
         return Content.assemble(
             (f" {entry.key}", key_style + click), (f" {entry.title} ", title_style + click)
         )

@@ -27,8 +27,8 @@ STATES = {
 }
 """State to sign, word and meaning: never the colour alone."""
 
-NARROW, WIDE = 56, 96
-"""Widths in cells at which columns come: time and cost, then why a node is in its state."""
+FULL, TOLD = 42, 66
+"""Cells besides the names from which on there are columns for the process, and for a word more."""
 MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
 
 
@@ -39,6 +39,7 @@ class NodesTable(Rows):
         super().__init__(id=id, classes=classes)
         self._statuses: tuple[NodeStatus, ...] = ()
         self._muted: frozenset[str] = frozenset()
+        self._full = self._told = False
 
     def show_nodes(
         self, nodes: Mapping[str, NodeStatus], muted: Collection[str] = frozenset()
@@ -55,33 +56,37 @@ class NodesTable(Rows):
         width = self.size.width
         if not width:
             return
-        longest = max(cell_len(_(word)) for _sign, word, _meaning in STATES.values())
+        word = max(cell_len(_(word)) for _sign, word, _meaning in STATES.values())
+        name = max((cell_len(self._named(node)) for node in self._statuses), default=4)
         pid = max((len(str(node.pid or "")) for node in self._statuses), default=0)
-        columns = [
-            Column(_("Node"), 0 if width < WIDE else 26),
-            Column(_("State"), longest + 2),
-        ]
-        if width >= NARROW:
+        self._full = width >= name + FULL
+        columns = [Column(_("Node"), name if self._full else 0), Column(_("State"), word + 2)]
+        if self._full:
             columns += [Column(_("Pid"), max(5, pid), right=True), Column(_("Up"), 6, right=True)]
             columns += [Column("↻", 2, right=True)]
         columns += [Column(_("CPU"), 5, right=True), Column(_("Memory"), 6, right=True)]
-        if width >= WIDE:
-            columns.append(Column(_("Detail")))
-        self.show(columns, [Row(node.name, self._cells(node, width)) for node in self._statuses])
+        if self._full:
+            self._told = width >= name + TOLD
+            columns.append(Column(_("Detail") if self._told else ""))
+        self.show(columns, [Row(node.name, self._cells(node)) for node in self._statuses])
 
-    def _cells(self, node: NodeStatus, width: int) -> tuple[Cell, ...]:
+    def _named(self, node: NodeStatus) -> str:
+        return plain(node.name) + (" ⊘" if node.name in self._muted else "")
+
+    def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
         sign, word, meaning = STATES[node.state]
-        name = plain(node.name) + (" ⊘" if node.name in self._muted else "")
-        cells = [Cell(name), Cell(f"{sign} {_(word)}", meaning)]
-        if width >= NARROW:
+        cells = [Cell(self._named(node)), Cell(f"{sign} {_(word)}", meaning)]
+        if not node.state.alive:
+            return (*cells, Cell(why(node), "warn" if meaning in {"warn", "bad"} else "dim"))
+        if self._full:
             cells += [
                 Cell("" if node.pid is None else str(node.pid), "dim"),
                 Cell(duration(node.uptime_s), "dim"),
                 Cell(str(node.restarts), "warn" if node.restarts else "dim"),
             ]
         cells += [Cell(percent(node.cpu_percent)), Cell(memory(node.memory_bytes))]
-        if width >= WIDE:
-            cells.append(Cell(why(node), "dim"))
+        if self._full:
+            cells.append(Cell(why(node) if self._told else "", "dim"))
         return tuple(cells)
 
 

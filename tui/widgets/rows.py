@@ -38,7 +38,10 @@ class Cell(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A row with the name by which it is chosen; without one it is a heading."""
+    """A row with the name by which it is chosen; without one it is a heading.
+
+    Where there are fewer cells than columns the last cell takes the room of those missing.
+    """
 
     key: str
     cells: tuple[Cell, ...]
@@ -218,24 +221,34 @@ class Rows(ScrollView, can_focus=True):
         last = min(len(before), len(self._rows), top + self.size.height)
         for index in range(top, last):
             old, new = before[index], self._rows[index]
-            if old.key != new.key:
+            if old.key != new.key or len(old.cells) != len(new.cells):
                 self._refresh_row(index)
                 continue
             x, y = MARK, index - top + self._top
-            for width, was, now in zip(self._widths, old.cells, new.cells):  # noqa: B905
+            widths = self._room_for(len(new.cells))
+            for width, was, now in zip(widths, old.cells, new.cells, strict=True):
                 if was != now:
                     self.refresh(Region(x, y, width, 1))
                 x += width + 1
+
+    def _room_for(self, cells: int) -> tuple[int, ...]:
+        """Return the widths of a row of so many cells."""
+        if not cells or cells >= len(self._widths):
+            return self._widths
+        kept = self._widths[: cells - 1]
+        return (*kept, max(0, self.size.width - MARK - sum(kept) - len(kept)))
 
     def _strip(
         self, cells: Sequence[Cell], mark: str, base: Style, width: int, *, plain: bool = False
     ) -> Strip:
         segments = [Segment(mark, base)]
-        for place, (column, cell) in enumerate(zip(self._columns, cells)):  # noqa: B905
+        widths = self._room_for(len(cells))
+        for column, cell, room in zip(self._columns, cells, widths):  # noqa: B905
             style = base
             if cell.meaning and not plain:
                 style = base + self.get_component_rich_style(f"rows--{cell.meaning}", partial=True)
-            segments.append(Segment(_fitted(cell.text, self._widths[place], column.right), style))
+            right = column.right and len(cells) == len(self._columns)
+            segments.append(Segment(_fitted(cell.text, room, right), style))
             segments.append(Segment(" ", base))
         return Strip(segments).adjust_cell_length(width, base)
 
