@@ -1,0 +1,102 @@
+"""Deck with the Topics screen open against a bare rclpy script, on the same load in one run.
+
+`python -m bench.topics_live` prints CPU (screen and supervisor, drawing included) and the worst
+error among the eleven rates as they stand on the screen; one number is echoed meanwhile, then the
+image is looked at.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from bench.load import RATES_HZ
+from bench.observer import measure, program
+from bench.processes import cpu_s, pss_mb
+from bench.screen import screen_processes
+from tests.e2e.terminal import Terminal
+
+DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
+WARM_UP_S = 8.0
+MEASURE_S = 10.0
+ROUNDS = 3
+
+
+def open_topics(folder: Path) -> Terminal:
+    """The program with the Topics screen in front."""
+    profile = folder / "nothing.yaml"
+    profile.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
+    env = {
+        "DECK_RUN_DIR": str(folder / "run"),
+        "DECK_LOG_DIR": str(folder / "logs"),
+        "XDG_CONFIG_HOME": str(folder / "config"),
+        "XDG_STATE_HOME": str(folder / "state"),
+        "LANG": "C.UTF-8",
+    }
+    argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]
+    terminal = Terminal(argv, 120, 40, env)
+    terminal.wait_for("1/1")
+    terminal.press("f3")
+    terminal.wait_for("/load/image")
+    return terminal
+
+
+def worst_error_percent(text: str) -> float:
+    """Of the rates on the screen; 100 for one that is missing."""
+    shown = {}
+    for line in text.splitlines():
+        words = line.replace("▶", " ").split()
+        if words and words[0] in RATES_HZ and words[4].replace(".", "").isdigit():
+            shown.setdefault(words[0], float(words[4]))
+    return max(100 * abs(shown.get(topic, 0.0) / hz - 1) for topic, hz in RATES_HZ.items())
+
+
+def turn(terminal: Terminal) -> tuple[float, float, float]:
+    """CPU in percent of a core, worst error of a rate in percent, and kB/s to the terminal."""
+    pids = screen_processes(terminal)
+    cpu, sent, begun = cpu_s(pids), terminal.received, time.monotonic()
+    worst = 0.0
+    while time.monotonic() - begun < MEASURE_S:
+        time.sleep(1.0)
+        worst = max(worst, worst_error_percent(terminal.text()))
+    passed = time.monotonic() - begun
+    rate = (terminal.received - sent) / passed / 1000
+    return 100 * (cpu_s(pids) - cpu) / passed, worst, rate
+
+
+def main() -> None:
+    """Measure turn by turn and print."""
+    bare, number, image = [], [], []
+    memory = 0.0
+    with program("bench.load", DOMAIN), tempfile.TemporaryDirectory() as name:
+        for _round in range(ROUNDS):
+            bare.append(measure(["bench.bare", DOMAIN]).cpu_percent)
+            terminal = open_topics(Path(name))
+            try:
+                time.sleep(WARM_UP_S)
+                number.append(turn(terminal))
+                terminal.press("end")
+                time.sleep(2)
+                image.append(turn(terminal))
+                memory = pss_mb(screen_processes(terminal))
+            finally:
+                terminal.close()
+    least = statistics.median(bare)
+    print(f"10 Float32 at 50 Hz, one 640x480 image at 30 Hz; medians of {ROUNDS} turns")
+    print("| | CPU, % of a core | of bare | worst rate error, % | to the terminal, kB/s |")
+    print("| --- | --- | --- | --- | --- |")
+    print(f"| bare rclpy, SingleThreadedExecutor | {least:.1f} | 1.00 | | |")
+    for what, turns in (("a number echoed", number), ("the image shown", image)):
+        cpu = statistics.median(figures[0] for figures in turns)
+        worst = max(figures[1] for figures in turns)
+        rate = statistics.median(figures[2] for figures in turns)
+        print(f"| Topics, {what} | {cpu:.1f} | {cpu / least:.2f} | {worst:.1f} | {rate:.1f} |")
+    print(f"PSS of screen and supervisor: {memory:.0f} MB")
+
+
+if __name__ == "__main__":
+    main()
