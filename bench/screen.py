@@ -1,0 +1,179 @@
+"""What the screen costs on the brain lesson at 120x40, seen from outside, in a real terminal.
+
+`python -m bench.screen` prints a table; every figure is measured in this one run.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from bench.processes import children, command, cpu_s, pss_mb
+from tests.e2e.terminal import Terminal
+
+DOMAIN = int(os.environ.get("BENCH_DOMAIN", "77"))
+ROUNDS = 7
+REST_S = 30.0
+PRESSES = 30
+FLOOD_S = 20.0
+
+FLOOD = """
+import sys, time
+start, sent = time.monotonic(), 0
+while True:
+    due = int((time.monotonic() - start) * 10_000)
+    sys.stdout.write("".join(f"flood line {n}, as long as log lines are wont to be\\n"
+                             for n in range(sent, due)))
+    sys.stdout.flush()
+    sent = due
+    time.sleep(0.01)
+"""
+COUNT = """
+import time
+n = 0
+while True:
+    n += 1
+    print(f"count {n}", flush=True)
+    time.sleep(0.02)
+"""
+
+
+@contextmanager
+def deck(folder: Path, *args: str) -> Iterator[Terminal]:
+    """The program in a terminal of 120x40 with directories of its own."""
+    env = {
+        "DECK_RUN_DIR": str(folder / "run"),
+        "DECK_LOG_DIR": str(folder / "logs"),
+        "XDG_CONFIG_HOME": str(folder / "config"),
+        "XDG_STATE_HOME": str(folder / "state"),
+        "LANG": "C.UTF-8",
+    }
+    argv = [sys.executable, "-m", "tui", *args, "--domain", str(DOMAIN), "--lang", "en"]
+    terminal = Terminal(argv, 120, 40, env)
+    try:
+        yield terminal
+    finally:
+        terminal.close()
+
+
+def first_frame(folder: Path) -> tuple[float, float]:
+    """Median seconds until the first frame is drawn, and of `import textual.app` alone."""
+    frames, imports = [], []
+    for _ in range(ROUNDS):
+        started = time.monotonic()
+        subprocess.run([sys.executable, "-c", "import textual.app"], check=True)
+        imports.append(time.monotonic() - started)
+        started = time.monotonic()
+        with deck(folder) as terminal:
+            while "Lessons" not in terminal.text():
+                time.sleep(0.002)
+            frames.append(time.monotonic() - started)
+    return statistics.median(frames), statistics.median(imports)
+
+
+def screen_processes(terminal: Terminal) -> list[int]:
+    """The screen and its supervisor, without the spawn server and the nodes."""
+    screen = terminal.process.pid
+    return [screen, *(pid for pid in children(screen) if "supervisor" in command(pid))]
+
+
+def at_rest(terminal: Terminal) -> tuple[float, float, float]:
+    """CPU in percent of a core, PSS in MB, and bytes to the terminal a second."""
+    pids = screen_processes(terminal)
+    cpu, sent, started = cpu_s(pids), terminal.received, time.monotonic()
+    time.sleep(REST_S)
+    passed = time.monotonic() - started
+    return (
+        100 * (cpu_s(pids) - cpu) / passed,
+        pss_mb(pids),
+        (terminal.received - sent) / passed,
+    )
+
+
+def key_delays_ms(terminal: Terminal) -> list[float]:
+    """From pressing an arrow key in the table of nodes to the mark in the other row."""
+    delays = []
+    for press in range(PRESSES):
+        before = marked_row(terminal)
+        started = time.monotonic()
+        terminal.press("up" if press % 2 else "down")
+        while marked_row(terminal) == before:
+            if time.monotonic() - started > 10:
+                raise RuntimeError(f"no answer to a key:\n{terminal.text()}")
+            time.sleep(0.001)
+        delays.append(1000 * (time.monotonic() - started))
+        time.sleep(0.15)
+    return delays
+
+
+def marked_row(terminal: Terminal) -> int:
+    """Row of the chosen node."""
+    rows = terminal.text().splitlines()
+    return next(number for number, row in enumerate(rows) if row.startswith("▶"))
+
+
+def flooded(folder: Path) -> tuple[list[float], float, int, int]:
+    """Key delays in ms under a flood, growth of PSS in MB, lines of the other node: written, kept.
+
+    The other node counts aloud, 50 lines a second, beside 10 000 lines a second.
+    """
+    profile = folder / "flood.yaml"
+    (folder / "flood.py").write_text(FLOOD)
+    (folder / "count.py").write_text(COUNT)
+    profile.write_text(
+        "title: {en: A flood of lines}\n"
+        "nodes:\n"
+        f"  flood: {{exec: [{sys.executable!r}, {str(folder / 'flood.py')!r}]}}\n"
+        f"  count: {{exec: [{sys.executable!r}, {str(folder / 'count.py')!r}]}}\n"
+    )
+    with deck(folder, str(profile)) as terminal:
+        terminal.wait_for("2/2")
+        time.sleep(5)
+        before = pss_mb(screen_processes(terminal))
+        until = time.monotonic() + FLOOD_S
+        delays = []
+        while time.monotonic() < until:
+            delays += key_delays_ms(terminal)
+        growth = pss_mb(screen_processes(terminal)) - before
+    counted = [
+        int(line.split("count ")[1])
+        for log in sorted((folder / "logs").rglob("count*.log*"))
+        for line in log.read_text().splitlines()
+        if "count " in line and line.split("count ")[1].isdigit()
+    ]
+    return delays, growth, max(counted), len(set(counted))
+
+
+def main() -> None:
+    """Measure all and print a table."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        frame, imported = first_frame(folder)
+        with deck(folder, "09-brain") as terminal:
+            terminal.wait_for("8/8")
+            time.sleep(5)
+            cpu, pss, sent = at_rest(terminal)
+            keys = key_delays_ms(terminal)
+        delays, growth, written, kept = flooded(folder)
+    print("| what | measured | goal |")
+    print("| --- | --- | --- |")
+    print(f"| first frame / `import textual.app` | {frame / imported:.2f} | 1.5 |")
+    print(f"| screen and supervisor at rest, CPU of one core | {cpu:.1f} % | 12 % |")
+    print(f"| screen and supervisor at rest, PSS | {pss:.0f} MB | 150 MB |")
+    print(f"| to the terminal at rest | {sent / 1000:.1f} kB/s | 8 kB/s |")
+    print(f"| a key to its effect, median | {statistics.median(keys):.0f} ms | 50 ms |")
+    print(f"| a key under 10 000 lines/s, median | {statistics.median(delays):.0f} ms | 200 ms |")
+    print(f"| a key under 10 000 lines/s, longest | {max(delays):.0f} ms | 500 ms |")
+    print(f"| memory grown in {FLOOD_S:.0f} s of flood | {growth:+.1f} MB | flat |")
+    print(f"| lines of the other node lost in the flood | {written - kept} of {written} | 0 |")
+
+
+if __name__ == "__main__":
+    main()
