@@ -8,6 +8,7 @@ at all (ROS 2 documentation, "The ROS_DOMAIN_ID").
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from launcher.errors import DomainError
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 Discovery: TypeAlias = Union[str, "tuple[str, ...]"]
 """`localhost`, `subnet`, or the addresses of static peers."""
 
+FAST_DDS = Path(__file__).resolve().parents[1] / "graph" / "fastdds.xml"
+"""Has processes find each other in tenths of a second where it was up to three."""
+FAST_DDS_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 LAST_DOMAIN = 232
 LAST_SAFE_DOMAIN = 101
 
@@ -66,7 +70,8 @@ def choose_domain(asked: int | None, profile: int | None, environ: Mapping[str, 
 def ros_environment(base: Mapping[str, str], domain: int, discovery: Discovery) -> dict[str, str]:
     """Return `base` with the variables set by which rcl chooses its domain and its peers.
 
-    The deprecated ROS_LOCALHOST_ONLY would win over them, so it goes.
+    The deprecated ROS_LOCALHOST_ONLY would win over them, so it goes. Settings of Fast DDS that
+    somebody has chosen himself stay.
     """
     environ = dict(base)
     environ.pop("ROS_LOCALHOST_ONLY", None)
@@ -75,4 +80,6 @@ def ros_environment(base: Mapping[str, str], domain: int, discovery: Discovery) 
     environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET" if discovery == "subnet" else "LOCALHOST"
     if not isinstance(discovery, str):
         environ["ROS_STATIC_PEERS"] = ";".join(discovery)
+    if not any(environ.get(name) for name in FAST_DDS_VARIABLES):
+        environ[FAST_DDS_VARIABLES[0]] = str(FAST_DDS)
     return environ
