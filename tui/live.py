@@ -64,6 +64,10 @@ class LiveApp(DeckApp):
         self.leave(code)
         self.set_timer(PATIENCE_S, self.stop_now)
 
+    def on_resize(self) -> None:
+        """Draw everything anew: a window made small and large again has lost its cells."""
+        self.redraw()
+
     def redraw(self) -> None:
         """Draw everything anew, whatever the terminal may show."""
         if isinstance(self._driver, DeckDriver):
