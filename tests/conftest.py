@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -33,39 +33,70 @@ def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 
-@pytest.fixture(scope="session")
-def domain_pool() -> Iterator[Callable[[], int]]:
-    """Hand out ROS domains that no other test run on this machine holds, by file locks."""
-    folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"
-    folder.mkdir(exist_ok=True)
-    held: list[int] = []
+class DomainPool:
+    """ROS domains that no other test run on this machine holds, by file locks.
 
-    def take() -> int:
-        for domain in DOMAINS:
-            lock = os.open(folder / str(domain), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    They are handed out in turn, so that one comes back as late as can be: what a test has left in
+    it, a discovery that is not over or a lease that has not run out, is gone by then.
+    """
+
+    def __init__(self) -> None:
+        """Begin anywhere, so that runs at the same time seldom ask for the same."""
+        self._folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"
+        self._folder.mkdir(exist_ok=True)
+        self._held: dict[int, int] = {}
+        self._next = os.getpid() % len(DOMAINS)
+
+    def take(self) -> int:
+        """Return a domain that is nobody else's until it is let go of."""
+        for _ in DOMAINS:
+            domain = DOMAINS[self._next]
+            self._next = (self._next + 1) % len(DOMAINS)
+            path = self._folder / str(domain)
+            lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 os.close(lock)
                 continue
-            held.append(lock)
+            self._held[domain] = lock
             return domain
         raise RuntimeError("every ROS domain from 1 to 101 is held by a test")
 
-    yield take
-    for lock in held:
-        os.close(lock)
+    def let_go(self, *domains: int) -> None:
+        """Give domains back; all if none is named."""
+        for domain in domains or tuple(self._held):
+            os.close(self._held.pop(domain))
+
+
+@pytest.fixture(scope="session")
+def domain_pool() -> Iterator[DomainPool]:
+    """The domains of this run."""
+    pool = DomainPool()
+    yield pool
+    pool.let_go()
 
 
 @pytest.fixture
-def ros_domain(domain_pool: Callable[[], int], monkeypatch: pytest.MonkeyPatch) -> int:
+def ros_domain(domain_pool: DomainPool, monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     """A ROS domain of this test's own, set in the environment."""
-    domain = domain_pool()
+    domain = domain_pool.take()
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    return domain
+    yield domain
+    domain_pool.let_go(domain)
+
+
+@pytest.fixture
+def other_domain(domain_pool: DomainPool) -> Iterator[int]:
+    """Another ROS domain of this test's own."""
+    domain = domain_pool.take()
+    yield domain
+    domain_pool.let_go(domain)
 
 
 @pytest.fixture(scope="module")
-def module_domain(domain_pool: Callable[[], int]) -> int:
+def module_domain(domain_pool: DomainPool) -> Iterator[int]:
     """A ROS domain for fixtures that live as long as a test module."""
-    return domain_pool()
+    domain = domain_pool.take()
+    yield domain
+    domain_pool.let_go(domain)

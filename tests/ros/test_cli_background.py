@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -87,9 +87,9 @@ def test_up_says_what_did_not_come_up(tmp_path: Path) -> None:
     assert up.errors[0].startswith("not all is well; `deck logs NODE`")
 
 
-def test_two_at_once_are_told_apart_by_name(tmp_path: Path, domain_pool: Callable[[], int]) -> None:
+def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -> None:
     deck("up", str(written(tmp_path, ONE, "one.yaml")))
-    deck("up", str(written(tmp_path, TWO, "two.yaml")), "--domain", str(domain_pool()))
+    deck("up", str(written(tmp_path, TWO, "two.yaml")), "--domain", str(other_domain))
     for words in (["down"], ["logs", "quiet"]):
         refused = deck(*words)
         assert refused.process.returncode == 2
