@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias, Union
+from typing import TypeAlias
 
 from launcher.status import LogLine, NodeStatus, Stray
 
@@ -39,4 +39,4 @@ class ClosedEvent:
     reason: str
 
 
-Event: TypeAlias = Union[StatusEvent, LogEvent, StraysEvent, ClosedEvent]
+Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | ClosedEvent

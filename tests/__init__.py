@@ -1,1 +1,1 @@
-"""Tests of Deck: unit (no ROS), ros (real rclpy and processes), tui (pilot, snapshots), e2e (a terminal)."""
+"""Tests of Deck: unit (no ROS), ros (real rclpy), tui (pilot, snapshots), e2e (a terminal)."""
