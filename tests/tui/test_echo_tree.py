@@ -53,9 +53,9 @@ class EchoApp(App[None]):
         return self.query_one(EchoTree)
 
     def screen_text(self) -> str:
-        """What stands in the tree now."""
-        tree = self.tree
-        return "\n".join(tree.render_line(y).text.rstrip() for y in range(tree.size.height))
+        """What stands on the screen now: lines that nobody asked to be drawn again are old."""
+        strips = self.screen._compositor.render_strips()
+        return "\n".join(strip.text.rstrip() for strip in strips)
 
 
 def test_nested_messages_are_open_and_arrays_stand_on_one_line() -> None:

@@ -48,8 +48,20 @@ class TableApp(App[None]):
         return self.query_one(TopicsTable)
 
     def lines(self) -> list[str]:
-        """What stands in the table now."""
-        return [self.table.render_line(y).text.rstrip() for y in range(self.table.size.height)]
+        """What stands on the screen now: lines that nobody asked to be drawn again are old."""
+        return [strip.text.rstrip() for strip in self.screen._compositor.render_strips()]
+
+
+def asked_regions(table: TopicsTable, monkeypatch: pytest.MonkeyPatch) -> list[Region]:
+    """Every region that is asked to be drawn again from now on."""
+    asked: list[Region] = []
+
+    def refresh(*regions: Region, **_options: bool) -> TopicsTable:
+        asked.extend(regions)
+        return table
+
+    monkeypatch.setattr(table, "refresh", refresh)
+    return asked
 
 
 def names(app: TableApp) -> list[str]:
@@ -231,13 +243,7 @@ async def test_an_update_draws_only_the_cells_whose_text_changed(
     async with app.run_test(size=(80, 20)) as pilot:
         app.table.show(TOPICS)
         await pilot.pause()
-        asked: list[Region] = []
-
-        def refresh(*regions: Region, **_options: bool) -> TopicsTable:
-            asked.extend(regions)
-            return app.table
-
-        monkeypatch.setattr(app.table, "refresh", refresh)
+        asked = asked_regions(app.table, monkeypatch)
         app.table.show([replace(row, count=row.count + 1) for row in TOPICS])
         assert asked == []
         faster = [replace(row, hz=11.0) if row.name == "/drive" else row for row in TOPICS]
@@ -246,14 +252,20 @@ async def test_an_update_draws_only_the_cells_whose_text_changed(
         assert asked == [Region(2 + hz.x, 1 + names(app).index("/drive"), hz.width, 1)]
 
 
-async def test_a_row_that_takes_another_place_takes_its_mark_along() -> None:
+async def test_a_row_that_takes_another_place_takes_its_mark_along(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     app = TableApp()
     async with app.run_test(size=(80, 20)) as pilot:
         app.table.show([topic("/a", FLOAT, 1.0), topic("/b", FLOAT, 2.0)])
         app.table.reorder(Order().by("hz"))
         await pilot.pause()
         assert [line[:4] for line in app.lines()[1:3]] == ["  /b", "▶ /a"]
+        asked = asked_regions(app.table, monkeypatch)
         app.table.show([topic("/a", FLOAT, 3.0), topic("/b", FLOAT, 2.0)])
+        assert {region.y for region in asked if region.x == 0} == {1, 2}
+        monkeypatch.undo()
+        app.table.refresh()
         await pilot.pause()
         assert [line[:4] for line in app.lines()[1:3]] == ["▶ /a", "  /b"]
 

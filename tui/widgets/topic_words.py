@@ -31,6 +31,8 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
     facts = row.facts
     if trouble is Trouble.NO_PUBLISHER:
         return _("Start the node that publishes it, or look for a misspelt or remapped name.")
+    if trouble is Trouble.QUIET and not row.publishers:
+        return _("Only Deck itself publishes here.")
     if trouble is Trouble.QUIET:
         return _("Publishers are there: {nodes}. Look at their logs.").format(
             nodes=names(row.published_by) or row.publishers
