@@ -25,6 +25,8 @@ MATCH_WITHIN_S = 1.0
 """How long a new publisher waits for its subscribers."""
 DISCOVERY_S = 4.0
 """How long after its start Deck may not have found everybody yet."""
+SETTLE_S = 0.2
+"""A subscriber is matched here a little before the publisher is matched there."""
 DEPTH = 200
 """Of messages on their way: a burst must not overwrite what a subscriber has not acknowledged."""
 
@@ -45,6 +47,21 @@ class _Line:
     patience_ends_s: float
     waiting: deque[tuple[Any, Future[int]]] = field(default_factory=deque)
     """A message, None if it has gone out, and who wants to know how many it went to."""
+    matched_since_s: float | None = None
+    is_settled: bool = False
+    """Whether all that listen do hear it, so that nothing needs to wait any more."""
+
+    def advance(self) -> None:
+        """Send what can be sent, and tell those who wait how many it went to."""
+        now_s = time.monotonic()
+        matched = self.publisher.get_subscription_count()
+        if not self.is_settled:
+            self._settle(matched >= max(1, self.expected), now_s)
+        all_matched = self.matched_since_s is not None
+        while self.waiting and (self.is_settled or (all_matched and self.waiting[0][0] is None)):
+            message, future = self.waiting.popleft()
+            if message is None or self.publish(message, future):
+                future.set_result(matched)
 
     def publish(self, message: Any, future: Future[int]) -> bool:  # noqa: ANN401
         """Publish; tell whether that went well, and the future if it did not."""
@@ -56,6 +73,15 @@ class _Line:
             future.set_exception(failure)
             return False
         return True
+
+    def _settle(self, all_matched: bool, now_s: float) -> None:
+        if not all_matched:
+            self.matched_since_s = None
+        elif self.matched_since_s is None:
+            self.matched_since_s = now_s
+        since_s = self.matched_since_s
+        heard = since_s is not None and now_s - since_s >= SETTLE_S
+        self.is_settled = heard or now_s >= self.patience_ends_s
 
 
 class Outbox:
@@ -95,14 +121,14 @@ class Outbox:
                 line.waiting.append((None, future))
         else:
             line.waiting.append((message, future))
-        self._send(line)
+        line.advance()
 
     def step(self) -> bool:
         """Send what can be sent now; tell whether anything still waits."""
-        waiting = [line for line in self._lines.values() if line.waiting]
-        for line in waiting:
-            self._send(line)
-        return any(line.waiting for line in waiting)
+        for line in self._lines.values():
+            if line.waiting or not line.is_settled:
+                line.advance()
+        return any(line.waiting for line in self._lines.values())
 
     def fail(self, error: Exception) -> None:
         """Let everything that waits fail."""
@@ -143,14 +169,3 @@ class Outbox:
         now_s = time.monotonic()
         patience_ends_s = max(now_s + MATCH_WITHIN_S, self._born_s + DISCOVERY_S)
         return _Line(publisher, cls, qos, expected, patience_ends_s)
-
-    def _send(self, line: _Line) -> None:
-        matched = line.publisher.get_subscription_count()
-        if matched < max(1, line.expected) and time.monotonic() < line.patience_ends_s:
-            return
-        # From now on whoever listens is matched; nobody has to wait for them again.
-        line.patience_ends_s = 0.0
-        while line.waiting:
-            message, future = line.waiting.popleft()
-            if message is None or line.publish(message, future):
-                future.set_result(matched)
