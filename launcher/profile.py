@@ -7,18 +7,18 @@ place in the file, and nothing is started by reading.
 from __future__ import annotations
 
 import os
-import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from launcher.domain import LAST_SAFE_DOMAIN, Discovery, choose_domain
+from launcher.domain import LAST_SAFE_DOMAIN, choose_domain
 from launcher.errors import ProfileError, ProfileProblem
 from launcher.profile_check import applies, check_module, check_needs, check_node
 from launcher.profile_devices import with_devices
 from launcher.profile_extends import read_profile
-from launcher.profile_params import as_arguments, flatten
+from launcher.profile_params import flatten
 from launcher.profile_sets import read_sets
+from launcher.profile_spec import NodeSpec, Profile, Ready
 from launcher.profile_text import shown
 from launcher.profile_tree import Branch, Place, Problems, find, place_of
 from launcher.profile_validate import validate
@@ -28,95 +28,9 @@ from launcher.words import say
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from launcher.profile_model import NodeDocument, ProfileDocument, Restart
-    from launcher.profile_params import Param
+    from launcher.profile_model import NodeDocument, ProfileDocument
 
 __all__ = ["NodeSpec", "Profile", "ProfileError", "ProfileProblem", "Ready", "load_profile"]
-
-DEFAULT_WITHIN_S = 10.0
-
-
-@dataclass(frozen=True)
-class Ready:
-    """The condition under which a node counts as ready."""
-
-    kind: str
-    """`topic`, `service` or `node`."""
-    name: str
-    """As in the profile: a ROS name, absolute or not."""
-    within_s: float = DEFAULT_WITHIN_S
-
-
-@dataclass(frozen=True)
-class NodeSpec:
-    """One node: what to run, how, and after which others."""
-
-    name: str
-    """Its key in the profile; of a `run` node also its name in the ROS graph."""
-    run: str | None = None
-    """A Python module. Either this or `exec` is set."""
-    exec: tuple[str, ...] | None = None
-    params: Mapping[str, Param] = field(default_factory=dict)
-    """Flat: `{"limits.front": 0.5}`."""
-    remap: Mapping[str, str] = field(default_factory=dict)
-    env: Mapping[str, str] = field(default_factory=dict)
-    needs: tuple[str, ...] = ()
-    """Only nodes that run: those that `when` leaves out are not waited for."""
-    ready: Ready | None = None
-    restart: Restart = "never"
-    when: str | None = None
-    """The condition as written; it holds."""
-    optional: bool = False
-    """If it cannot be started, or ends, that is told and is no failure."""
-    warm: bool = True
-    cwd: Path | None = None
-    """Absolute; None: where the launcher was started."""
-    source_root: Path | None = None
-    """Folder to put first on Python's path so that `run` is found; None if Python finds it."""
-
-    @property
-    def command(self) -> str:
-        """What is run, for people."""
-        return self.run if self.run is not None else " ".join(self.exec or ())
-
-    def ros_args(self) -> list[str]:
-        """Return `--ros-args` and all that follows; empty for a command without parameters."""
-        named = ["-r", f"__node:={self.name}"] if self.run is not None else []
-        remaps = [part for old, new in self.remap.items() for part in ("-r", f"{old}:={new}")]
-        arguments = [*named, *remaps, *as_arguments(self.params)]
-        return ["--ros-args", *arguments] if arguments else []
-
-    def argv(self) -> list[str]:
-        """Return the full command line, as it is started without the spawn server."""
-        if self.run is not None:
-            return [sys.executable, "-u", "-m", self.run, *self.ros_args()]
-        return [*(self.exec or ()), *self.ros_args()]
-
-
-@dataclass(frozen=True)
-class Profile:
-    """A profile as it is about to be started."""
-
-    path: Path
-    """Absolute."""
-    name: str
-    """File name without its ending: `09-brain`."""
-    nodes: Mapping[str, NodeSpec]
-    """In the order of the file; only those that run on this hardware."""
-    title: Mapping[str, str] = field(default_factory=dict)
-    """Language code to title."""
-    about: Mapping[str, str] = field(default_factory=dict)
-    """Language code to what it starts and shows."""
-    lesson: str = ""
-    domain: int = 0
-    """The one that counts, whoever chose it."""
-    discovery: Discovery = "localhost"
-    hardware: str = "mock"
-    devices: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    panels: tuple[str, ...] = ()
-    steps: tuple[Mapping[str, Any], ...] = ()
-    warnings: tuple[ProfileProblem, ...] = ()
-    """What is allowed, and probably not meant."""
 
 
 def load_profile(

@@ -13,7 +13,7 @@ from launcher.words import say
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from launcher.profile import NodeSpec
+    from launcher.profile_spec import NodeSpec
     from launcher.profile_tree import Problems
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from launcher.profile_tree import Branch, Entry, Listing, Place, Scalar
+from launcher.profile_yaml_errors import tell_syntax
 from launcher.words import say
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def read_yaml(text: str, file: str, problems: Problems) -> Branch | None:
         for event in yaml.parse(text, Loader=LOADER):
             builder.take(event)
     except yaml.YAMLError as error:
-        _syntax_problem(error, text, file, problems)
+        tell_syntax(error, text, file, problems)
         return None
     except _StopError:
         return None
@@ -55,7 +56,7 @@ def read_value(text: str, file: str, problems: Problems) -> Tree | None:
         for event in yaml.parse(text, Loader=LOADER):
             builder.take(event)
     except yaml.YAMLError as error:
-        _syntax_problem(error, text, file, problems)
+        tell_syntax(error, text, file, problems)
         return None
     except _StopError:
         return None
@@ -236,38 +237,3 @@ def _closed(opened: _Open) -> Tree:
         for name, entry in source.entries.items():
             entries.setdefault(name, entry)
     return Branch(entries, opened.place, opened.size)
-
-
-def _syntax_problem(error: yaml.YAMLError, text: str, file: str, problems: Problems) -> None:
-    """Tell a syntax error in words that help whoever wrote the file."""
-    mark = error.problem_mark if isinstance(error, yaml.MarkedYAMLError) else None
-    if mark is None:
-        _character_problem(error, text, file, problems)
-        return
-    line, column = mark.line + 1, mark.column + 1
-    lines = text.splitlines()
-    content = lines[mark.line] if mark.line < len(lines) else ""
-    indent = content[: len(content) - len(content.lstrip())]
-    if "\t" in indent:
-        place = Place(file, line, indent.index("\t") + 1)
-        problems.add(
-            place, (), say("a tab indents this line"), say("YAML wants blanks: replace the tab")
-        )
-        return
-    words = getattr(error, "problem", None) or str(error)
-    context = getattr(error, "context", None)
-    message = f"{words}, {context}" if context else words
-    problems.add(Place(file, line, column), (), say("not YAML: {reason}", reason=message))
-
-
-def _character_problem(error: yaml.YAMLError, text: str, file: str, problems: Problems) -> None:
-    """A character that YAML does not allow at all: PyYAML's reader tells its offset only."""
-    for offset, character in enumerate(text):
-        if yaml.reader.Reader.NON_PRINTABLE.match(character):
-            before = text[:offset]
-            line = before.count("\n") + 1
-            column = offset - (before.rfind("\n") + 1) + 1
-            message = say("the character U+{code:04X} is not allowed", code=ord(character))
-            problems.add(Place(file, line, column), (), message, say("remove it"))
-            return
-    problems.add(Place(file), (), say("not YAML: {reason}", reason=str(error)))

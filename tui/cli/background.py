@@ -12,13 +12,13 @@ from launcher.catalog import find_profile
 from launcher.errors import ConnectionLostError, NotRunningError, SessionError, UnknownNodeError
 from launcher.events import LogEvent
 from tui.cli.health import settled, well
-from tui.cli.output import BOLD, DIM, RED, Paint, say_error, table, write
-from tui.cli.report import TextReport, status_fields
-from tui.i18n import _, language, ngettext, pick, said
+from tui.cli.output import Paint, say_error, write
+from tui.cli.report import TextReport
+from tui.cli.sessions import as_json, show
+from tui.i18n import _, language, ngettext, said
 
 if TYPE_CHECKING:
     from argparse import Namespace
-    from collections.abc import Collection, Iterable, Sequence
 
     from launcher.status import NodeState, NodeStatus, SessionInfo
 
@@ -66,7 +66,7 @@ async def _up(options: Namespace) -> int:
         except asyncio.TimeoutError:
             say_error(_("not all of it is up yet; `deck ps` tells how it goes on"))
         optional = {name for name, node in profile.nodes.items() if node.optional}
-        _show(link.session, tuple(link.nodes.values()), optional)
+        show(link.session, tuple(link.nodes.values()), optional)
         healthy = all(well(node, optional) for node in link.nodes.values())
     finally:
         await link.aclose()
@@ -114,7 +114,7 @@ async def _ps(options: Namespace) -> int:
         found.append((link.session, tuple(link.nodes.values())))
         await link.aclose()
     if options.json:
-        write(json.dumps([_as_json(*each) for each in found], ensure_ascii=False, indent=2))
+        write(json.dumps([as_json(*each) for each in found], ensure_ascii=False, indent=2))
         return 0
     if not found:
         say_error(str(said(NotRunningError().args[0])))
@@ -122,7 +122,7 @@ async def _ps(options: Namespace) -> int:
     for index, (session, nodes) in enumerate(found):
         if index:
             write("")
-        _show(session, nodes)
+        show(session, nodes)
         if names.count(session.name) > 1:
             write(_("to name this one: {run_id}").format(run_id=session.run_id))
     return 0
@@ -188,64 +188,3 @@ async def _attached(name: str | None, node: str | None) -> client.SupervisorClie
     if not having:
         raise UnknownNodeError(node, known_nodes)
     return await client.attach(None)
-
-
-def _show(
-    session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection[str] = ()
-) -> None:
-    paint = Paint(sys.stdout)
-    where = _("domain {domain}, {hardware} hardware, supervisor {pid}").format(
-        domain=session.domain, hardware=session.hardware, pid=session.supervisor_pid
-    )
-    write(f"{paint(session.name, BOLD)}  {pick(session.title)}  {paint(f'({where})', DIM)}")
-    head = (_("NODE"), _("STATE"), "PID", _("UPTIME"), _("RESTARTS"), "CPU %", _("MB"), _("DETAIL"))
-    rows = [_row(node) for node in nodes]
-    first, *lines = table(head, rows)
-    write(paint(first, DIM))
-    for node, line in zip(nodes, lines, strict=True):
-        write(line if well(node, optional) else paint(line, RED))
-
-
-def _row(node: NodeStatus) -> tuple[str, ...]:
-    return (
-        node.name,
-        _(node.state.value),
-        "" if node.pid is None else str(node.pid),
-        "" if node.uptime_s is None else _duration(node.uptime_s),
-        str(node.restarts),
-        "" if node.cpu_percent is None else f"{node.cpu_percent:.1f}",
-        "" if node.memory_bytes is None else f"{node.memory_bytes / 1e6:.0f}",
-        said(node.detail),
-    )
-
-
-def _duration(seconds: float) -> str:
-    """Return `12 s`, `3:07` or `1:02:03`."""
-    whole = int(seconds)
-    if whole < 60:
-        return _("{seconds} s").format(seconds=whole)
-    hours, rest = divmod(whole, 3600)
-    minutes = f"{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"
-    return f"{hours}:{minutes}" if hours else minutes
-
-
-def _as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, object]:
-    return {
-        "name": session.name,
-        "run_id": session.run_id,
-        "profile": session.profile,
-        "domain": session.domain,
-        "hardware": session.hardware,
-        "foreground": session.foreground,
-        "supervisor_pid": session.supervisor_pid,
-        "log_dir": session.log_dir,
-        "nodes": [
-            {
-                **status_fields(node),
-                "uptime_s": node.uptime_s,
-                "cpu_percent": node.cpu_percent,
-                "memory_bytes": node.memory_bytes,
-            }
-            for node in nodes
-        ],
-    }
