@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection[str] = ()) -> None:
-    """Write the session and a line for each of its nodes; those of `optional` are never alarming."""
+    """Write the session and a line for each of its nodes; none of `optional` is alarming."""
     paint = Paint(sys.stdout)
     where = _("domain {domain}, {hardware} hardware, supervisor {pid}").format(
         domain=session.domain, hardware=session.hardware, pid=session.supervisor_pid
