@@ -10,6 +10,7 @@ import fcntl
 import io
 import os
 import pty
+import select
 import signal
 import struct
 import subprocess
@@ -58,6 +59,7 @@ class Terminal:
     ) -> None:
         self.received = 0
         self._lock = threading.Lock()
+        self._hung_up = threading.Event()
         self._screen = pyte.Screen(columns, rows)
         self._stream = pyte.Stream(self._screen)
         self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
@@ -97,8 +99,10 @@ class Terminal:
 
     def hang_up(self) -> None:
         """Close the window: the program gets SIGHUP, and every read and write fails."""
-        os.close(self._master)
-        self._reader.join(timeout=5)
+        if not self._hung_up.is_set():
+            self._hung_up.set()
+            self._reader.join()
+            os.close(self._master)
 
     def text(self) -> str:
         """What stands on the screen now, a line a row."""
@@ -153,6 +157,7 @@ class Terminal:
             except subprocess.TimeoutExpired:
                 self.process.kill()
                 self.process.wait()
+        self.hang_up()
 
     def _row(self, row: int) -> Text:
         text = Text()
@@ -178,13 +183,14 @@ class Terminal:
         fcntl.ioctl(self._master, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
 
     def _read(self) -> None:
-        while True:
+        # Closing a descriptor does not hang up while somebody reads it.
+        while not self._hung_up.is_set():
+            if not select.select([self._master], [], [], 0.05)[0]:
+                continue
             try:
                 data = os.read(self._master, 65536)
             except OSError:
-                return
-            if not data:
-                return
+                break
             with self._lock:
                 self.received += len(data)
                 self._stream.feed(self._decoder.decode(data))
