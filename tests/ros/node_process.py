@@ -7,15 +7,13 @@ import signal
 import subprocess
 import sys
 import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tests.ros.peer import DISCOVERY, ROOT
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from typing_extensions import Self
-
-ROOT = Path(__file__).parents[2]
 
 
 class NodeProcess:
@@ -42,7 +40,7 @@ class NodeProcess:
         environment = {
             **os.environ,
             "ROS_DOMAIN_ID": str(domain),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            **DISCOVERY,
             "ROS_PYTHON_CHECK_FIELDS": "1",
             "PYTHONUNBUFFERED": "1",
             "DECK_LANG": lang,

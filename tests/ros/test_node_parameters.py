@@ -14,8 +14,8 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 
 from nodes._node import LessonNode
 from nodes._parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
-from tests.ros.node_process import ROOT, NodeProcess
-from tests.ros.peer import Peer
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import ROOT, Peer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
