@@ -144,16 +144,17 @@ def test_a_missing_head_is_told_and_does_not_keep_the_chassis_waiting(parser: Pa
     assert "set_head_position is not there" in head["error"]
 
 
-def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(ros_domain: int) -> None:
-    slow = NodeProcess("nodes.head_controller", ros_domain, params={"move_time": 30.0})
-    params: dict[str, object] = {"head_timeout": 1.0}
-    parser = Parser(ros_domain, lang="en", params=params, head=False)
-    with slow:
+@pytest.mark.parametrize(
+    "parser", [{"head": False, "params": {"head_timeout": 1.0}}], indirect=True
+)
+def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(
+    parser: Parser, ros_domain: int
+) -> None:
+    with NodeProcess("nodes.head_controller", ros_domain, params={"move_time": 30.0}) as slow:
         parser.send(HEAD, {**HEAD, "pan": 5})
         slow.wait_for_words("pan -45")
         parser.send({**HEAD, "pan": 7})
         heads = [result for result in parser.results(5) if result["event"] == "head"]
-        assert [head["pan"] for head in heads] == [5, -45, 7]
-        assert "dropped for newer commands" in heads[0]["error"]
-        assert "no answer from set_head_position for 1 s" in heads[1]["error"]
-        parser.close()
+    assert [head["pan"] for head in heads] == [5, -45, 7]
+    assert "dropped for newer commands" in heads[0]["error"]
+    assert "no answer from set_head_position for 1 s" in heads[1]["error"]
