@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 MAX_PROBES = 3
 """So many probes may die in a row before the graph counts as one that cannot be watched."""
+LINGER_S = 5.0
+"""For so long the graph is watched though nobody waits: the next node's turn comes soon."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,15 @@ class Readiness:
         self._reaper = reaper
         self._env = env
         self._waiters: dict[asyncio.Future[None], Condition] = {}
+        self._holding: frozenset[Condition] = frozenset()
         self._task: asyncio.Task[None] | None = None
+        self._linger: asyncio.TimerHandle | None = None
+
+    def expect(self) -> None:
+        """Begin to watch: somebody will wait in a moment, and looking takes time to begin."""
+        if self._task is None and self._conditions:
+            self._task = asyncio.create_task(self._watch())
+            self._stop_later()
 
     async def until(self, condition: Condition) -> None:
         """Return once `condition` holds.
@@ -63,27 +73,43 @@ class Readiness:
         Raises:
             UnwatchableError: if that cannot be found out.
         """
+        if condition in self._holding:
+            return
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._waiters[future] = condition
-        if self._task is None:
-            self._task = asyncio.create_task(self._watch())
+        self.expect()
         try:
             await future
         finally:
             self._waiters.pop(future, None)
-            if not self._waiters:
-                self.renew()
+            self._stop_later()
 
     def renew(self) -> None:
         """Forget what is known: a dead node lingers in the view of whoever has seen it alive."""
+        self._stop()
+        if self._waiters:
+            self.expect()
+
+    def _stop_later(self) -> None:
+        if self._linger is not None:
+            self._linger.cancel()
+        self._linger = asyncio.get_running_loop().call_later(LINGER_S, self._stop_if_idle)
+
+    def _stop_if_idle(self) -> None:
+        if not self._waiters:
+            self._stop()
+
+    def _stop(self) -> None:
+        self._holding = frozenset()
         if self._task is not None:
             self._task.cancel()
-            self._task = asyncio.create_task(self._watch()) if self._waiters else None
+            self._task = None
 
     async def _watch(self) -> None:
         for _attempt in range(MAX_PROBES):
             with contextlib.suppress(SpawnError):
                 await self._one_probe()
+        self._holding = frozenset()
         for future in self._waiters:
             if not future.done():
                 future.set_exception(UnwatchableError)
@@ -120,6 +146,7 @@ class Readiness:
             transport.close()
 
     def _learn(self, holding: frozenset[Condition]) -> None:
+        self._holding = holding
         for future, condition in self._waiters.items():
             if condition in holding and not future.done():
                 future.set_result(None)

@@ -153,7 +153,7 @@ def _run_module(argv: tuple[str, ...]) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    sys.argv = list(argv)
+    sys.argv = ["-m", *argv[1:]]
     sys.orig_argv = [sys.executable, "-m", *argv]
     if not getattr(sys.flags, "safe_path", False):
         sys.path[0] = os.getcwd()  # noqa: PTH109

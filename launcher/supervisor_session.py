@@ -59,6 +59,8 @@ class Session:
     def start(self, names: Iterable[str] = ()) -> None:
         """Start these nodes with all that they need; all if none is named."""
         chosen = self._chosen(names)
+        # The probe goes first: what it sees coming it need not look for.
+        self._readiness.expect()
         for name in needed_by(chosen, self.plan.needs):
             if name in chosen or not self.nodes[name].at_work:
                 self.nodes[name].start()

@@ -1,0 +1,193 @@
+"""Lesson 9 started by Deck against the same nodes started with `&` in a shell, turn by turn.
+
+`python -m bench.launch [PROFILE]` prints the time until all nodes are in the ROS graph, as an
+observer sees it that was there before, the CPU time used until then, and the memory 5 s later.
+All of Deck's own processes are counted, client included; memory is also given of the nodes alone.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import statistics
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.processes import cpu_s, pss_mb
+from launcher.process_table import processes
+from launcher.profile import load_profile
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from launcher.profile import Profile
+
+DOMAIN = int(os.environ.get("BENCH_DOMAIN", "79"))
+ROUNDS = int(os.environ.get("BENCH_ROUNDS", "7"))
+SETTLE_S = 5.0
+SHELL, DECK = "`&` in a shell", "Deck"
+
+CLIENT = """
+import asyncio, sys
+from launcher.client import launch
+
+async def main():
+    client = await launch(sys.argv[1], domain=int(sys.argv[2]))
+    await asyncio.get_running_loop().run_in_executor(None, sys.stdin.read)
+    await client.shutdown()
+
+asyncio.run(main())
+"""
+
+
+@dataclass(frozen=True)
+class Figures:
+    """One start."""
+
+    ready_s: float
+    cpu_s: float
+    pss_mb: float
+    nodes_pss_mb: float
+
+
+class Watch:
+    """The observer, which sees the nodes of both."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """Start it and wait until it sees."""
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "bench.graph_watch", *names],
+            env=environment(),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self._line()
+
+    def all_there(self) -> float:
+        """Return the monotonic time at which the last of the nodes was seen."""
+        return float(self._ask("all"))
+
+    def all_gone(self) -> None:
+        """Wait until none of them is seen."""
+        self._ask("none")
+
+    def close(self) -> None:
+        """End it."""
+        self._process.communicate(timeout=30)
+
+    def _ask(self, what: str) -> str:
+        assert self._process.stdin is not None
+        self._process.stdin.write(what + "\n")
+        self._process.stdin.flush()
+        return self._line()
+
+    def _line(self) -> str:
+        assert self._process.stdout is not None
+        return self._process.stdout.readline()
+
+
+def environment() -> dict[str, str]:
+    """Return the environment of every process here."""
+    return {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(DOMAIN),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+
+
+@contextmanager
+def by_shell(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
+    """Start the nodes as one would by hand, all at once."""
+    lines = [f"{shlex.join(node.argv())} &" for node in profile.nodes.values()]
+    process = subprocess.Popen(
+        ["bash", "-c", "\n".join([*lines, "wait"])],
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        yield process
+    finally:
+        for pid in descendants(process.pid):
+            os.kill(pid, signal.SIGTERM)
+        process.wait(30)
+
+
+@contextmanager
+def by_deck(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
+    """Start the profile through the launcher, in a new process as `deck` is."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", CLIENT, str(profile.path), str(DOMAIN)],
+        env=environment(),
+        stdin=subprocess.PIPE,
+    )
+    try:
+        yield process
+    finally:
+        process.communicate(timeout=30)
+
+
+def descendants(pid: int) -> list[int]:
+    """Return a process and all below it."""
+    table = list(processes())
+    found = [pid]
+    for parent in found:
+        found += [process.pid for process in table if process.parent == parent]
+    return found
+
+
+def is_node(pid: int) -> bool:
+    """Whether a process is a node, and not a helper of Deck's or the shell."""
+    words = Path(f"/proc/{pid}/cmdline").read_bytes()
+    return b"nodes." in words and not words.startswith(b"bash")
+
+
+def measure(kind: str, profile: Profile, watch: Watch) -> Figures:
+    """Start once."""
+    watch.all_gone()
+    starter = by_deck if kind == DECK else by_shell
+    began = time.monotonic()
+    with starter(profile) as process:
+        ready_s = watch.all_there() - began
+        used_s = cpu_s(descendants(process.pid))
+        time.sleep(SETTLE_S)
+        everything = descendants(process.pid)
+        nodes = [pid for pid in everything if is_node(pid)]
+        return Figures(ready_s, used_s, pss_mb(everything), pss_mb(nodes))
+
+
+def main() -> None:
+    """Take turns, and print medians and their ratios."""
+    path = sys.argv[1] if len(sys.argv) > 1 else "profiles/09-brain.yaml"
+    profile = load_profile(path, domain=DOMAIN)
+    watch = Watch(list(profile.nodes))
+    taken: dict[str, list[Figures]] = {SHELL: [], DECK: []}
+    for _round in range(ROUNDS):
+        for kind, figures in taken.items():
+            figures.append(measure(kind, profile, watch))
+            print(kind, figures[-1], file=sys.stderr, flush=True)
+    watch.close()
+    print(f"{'':18}{'ready s':>10}{'CPU s':>10}{'PSS MB':>10}{'nodes MB':>10}")
+    rows = {kind: medians(figures) for kind, figures in taken.items()}
+    for kind, row in rows.items():
+        print(f"{kind:18}" + "".join(f"{value:10.2f}" for value in row))
+    ratios = [deck / shell for deck, shell in zip(rows[DECK], rows[SHELL], strict=True)]
+    print(f"{'ratio':18}" + "".join(f"{value:10.2f}" for value in ratios))
+
+
+def medians(figures: list[Figures]) -> list[float]:
+    """Return the median of each column."""
+    columns = zip(*(vars(one).values() for one in figures), strict=True)
+    return [statistics.median(column) for column in columns]
+
+
+if __name__ == "__main__":
+    main()
