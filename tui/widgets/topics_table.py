@@ -1,39 +1,29 @@
-"""Every topic in a table that draws only the cells whose text has changed."""
+"""Every topic in a table: sorted, filtered, and one of them chosen."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar
 
-from rich.segment import Segment
 from textual.binding import Binding, BindingType
 from textual.geometry import Region, Size
 from textual.message import Message
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
 
 from tui.i18n import _
-from tui.widgets.topics_table_columns import Place, placed
 from tui.widgets.topics_table_order import Order
-from tui.widgets.words import word_strips
+from tui.widgets.topics_table_rows import HEADER, MARK, TopicsRows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rich.style import Style
     from textual.events import Click
 
     from graph.data import TopicRow
 
-HEADER = 1
-_Drawn: TypeAlias = "tuple[bool, tuple[str, ...]]"
-"""Whether the row was the chosen one, and the texts of its cells, as they were last drawn."""
-MARK = 2
-"""Cells left of the first column, for the mark of the chosen row."""
 FAR = 1_000_000
 
 
-class TopicsTable(ScrollView, can_focus=True):
+class TopicsTable(TopicsRows):
     """Shows `TopicRow`s; one of them is chosen, and stays so while rows come, go and are sorted."""
 
     class Chosen(Message):
@@ -49,25 +39,6 @@ class TopicsTable(ScrollView, can_focus=True):
     class Arranged(Message):
         """Another order, filter or set of topics is shown."""
 
-    ALLOW_SELECT = False
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "topics-table--header",
-        "topics-table--sorted",
-        "topics-table--trouble",
-        "topics-table--cursor",
-    }
-    DEFAULT_CSS = """
-    TopicsTable {
-        width: 1fr; height: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
-        &> .topics-table--header { color: $text-muted; text-style: bold; background: $panel; }
-        &> .topics-table--sorted { color: $text; }
-        &> .topics-table--trouble { color: $text-warning; }
-        &> .topics-table--cursor { background: $block-cursor-blurred-background; }
-        &:focus > .topics-table--cursor {
-            color: $block-cursor-foreground; background: $block-cursor-background;
-        }
-    }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up,k", "move(-1)", show=False),
         Binding("down,j", "move(1)", show=False),
@@ -81,12 +52,6 @@ class TopicsTable(ScrollView, can_focus=True):
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._rows: Sequence[TopicRow] = ()
-        self._shown: list[TopicRow] = []
-        self._order = Order()
-        self._chosen: str | None = None
-        self._places: tuple[Place, ...] = ()
-        self._drawn: dict[int, _Drawn] = {}
-        """By the line of the widget."""
         self._words = ("", "")
 
     def show(self, rows: Sequence[TopicRow]) -> None:
@@ -147,21 +112,6 @@ class TopicsTable(ScrollView, can_focus=True):
         """Draw again, after the language changed."""
         self.refresh()
 
-    def render_line(self, y: int) -> Strip:
-        """The header, a topic, or words where there are none."""
-        width = self.size.width
-        base = self.rich_style
-        if y < HEADER:
-            return self._header(width)
-        index = y - HEADER + self.scroll_offset.y
-        if index < len(self._shown):
-            return self._row_strip(y, self._shown[index], width)
-        if not self._shown:
-            strips = word_strips(self._empty_words(), width, base, self.app.console)
-            if y - HEADER < len(strips):
-                return strips[y - HEADER]
-        return Strip.blank(width, base)
-
     def action_move(self, by: int) -> None:
         """Choose the row so many below."""
         if self._shown:
@@ -188,22 +138,6 @@ class TopicsTable(ScrollView, can_focus=True):
             if place.x <= event.x - MARK <= place.x + place.width:
                 self.reorder(self._order.by(place.column.id))
 
-    def on_resize(self) -> None:
-        """Place the columns anew."""
-        self._place()
-
-    def watch_show_vertical_scrollbar(self) -> None:
-        """Make room for the scroll bar, or use what it has left."""
-        self._place()
-
-    def on_focus(self) -> None:
-        """Draw the cursor as that of the focused widget."""
-        self._refresh_chosen()
-
-    def on_blur(self) -> None:
-        """Draw the cursor as that of a widget in the background."""
-        self._refresh_chosen()
-
     def _arrange(self) -> None:
         at = self._index(self._chosen)
         was_visible = at is not None and self._is_visible(at)
@@ -218,15 +152,6 @@ class TopicsTable(ScrollView, can_focus=True):
         if was_visible and now is not None and now != at:
             self._bring_into_view(now)
         self._refresh_changed()
-
-    def _place(self) -> None:
-        """Place the columns, anew only if the room or the longest name has changed."""
-        longest = max((len(row.name) for row in self._shown), default=0)
-        places = placed(max(1, self.scrollable_size.width - MARK), longest)
-        if places != self._places:
-            self._places = places
-            self._drawn.clear()
-            self.refresh()
 
     def _keep_chosen(self, before: int | None) -> None:
         """Where the chosen topic has gone, take the one that has come in its place."""
@@ -247,83 +172,11 @@ class TopicsTable(ScrollView, can_focus=True):
             self.post_message(self.Chosen(topic))
         self._bring_into_view(index)
 
-    def _index(self, topic: str | None) -> int | None:
-        return next((i for i, row in enumerate(self._shown) if row.name == topic), None)
-
-    def _is_visible(self, index: int) -> bool:
-        return 0 <= index - self.scroll_offset.y < self.size.height - HEADER
-
     def _bring_into_view(self, index: int) -> None:
         top, rows = self.scroll_offset.y, max(1, self.size.height - HEADER)
         target = min(index, max(top, index - rows + 1))
         if target != top:
             self.scroll_to(y=target, animate=False, immediate=True)
-
-    def _refresh_chosen(self) -> None:
-        index = self._index(self._chosen)
-        if index is not None:
-            y = index + HEADER - self.scroll_offset.y
-            if y >= HEADER:
-                self.refresh(Region(0, y, self.size.width, 1))
-
-    def _refresh_changed(self) -> None:
-        top = self.scroll_offset.y
-        for index in range(top, min(len(self._shown), top + self.size.height - HEADER)):
-            y = index - top + HEADER
-            drawn, now = self._drawn.get(y), self._to_draw(self._shown[index])
-            if drawn is None or drawn == now:
-                continue
-            self._drawn[y] = now
-            if drawn[0] != now[0]:
-                self.refresh(Region(0, y, self.size.width, 1))
-                continue
-            for place, old, new in zip(self._places, drawn[1], now[1], strict=True):
-                if old != new:
-                    self.refresh(Region(MARK + place.x, y, place.width, 1))
-
-    def _to_draw(self, row: TopicRow) -> _Drawn:
-        cells = tuple(place.fitted(place.column.text(row)) for place in self._places)
-        return row.name == self._chosen, cells
-
-    def _row_strip(self, y: int, row: TopicRow, width: int) -> Strip:
-        chosen, cells = self._drawn[y] = self._to_draw(row)
-        base = self.rich_style
-        if chosen:
-            base = self.get_component_rich_style("topics-table--cursor")
-        trouble = base
-        if row.trouble is not None and not chosen:
-            trouble += self.get_component_rich_style("topics-table--trouble", partial=True)
-        styles = [trouble if place.column.id == "state" else base for place in self._places]
-        return self._strip("▶ " if chosen else "", cells, styles, width, base)
-
-    def _header(self, width: int) -> Strip:
-        style = self.get_component_rich_style("topics-table--header")
-        by_style: Style = style + self.get_component_rich_style(
-            "topics-table--sorted", partial=True
-        )
-        by, arrow = self._order.column, "▼" if self._order.falling else "▲"
-        styles = [by_style if place.column is by else style for place in self._places]
-        titles = tuple(
-            place.fitted(_(place.column.title) + (arrow if place.column is by else ""))
-            for place in self._places
-        )
-        return self._strip("", titles, styles, width, style)
-
-    def _strip(
-        self, mark: str, cells: tuple[str, ...], styles: list[Style], width: int, base: Style
-    ) -> Strip:
-        runs: list[tuple[str, Style]] = [(mark.ljust(MARK), base)]
-        end = 0
-        for place, text, style in zip(self._places, cells, styles, strict=True):
-            padded = " " * (place.x - end) + text
-            end = place.x + place.width
-            # Every segment costs the terminal some forty bytes of colours.
-            if style == runs[-1][1]:
-                runs[-1] = (runs[-1][0] + padded, style)
-            else:
-                runs.append((padded, style))
-        segments = [Segment(text, style) for text, style in runs]
-        return Strip(segments).adjust_cell_length(width, base)
 
     def _empty_words(self) -> tuple[str, str]:
         if self._rows and self._order.words:
