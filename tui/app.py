@@ -16,8 +16,16 @@ from textual.binding import Binding, BindingType
 
 from launcher.errors import LauncherError
 from tui.actions import REGISTRY, Acting, Action, bindings, bound
-from tui.actions.app import APP_ACTIONS, ShowComposer, ShowDeck, ShowLogs, ShowTopics
+from tui.actions.app import (
+    APP_ACTIONS,
+    EmergencyRelease,
+    ShowComposer,
+    ShowDeck,
+    ShowLogs,
+    ShowTopics,
+)
 from tui.brake import Brake
+from tui.emergency import stop_words
 from tui.feed import Feed, GraphReady
 from tui.i18n import LANGUAGES, NAMES, _, language, pick, said, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
@@ -50,6 +58,8 @@ class DeckApp(App[int], Acting):
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(*APP_ACTIONS)
+    ENABLE_COMMAND_PALETTE = False
+    """Textual's own key for it; ours speaks the language of the screen."""
 
     def __init__(
         self,
@@ -239,14 +249,21 @@ class DeckApp(App[int], Acting):
         ]
 
     @property
-    def is_held(self) -> bool:
-        """Whether the safety node holds the wheels, by its own decision."""
-        return self.feed.link is not None and bool(self.brake.state.blocked)
+    def state_look(self) -> str:
+        """How the title looks: `stop` while stopped, `alarm` while the safety node holds."""
+        if self.feed.link is None:
+            return "state"
+        return (
+            "stop" if self.brake.state.engaged else "alarm" if self.brake.state.blocked else "state"
+        )
 
     def state_words(self) -> Sequence[str]:
         """Return what runs, in words, from long to short; the first that fits is shown."""
         session = self.feed.session
-        if self.is_held:
+        look = self.state_look
+        if look == "stop":
+            return stop_words(self.brake.state, self.keys_of(EmergencyRelease)[0])
+        if look == "alarm":
             reason = plain(self.brake.state.blocked, 400)
             return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
         if session is None:
@@ -289,7 +306,7 @@ class DeckApp(App[int], Acting):
             take = partial(setattr, self, "theme", theme)
             yield SystemCommand(words, _("Take these colours."), take, theme in CYCLE)
 
-    def action_command_palette(self) -> None:
+    def show_palette(self) -> None:
         """Open the palette in the language spoken now."""
         from textual.command import CommandPalette
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from tui.i18n import N_
+from tui.i18n import N_, _
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
@@ -59,6 +59,15 @@ class Emergency:
         for sample in update.samples.get(SAFETY_TOPIC, ()):
             state = replace(state, blocked=blocked_reason(sample))
         return state
+
+
+def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:
+    """Return what is said while it is engaged, from long to short."""
+    words = _("■ EMERGENCY STOP") if state.ours else _("■ EMERGENCY STOP (by another)")
+    release = _("{key} releases").format(key=release_key)
+    if state.fallback:
+        return (f"{words} · {_(state.fallback)} · {release}", f"{words} · {release}")
+    return (f"{words} · {release}",)
 
 
 def listeners(update: GraphUpdate | None) -> int:

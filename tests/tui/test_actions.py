@@ -17,6 +17,7 @@ from tui.app import DeckApp, every_action
 from tui.i18n import N_
 from tui.screens.help import HelpScreen
 from tui.widgets.key_bar import KeyBar
+from tui.widgets.page import Page
 
 
 def footer(app: DeckApp) -> str:
@@ -27,7 +28,7 @@ def footer(app: DeckApp) -> str:
 def help_text(app: DeckApp) -> str:
     """Return the whole help page."""
     assert isinstance(app.screen, HelpScreen)
-    return "\n".join(str(text.render()) for text in app.screen.query("Static"))
+    return " ".join(app.screen.query_one(Page).text.split())
 
 
 @every_look

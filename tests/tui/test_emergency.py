@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from textual.color import Color
 from textual.widgets import Input
 
 from graph.data import GraphUpdate, Sample
@@ -12,7 +13,7 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
 from tui.emergency import SAFETY_TOPIC, TOPIC, TOPIC_TYPE, Emergency, listeners
 from tui.widgets.command_line import CommandLine
-from tui.widgets.emergency import EmergencyBanner
+from tui.widgets.title_bar import TitleBar
 
 STOP = (TOPIC, TOPIC_TYPE, {"data": True}, True)
 GO = (TOPIC, TOPIC_TYPE, {"data": False}, True)
@@ -62,10 +63,9 @@ async def test_space_stops_at_once_on_every_screen(screen: str) -> None:
     async with opened(pad, screen) as (app, pilot):
         await pilot.press("space")
         assert pad.graph.published == [STOP]
-        banner = app.screen.query_one(EmergencyBanner)
-        assert banner.display
-        assert "EMERGENCY STOP" in str(banner.render())
-        assert "^r" in str(banner.render())
+        title = app.screen.query_one(TitleBar)
+        assert "■ EMERGENCY STOP · ^r releases" in title.text
+        assert title.styles.background == Color.parse("#b00020")
 
 
 async def test_the_publisher_is_made_before_it_is_needed() -> None:
@@ -83,7 +83,7 @@ async def test_the_stop_stays_until_it_is_released() -> None:
         await pilot.press("ctrl+r")
         assert pad.graph.published[-1] == GO
         await pilot.pause()
-        assert not app.screen.query_one(EmergencyBanner).display
+        assert "EMERGENCY" not in app.screen.query_one(TitleBar).text
 
 
 async def test_the_release_key_does_nothing_while_nothing_is_stopped() -> None:
@@ -121,7 +121,7 @@ async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
         await pilot.pause()
         assert ("stop",) in pad.link.asked
         assert STOP in pad.graph.published
-        assert "nobody listens" in str(app.screen.query_one(EmergencyBanner).render())
+        assert "nobody listens" in app.screen.query_one(TitleBar).text
 
 
 async def test_where_ros_cannot_be_reached_the_nodes_are_stopped_instead() -> None:
@@ -131,7 +131,7 @@ async def test_where_ros_cannot_be_reached_the_nodes_are_stopped_instead() -> No
         await pilot.press("space")
         await pilot.pause()
         assert ("stop",) in pad.link.asked
-        assert "ROS cannot be reached" in str(app.screen.query_one(EmergencyBanner).render())
+        assert "ROS cannot be reached" in app.screen.query_one(TitleBar).text
 
 
 async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> None:
@@ -140,7 +140,7 @@ async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> No
         pad.graph.show(said(True, NOW_S + 1))
         await pilot.pause()
         await pilot.pause()
-        assert "by another" in str(app.screen.query_one(EmergencyBanner).render())
+        assert "by another" in app.screen.query_one(TitleBar).text
         await pilot.press("ctrl+r")
         assert pad.graph.published == [GO]
 

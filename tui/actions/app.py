@@ -136,6 +136,22 @@ class ShowHelp(AppAction):
         target.show_help()
 
 
+class ShowPalette(AppAction):
+    """Everything by its name."""
+
+    id = "app.palette"
+    key = "ctrl+p"
+    title = N_("Palette")
+    tooltip = N_("Find anything that can be done by its name.")
+    priority = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Open it."""
+        target.show_palette()
+
+
 class SwitchLanguage(AppAction):
     """English to Russian and back."""
 
@@ -219,6 +235,7 @@ APP_ACTIONS = (
     ShowTopics,
     ShowComposer,
     ShowLogs,
+    ShowPalette,
     CloseSession,
     SwitchLanguage,
     SwitchTheme,

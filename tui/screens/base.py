@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, cast
 from textual.screen import Screen
 
 from tui.actions import Acting
-from tui.actions.app import EmergencyRelease
 from tui.messages import EmergencyChanged, LanguageChanged, SessionChanged, StatusChanged
-from tui.widgets.emergency import EmergencyBanner
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.title_bar import TitleBar
 
@@ -62,7 +60,6 @@ class DeckScreen(Screen[None], Acting):
     def compose(self) -> ComposeResult:
         """Put the frame around the body."""
         yield TitleBar()
-        yield EmergencyBanner()
         yield from self.compose_body()
         yield KeyBar()
 
@@ -108,7 +105,7 @@ class DeckScreen(Screen[None], Acting):
         self.show_frame()
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """Show or hide the banner."""
+        """Say so in the title."""
         del message
         self.show_frame()
 
@@ -123,6 +120,4 @@ class DeckScreen(Screen[None], Acting):
         """Show title, session and emergency stop as they are."""
         deck = self.deck
         for bar in self.query(TitleBar):
-            bar.show(deck.tabs(self.tab), deck.state_words(), alarm=deck.is_held)
-        for banner in self.query(EmergencyBanner):
-            banner.show(deck.brake.state, deck.keys_of(EmergencyRelease)[0])
+            bar.show(deck.tabs(self.tab), deck.state_words(), deck.state_look)

@@ -6,7 +6,6 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING, ClassVar, TypeVar, cast
 
 from textual.containers import Vertical, VerticalScroll
-from textual.content import Content
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
@@ -15,6 +14,7 @@ from tui.widgets.key_bar import KeyBar
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
+    from textual.content import Content
 
     from tui.app import DeckApp
     from tui.messages import LanguageChanged
@@ -48,20 +48,16 @@ class Dialog(ModalScreen[Answer], Acting):
     def title_words(self) -> str:
         """Return the title."""
 
+    @abstractmethod
     def words(self) -> Content:
         """Return the text, as things are now."""
-        return Content("")
 
     def compose(self) -> ComposeResult:
         """Put the frame around the text."""
         with Vertical(id="dialog"):
             with VerticalScroll(id="dialog-scroll"):
-                yield from self.compose_text()
+                yield Static(id="dialog-text", markup=False)
             yield KeyBar()
-
-    def compose_text(self) -> ComposeResult:
-        """Yield what stands in the frame."""
-        yield Static(id="dialog-text", markup=False)
 
     def on_mount(self) -> None:
         """Show the text."""
@@ -75,5 +71,4 @@ class Dialog(ModalScreen[Answer], Acting):
     def redraw(self) -> None:
         """Show the text as it is now, in the language spoken now."""
         self.query_one("#dialog").border_title = self.title_words()
-        for text in self.query("#dialog-text").results(Static):
-            text.update(self.words())
+        self.query_one("#dialog-text", Static).update(self.words())

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
-from textual.containers import Horizontal
-from textual.content import Content
-from textual.widgets import Static
+from textual.screen import ModalScreen
 
-from tui.actions import Action, bindings, bound
+from tui.actions import Acting, Action, bindings, bound
 from tui.i18n import N_, _
 from tui.screens.base import DeckScreen
-from tui.screens.dialog import Dialog
+from tui.widgets.key_bar import KeyBar
+from tui.widgets.page import Entry, Page
+from tui.widgets.title_bar import TitleBar
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.binding import BindingType
     from textual.screen import Screen
 
+    from tui.app import DeckApp
     from tui.messages import LanguageChanged
 
 
@@ -37,18 +39,14 @@ class CloseHelp(Action["HelpScreen"]):
         target.dismiss()
 
 
-class HelpScreen(Dialog[None]):
+class HelpScreen(ModalScreen[None], Acting):
     """A page made of the actions themselves, so that it cannot be wrong about a key."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(CloseHelp)
     DEFAULT_CSS = """
     HelpScreen {
-        #dialog { width: 110; }
-        .help-text { height: auto; padding: 1 1 0 1; }
-        .help-heading { height: auto; padding: 1 1 0 1; color: $text-accent; text-style: bold; }
-        .help-line { height: auto; padding: 0 1; }
-        .help-keys { width: 14; height: auto; text-style: bold; }
-        .help-what { width: 1fr; height: auto; }
+        background: $background;
+        Page { padding: 0 2; }
     }
     """
 
@@ -57,42 +55,46 @@ class HelpScreen(Dialog[None]):
         super().__init__()
         self._explained = explained
 
-    async def on_language_changed(self, message: LanguageChanged) -> None:  # type: ignore[override]
+    def compose(self) -> ComposeResult:
+        """The page between title and keys."""
+        yield TitleBar()
+        yield Page()
+        yield KeyBar()
+
+    def on_mount(self) -> None:
+        """Write the page."""
+        self.redraw()
+        self.query_one(Page).focus()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
         """Write the page anew."""
-        await self.recompose()
-        super().on_language_changed(message)
+        del message
+        self.redraw()
 
-    def title_words(self) -> str:
-        """Name the page."""
-        return _("Help")
+    def redraw(self) -> None:
+        """Write the page in the language spoken now."""
+        self.query_one(TitleBar).show((), (_("Help"),))
+        self.query_one(Page).show(list(self._entries()))
 
-    def compose_text(self) -> ComposeResult:
-        """Say what the screen shows, its keys, and the keys of all screens."""
+    def _entries(self) -> Iterable[Entry]:
         screen = self._explained
         if isinstance(screen, DeckScreen) and screen.about:
-            yield Static(_(screen.about), classes="help-text", markup=False)
+            yield Entry()
+            yield Entry(_(screen.about))
         yield from self._section(_("Keys of this screen"), list(bound(screen)))
         yield from self._section(_("Keys of every screen"), list(bound(self.app)))
-        palette = self.deck.key_text(self.app.COMMAND_PALETTE_BINDING)
-        yield _line(palette, _("Palette"), _("Find anything that can be done by its name."))
-        words = _(
-            "Tab moves between panels; the mouse clicks, scrolls and selects. In a text field "
-            "letters, digits and space are typed: use Ctrl and the function keys there."
+        yield Entry()
+        yield Entry(
+            _(
+                "Tab moves between panels; the mouse clicks, scrolls and selects. In a text field "
+                "letters, digits and space are typed: use Ctrl and the function keys there."
+            )
         )
-        yield Static(words, classes="help-text", markup=False)
 
-    def _section(self, heading: str, actions: list[type[Action[Any]]]) -> ComposeResult:
+    def _section(self, heading: str, actions: list[type[Action[Any]]]) -> Iterable[Entry]:
         if actions:
-            yield Static(heading, classes="help-heading", markup=False)
+            yield Entry(name=heading)
+        app = cast("DeckApp", self.app)
         for action in actions:
-            keys = "  ".join(self.deck.keys_of(action))
-            yield _line(keys, _(action.title), _(action.tooltip))
-
-
-def _line(keys: str, title: str, tooltip: str) -> Horizontal:
-    what = Content.assemble((title, "bold"), " · ", (tooltip, "$text-muted"))
-    return Horizontal(
-        Static(keys, classes="help-keys", markup=False),
-        Static(what, classes="help-what", markup=False),
-        classes="help-line",
-    )
+            keys = "  ".join(app.keys_of(action))
+            yield Entry(_(action.tooltip), _(action.title), keys)

@@ -1,4 +1,4 @@
-"""The top line: the screens there are, which one is in front, and what runs."""
+"""The top line: the screens there are, which one is in front, and what runs or is stopped."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from textual.content import Content
 from textual.style import Style
 from textual.widget import Widget
 
+NAME = " Deck "
+
 
 class TitleBar(Widget):
-    """Screens as tabs on the left, each can be clicked; the session on the right."""
+    """Screens as tabs on the left, each can be clicked; on the right the state in words."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "title-bar--name",
@@ -20,6 +22,7 @@ class TitleBar(Widget):
         "title-bar--front",
         "title-bar--state",
         "title-bar--alarm",
+        "title-bar--stop",
     }
     DEFAULT_CSS = """
     TitleBar {
@@ -36,6 +39,13 @@ class TitleBar(Widget):
         .title-bar--front { color: $foreground; text-style: bold reverse; }
         .title-bar--state { color: $foreground; }
         .title-bar--alarm { color: #000000; background: #ffb000; text-style: bold; }
+        .title-bar--stop { color: #ffffff; background: #b00020; text-style: bold; }
+        &.-stop {
+            background: #b00020;
+            link-color: #ffffff;
+            .title-bar--name { color: #ffffff; }
+            .title-bar--tab, .title-bar--front { color: #ffffff; }
+        }
     }
     """
 
@@ -43,35 +53,56 @@ class TitleBar(Widget):
         super().__init__()
         self._tabs: tuple[tuple[str, str, bool], ...] = ()
         self._states: tuple[str, ...] = ()
-        self._alarm = False
+        self._look = "state"
 
     def show(
-        self, tabs: Sequence[tuple[str, str, bool]], states: Sequence[str], *, alarm: bool = False
+        self,
+        tabs: Sequence[tuple[str, str, bool]],
+        states: Sequence[str],
+        look: str = "state",
     ) -> None:
         """Show tabs of (text, action, in front), and of `states` the first that fits, right.
 
-        Where none fits, what can be shown of the last; `alarm` makes it stand out.
+        `look`: `state`, `alarm` or `stop`; with the last the whole line is red, and where the
+        words do not fit beside the tabs these give way.
         """
-        shown = (tuple(tabs), tuple(states), alarm)
-        if shown != (self._tabs, self._states, self._alarm):
-            self._tabs, self._states, self._alarm = shown
+        shown = (tuple(tabs), tuple(states), look)
+        if shown != (self._tabs, self._states, self._look):
+            self._tabs, self._states, self._look = shown
+            self.set_class(look == "stop", "-stop")
             self.refresh()
 
+    @property
+    def text(self) -> str:
+        """What is shown."""
+        return self.render().plain
+
     def render(self) -> Content:
-        """Draw the tabs, then what fits of the session."""
-        parts = [Content.styled(" Deck ", self.get_visual_style("title-bar--name"))]
-        for text, action, front in self._tabs:
+        """Draw the tabs, then what fits of the state."""
+        tabs, state = self._fitting()
+        left = self._left(tabs)
+        gap = " " * max(0, self.size.width - left.cell_length - cell_len(state) - 2)
+        style = self.get_visual_style(f"title-bar--{self._look}")
+        return left.append(gap).append(Content.styled(f" {state} ", style))
+
+    def _fitting(self) -> tuple[Sequence[tuple[str, str, bool]], str]:
+        """Return the tabs that are shown, and the state as long as there is room for it."""
+        alone = self.size.width - cell_len(NAME) - 3
+        room = alone - sum(cell_len(text) + 2 for text, _action, _front in self._tabs)
+        for state in self._states:
+            if cell_len(state) <= room:
+                return self._tabs, state
+            if cell_len(state) <= alone and self._look == "stop":
+                return (), state
+        return self._tabs, _cut(self._states[-1], room) if self._states else ""
+
+    def _left(self, tabs: Sequence[tuple[str, str, bool]]) -> Content:
+        parts = [Content.styled(NAME, self.get_visual_style("title-bar--name"))]
+        for text, action, front in tabs:
             style = self.get_visual_style("title-bar--front" if front else "title-bar--tab")
             click = Style.from_meta({"@click": action})
             parts.append(Content.styled(f" {text} ", style + click))
-        left = Content("").join(parts)
-        room = self.size.width - left.cell_length
-        state = next((text for text in self._states if cell_len(text) + 3 <= room), "")
-        if self._states and not state:
-            state = _cut(self._states[-1], room - 3)
-        gap = " " * max(0, room - cell_len(state) - 2)
-        style = self.get_visual_style("title-bar--alarm" if self._alarm else "title-bar--state")
-        return left.append(gap).append(Content.styled(f" {state} ", style))
+        return Content("").join(parts)
 
 
 def _cut(text: str, room: int) -> str:
