@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from rich.cells import cell_len
-from rich.segment import Segment
 from textual.binding import Binding, BindingType
 from textual.geometry import Region, Size
 from textual.message import Message
-from textual.scroll_view import ScrollView
-from textual.strip import Strip
 
 from tui.widgets.echo_lines import EchoLine, echo_lines
-from tui.widgets.words import cut, word_strips
+from tui.widgets.echo_rows import EchoRows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,12 +19,10 @@ if TYPE_CHECKING:
     from graph.data import Value
     from tui.widgets.echo_lines import Path
 
-OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "
-INDENT = 2
 HUGE_JUMP = 1_000_000
 
 
-class EchoTree(ScrollView, can_focus=True):
+class EchoTree(EchoRows):
     """Shows a message as a tree, or words where there is none.
 
     What is folded belongs to the topic and outlives its messages. While it is paused it keeps
@@ -42,27 +36,6 @@ class EchoTree(ScrollView, can_focus=True):
             super().__init__()
             self.paused = paused
 
-    ALLOW_SELECT = False
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "echo-tree--key",
-        "echo-tree--number",
-        "echo-tree--text",
-        "echo-tree--bytes",
-        "echo-tree--note",
-        "echo-tree--cursor",
-    }
-    DEFAULT_CSS = """
-    EchoTree {
-        width: 1fr; height: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
-        &> .echo-tree--key { color: $text-primary; }
-        &> .echo-tree--text { color: $text-success; }
-        &> .echo-tree--bytes { color: $text-warning; }
-        &> .echo-tree--note { color: $text-muted; text-style: italic; }
-        &> .echo-tree--cursor {
-            color: $block-cursor-foreground; background: $block-cursor-background;
-        }
-    }
-    """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up,k", "move(-1)", show=False),
         Binding("down,j", "move(1)", show=False),
@@ -82,10 +55,7 @@ class EchoTree(ScrollView, can_focus=True):
         self._waiting: Mapping[str, Value] | None = None
         """What came while it was paused."""
         self._folds: dict[str, dict[Path, bool]] = {}
-        self._lines: list[EchoLine] = []
-        self._cursor = 0
         self._paused = False
-        self._words = ("", "")
 
     def show(self, topic: str, message: Mapping[str, Value]) -> None:
         """Show a message of a topic; another topic ends a pause."""
@@ -139,22 +109,6 @@ class EchoTree(ScrollView, can_focus=True):
         self._flatten()
         self.refresh()
 
-    def render_line(self, y: int) -> Strip:
-        """One line of the tree, or of the words."""
-        width = self.scrollable_size.width
-        if self._message is None:
-            strips = word_strips(self._words, width, self.rich_style, self.app.console)
-            return strips[y] if y < len(strips) else Strip.blank(width, self.rich_style)
-        index = y + self.scroll_offset.y
-        if index >= len(self._lines):
-            return Strip.blank(width, self.rich_style)
-        line = self._lines[index]
-        segments = self._segments(line)
-        if index == self._cursor and self.has_focus:
-            cursor = self.get_component_rich_style("echo-tree--cursor")
-            return cut([Segment(text, cursor) for text, _, _ in segments], width, cursor)
-        return cut(segments, width, self.rich_style)
-
     def action_move(self, by: int) -> None:
         """Move the cursor."""
         self._move_to(self._cursor + by)
@@ -196,18 +150,6 @@ class EchoTree(ScrollView, can_focus=True):
             self._move_to(index)
             self.action_toggle_fold()
 
-    def on_resize(self) -> None:
-        """Draw again at the new width."""
-        self.refresh()
-
-    def on_focus(self) -> None:
-        """Draw the cursor as that of the focused widget."""
-        self.refresh_line(self._cursor)
-
-    def on_blur(self) -> None:
-        """Draw the cursor as that of a widget in the background."""
-        self.refresh_line(self._cursor)
-
     def _begin(self, topic: str) -> None:
         self._topic = topic
         self._message = self._waiting = None
@@ -231,14 +173,6 @@ class EchoTree(ScrollView, can_focus=True):
         for index in range(top, min(top + self.size.height, len(self._lines))):
             self._refresh_difference(index, before[index], self._lines[index])
 
-    def _refresh_difference(self, index: int, before: EchoLine, after: EchoLine) -> None:
-        if before is after or before == after:
-            return
-        same = _same_cells(_line_text(before), _line_text(after))
-        width = self.scrollable_size.width
-        if same < width:
-            self.refresh(Region(same, index - self.scroll_offset.y, width - same, 1))
-
     def _find(self, path: Path | None) -> int:
         for index, line in enumerate(self._lines):
             if line.path == path:
@@ -259,34 +193,3 @@ class EchoTree(ScrollView, can_focus=True):
             self._cursor = index
             self.refresh_line(index)
         self.scroll_to_region(Region(0, index, 1, 1), animate=False, immediate=True)
-
-    def _segments(self, line: EchoLine) -> list[Segment]:
-        base = self.rich_style
-        key = base + self.get_component_rich_style("echo-tree--key", partial=True)
-        kind = base
-        if line.kind not in ("branch", "number"):
-            kind = base + self.get_component_rich_style(f"echo-tree--{line.kind}", partial=True)
-        elif line.kind == "branch":
-            kind = base + self.get_component_rich_style("echo-tree--note", partial=True)
-        return [
-            Segment(_margin(line), base),
-            Segment(f"{line.label} " if line.label else "", key),
-            Segment(line.text, kind),
-        ]
-
-
-def _same_cells(before: str, after: str) -> int:
-    """Cells at the beginning that two lines have in common."""
-    for index, (old, new) in enumerate(zip(before, after, strict=False)):
-        if old != new:
-            return cell_len(after[:index])
-    return cell_len(after[: len(before)])
-
-
-def _margin(line: EchoLine) -> str:
-    mark = LEAF if line.open is None else OPEN if line.open else CLOSED
-    return " " * (INDENT * line.depth) + mark
-
-
-def _line_text(line: EchoLine) -> str:
-    return f"{_margin(line)}{line.label} {line.text}" if line.label else _margin(line) + line.text
