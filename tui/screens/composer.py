@@ -120,20 +120,18 @@ class ComposerScreen(DeckScreen):
 
     def on_mount(self) -> None:
         """Begin in the editor."""
-        super().on_mount()
         self.editor.focus()
         self.check()
         self._say()
 
     def on_screen_resume(self) -> None:
         """Let the first message go out at once when its time comes."""
-        super().on_screen_resume()
         if self.feed.graph is not None:
             self.feed.graph.prepare_publisher(SENT_TO, TYPE)
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget what belongs to another session."""
-        super().on_session_changed(message)
+        del message
         self._story, self._listener = None, None
         self._newest.clear()
         if self.is_current and self.feed.graph is not None:
@@ -152,7 +150,7 @@ class ComposerScreen(DeckScreen):
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Say everything anew."""
-        super().on_language_changed(message)
+        del message
         self.verdict.relabel()
         self._say()
 

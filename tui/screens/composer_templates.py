@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.binding import Binding, BindingType
-from textual.widgets import OptionList
+from textual.containers import Vertical
+from textual.content import Content
+from textual.widgets import OptionList, Static
 
 from tui.i18n import _
 from tui.screens.dialog import Dialog
@@ -22,19 +24,25 @@ class TemplatesDialog(Dialog[str | None]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False)]
     DEFAULT_CSS: ClassVar[str] = """
     TemplatesDialog OptionList { height: auto; background: $surface; }
+    TemplatesDialog #dialog-text { padding: 1 0 0 0; color: $text-muted; }
     """
 
     def title_words(self) -> str:
         """Return the title."""
-        return _("Templates: Enter takes one, Escape leaves")
+        return _("Templates")
 
-    def compose_text(self) -> ComposeResult:
-        """Yield the list."""
-        yield OptionList(*(_(one.title) for one in TEMPLATES), markup=False, compact=True)
+    def words(self) -> Content:
+        """Return what the keys do."""
+        return Content(_("Enter takes one, Escape leaves"))
+
+    def compose(self) -> ComposeResult:
+        """Put the frame around the list."""
+        with Vertical(id="dialog"):
+            yield OptionList(*(_(one.title) for one in TEMPLATES), markup=False, compact=True)
+            yield Static(id="dialog-text", markup=False)
 
     def on_mount(self) -> None:
         """Begin in the list."""
-        super().on_mount()
         self.query_one(OptionList).focus()
 
     def action_leave(self) -> None:

@@ -117,14 +117,14 @@ class TopicsScreen(DeckScreen):
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget the topics of a session that has ended."""
-        super().on_session_changed(message)
+        del message
         if self.feed.link is None:
             self.table.show(())
             self._label()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Say everything anew."""
-        super().on_language_changed(message)
+        del message
         self._label()
         self.detail.relabel()
 
