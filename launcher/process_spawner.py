@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from launcher.spawn_server_start import SpawnServerHandle, start_spawn_server
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 MAX_QUICK_DEATHS = 3
 """After so many spawn servers that answered nothing, the next one is cold: it imports nothing."""
@@ -57,6 +57,7 @@ class Spawner:
         self._quick_deaths = 0
         self._groups: set[int] = set()
         self._closed = False
+        self._packages: list[str] = []
         self._listen()
 
     @property
@@ -99,6 +100,16 @@ class Spawner:
             self._groups.discard(pid)
             with contextlib.suppress(OSError):
                 await self._send(json.dumps({"kind": "forget", "groups": [pid]}).encode(), ())
+
+    def preload(self, packages: Iterable[str]) -> None:
+        """Have these packages' shared modules imported ahead, before the first node of theirs."""
+        self._packages = sorted(packages)
+        self._tell_packages()
+
+    def _tell_packages(self) -> None:
+        if self._packages and self._warm:
+            message = {"kind": "preload", "packages": self._packages}
+            self._server.link.send(json.dumps(message).encode())
 
     def go_cold(self) -> None:
         """Replace the server by one that imports nothing: no node of this run needs it warm."""
@@ -177,4 +188,5 @@ class Spawner:
         if self._groups:
             adopt = json.dumps({"kind": "adopt", "groups": sorted(self._groups)})
             self._server.link.send(adopt.encode())
+        self._tell_packages()
         self._listen()

@@ -80,6 +80,9 @@ class SpawnServer:
         if request["kind"] == "adopt":
             self.groups.update(request["groups"])
             return None
+        if request["kind"] == "preload":
+            self._preload.also(request["packages"])
+            return None
         if request["kind"] == "dismiss":
             os._exit(0)
         if request["kind"] == "forget":
@@ -91,7 +94,7 @@ class SpawnServer:
         return self._fork(request, fds)
 
     def _fork(self, request: dict[str, Any], fds: list[int]) -> Callable[[], None] | None:
-        birth = Birth.from_request(request, fds, self._supervisor, self._preload.broken)
+        birth = Birth.from_request(request, fds, self._supervisor, self._preload)
         try:
             pid = os.fork()
         except OSError as problem:

@@ -20,6 +20,9 @@ from launcher.process_ties import die_with_parent
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from launcher.spawn_server_shared import SharedModules
+    from launcher.spawn_server_warm import Preload
+
 NOT_EXECUTABLE = 126
 NOT_FOUND = 127
 """Exit codes as a shell gives them."""
@@ -41,14 +44,16 @@ class Birth:
     fds: tuple[int, ...]
     """Stdout and stderr, or stdin, stdout and stderr."""
     supervisor: int
+    shared: SharedModules
+    """What was imported of the project's own modules."""
 
     @classmethod
     def from_request(
-        cls, request: dict[str, Any], fds: list[int], supervisor: int, broken: str
+        cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload
     ) -> Birth:
-        """Read a request; where the imports failed, `broken` says how, modules start cold."""
+        """Read a request; where the imports have failed, modules start cold."""
         kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
-        if kind == "module" and broken:
+        if kind == "module" and preload.broken:
             kind, argv = "exec", (sys.executable, "-m", *argv)
         return cls(
             kind=kind,
@@ -59,6 +64,7 @@ class Birth:
             cwd=request["cwd"],
             fds=tuple(fds),
             supervisor=supervisor,
+            shared=preload.shared,
         )
 
 
@@ -83,7 +89,7 @@ def become(birth: Birth) -> None:
 
         probe(birth.argv)
     else:
-        _run_module(birth.argv)
+        _run_module(birth.argv, birth.shared)
 
 
 def _reset_signals() -> None:
@@ -147,7 +153,7 @@ def _unbuffered(fd: int) -> io.TextIOWrapper:
     )
 
 
-def _run_module(argv: tuple[str, ...]) -> None:
+def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
     """Do what `python -m` does."""
     # Python's own defaults at start, undone by `_reset_signals`.
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -164,6 +170,7 @@ def _run_module(argv: tuple[str, ...]) -> None:
     ]
     sys.excepthook = _report
     importlib.invalidate_caches()
+    shared.renew()
     if "numpy.random" in sys.modules:
         # `random` reseeds itself after a fork, numpy's old global generator does not.
         sys.modules["numpy.random"].seed()

@@ -11,10 +11,13 @@ import gc
 import importlib
 import os
 import warnings
+from itertools import chain
 from typing import TYPE_CHECKING
 
+from launcher.spawn_server_shared import SharedModules
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 _FIRST = ("rclpy", "rclpy.node", "rclpy.executors", "rclpy.action", "rclpy.signals")
 _INTERFACES = (
@@ -44,7 +47,14 @@ class Preload:
         self.done = cold
         self.broken = "" if not cold else "cold"
         """Why warm nodes cannot be forked; empty if they can."""
-        self._steps = self._all_steps()
+        self.shared = SharedModules()
+        self._steps: Iterator[str] = self._all_steps()
+
+    def also(self, packages: Iterable[str]) -> None:
+        """Import then what these packages name."""
+        if not self.broken:
+            self._steps = chain(self._steps, self._shared_steps(packages))
+            self.done = False
 
     def step(self) -> None:
         """Import the next thing, if there is one."""
@@ -67,10 +77,20 @@ class Preload:
                 _load_types(name)
             yield name
         # The libraries below rclpy have threads of their own, which a node does not miss.
-        warnings.filterwarnings("ignore", message=".*multi-threaded.*fork", append=False)
-        gc.collect()
-        gc.freeze()
-        yield "frozen"
+        warnings.filterwarnings("ignore", message=".*multi-threaded.*fork")
+        yield _freeze()
+
+    def _shared_steps(self, packages: Iterable[str]) -> Iterator[str]:
+        for package in packages:
+            yield from self.shared.load(package)
+        yield _freeze()
+
+
+def _freeze() -> str:
+    """Keep the garbage collector's hands, and with them its marks, off all there is."""
+    gc.collect()
+    gc.freeze()
+    return "frozen"
 
 
 def _load_types(module_name: str) -> None:

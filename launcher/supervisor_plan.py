@@ -77,6 +77,12 @@ class Plan:
         """Whether anything is to be forked warm."""
         return any(node.module for node in self.nodes)
 
+    @property
+    def packages(self) -> set[str]:
+        """The packages of the modules that are to be forked warm."""
+        modules = (node.module[0] for node in self.nodes if node.module)
+        return {module.rpartition(".")[0] for module in modules} - {""}
+
     def to_json(self) -> str:
         """Return it as one line."""
         return json.dumps(asdict(self))

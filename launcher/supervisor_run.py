@@ -125,6 +125,7 @@ class Supervisor:
         self._spawner = Spawner(self.info.run_id, spawn_server, self._spawn_server_died)
         if not plan.warm:
             self._spawner.go_cold()
+        self._spawner.preload(plan.packages)
         self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
         self.control = ControlServer(self)
         self._book = LogBook(

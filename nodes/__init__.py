@@ -19,6 +19,9 @@ def _leave(_number: int, _frame: FrameType | None) -> None:
     os._exit(0)
 
 
+__preload__ = ("_life", "_node", "_parameters", "_speech", "_topics")
+"""What nearly every node imports: the launcher's spawn server may import it ahead for all."""
+
 if sys.argv[0] == "-m":
     # `python -m nodes.x` is importing this package on its way to the node. A Ctrl-C that comes
     # while rclpy loads finds nothing to clean up, and should not leave a traceback behind.

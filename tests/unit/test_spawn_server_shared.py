@@ -1,0 +1,85 @@
+"""Modules imported ahead are those that a node would import itself, edits included."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from launcher.spawn_server_shared import SharedModules
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+PACKAGE = "some_lesson_nodes"
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    folder = tmp_path / PACKAGE
+    folder.mkdir()
+    (folder / "__init__.py").write_text("__preload__ = ('_shared', '_broken')\nRUNS = []\n")
+    (folder / "_shared.py").write_text("VALUE = 'before'\n")
+    (folder / "_broken.py").write_text("raise RuntimeError\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    yield folder
+    for name in [name for name in sys.modules if name.startswith(PACKAGE)]:
+        del sys.modules[name]
+
+
+def value() -> str:
+    return str(importlib.import_module(f"{PACKAGE}._shared").VALUE)
+
+
+@pytest.mark.usefixtures("package")
+def test_what_is_as_it_was_is_kept() -> None:
+    shared = SharedModules()
+    assert list(shared.load(PACKAGE)) == ["_shared"]
+    loaded = sys.modules[f"{PACKAGE}._shared"]
+    shared.renew()
+    assert sys.modules[f"{PACKAGE}._shared"] is loaded
+    assert sys.modules[PACKAGE]._shared is loaded
+
+
+def test_what_was_edited_is_imported_anew(package: Path) -> None:
+    shared = SharedModules()
+    list(shared.load(PACKAGE))
+    (package / "_shared.py").write_text("VALUE = 'afterwards'\n")
+    importlib.invalidate_caches()
+    shared.renew()
+    assert value() == "afterwards"
+
+
+def test_an_edit_of_the_same_length_is_seen_by_its_time(package: Path) -> None:
+    shared = SharedModules()
+    list(shared.load(PACKAGE))
+    (package / "_shared.py").write_text("VALUE = 'behind'\n")
+    os.utime(package / "_shared.py", ns=(1, 1))
+    importlib.invalidate_caches()
+    shared.renew()
+    assert value() == "behind"
+
+
+@pytest.mark.usefixtures("package")
+def test_a_node_whose_path_leads_elsewhere_gets_what_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shared = SharedModules()
+    list(shared.load(PACKAGE))
+    mine = tmp_path / "mine" / PACKAGE
+    mine.mkdir(parents=True)
+    (mine / "__init__.py").write_text("")
+    (mine / "_shared.py").write_text("VALUE = 'mine'\n")
+    monkeypatch.syspath_prepend(str(tmp_path / "mine"))
+    shared.renew()
+    assert value() == "mine"
+
+
+def test_a_package_that_is_not_there_is_no_trouble() -> None:
+    shared = SharedModules()
+    assert list(shared.load("no_such_package_of_nodes")) == []
+    shared.renew()
