@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from graph.memory import keep_room_for_large_messages
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -58,6 +60,7 @@ def open_ros(domain: int, discovery: str | tuple[str, ...]) -> Ros:
     from rclpy.node import Node
     from rclpy.parameter import Parameter
 
+    keep_room_for_large_messages()
     context = Context()
     silent = Parameter("start_type_description_service", value=False)
     with _environment(_discovery(discovery) | _announcing()):

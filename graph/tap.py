@@ -7,10 +7,10 @@ from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from graph.data import Sample
+from graph.decoding import decoder
 from graph.qos import Qos, profile
 from graph.rates import Arrival, RateMeter
 from graph.types import load_message
-from graph.values import to_tree
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -60,6 +60,7 @@ class Tap:
         self.broken = ""
         """Why the newest message could not be decoded."""
         self._cls = load_message(type_name)
+        self._decode = decoder(type_name)
         self._node = node
         self._last: tuple[bytes, float] | None = None
         self._numbered = True
@@ -132,10 +133,8 @@ class Tap:
         return batch, kept
 
     def _sample(self, raw: bytes, stamp_s: float, now_s: float) -> Sample | None:
-        from rclpy.serialization import deserialize_message
-
         try:
-            value = to_tree(deserialize_message(raw, self._cls))
+            value = self._decode(raw)
         except Exception as error:  # noqa: BLE001
             # Whatever a stranger publishes under this name must not end the observer.
             self.broken = f"a message of {self.type_name} cannot be decoded: {error}"

@@ -20,12 +20,12 @@ from tests.waiting import wait_until
 ROOT = Path(__file__).parents[2]
 
 
-def run(program: str, domain: int) -> subprocess.CompletedProcess[str]:
+def run(program: str, domain: int, **env: str) -> subprocess.CompletedProcess[str]:
     """Run a small program in a process of its own."""
     return subprocess.run(
         [sys.executable, "-c", program],
         cwd=ROOT,
-        env={**os.environ, "ROS_DOMAIN_ID": str(domain)},
+        env={**os.environ, "ROS_DOMAIN_ID": str(domain), **env},
         capture_output=True,
         text=True,
         timeout=50,
@@ -65,14 +65,16 @@ assert seen.wait(30)
     ],
     ids=["stopped", "forgotten", "exit"],
 )
-def test_it_prints_nothing_and_ends_cleanly(ros_domain: int, end: str) -> None:
+def test_it_writes_nothing_and_ends_cleanly(ros_domain: int, end: str, tmp_path: Path) -> None:
     peer = Peer("talker", ros_domain)
     peer.advertise("/a", type_name="std_msgs/msg/String")
-    done = run(WORKING.format(domain=ros_domain, end=end), ros_domain)
+    logs = tmp_path / "logs-of-ros"
+    done = run(WORKING.format(domain=ros_domain, end=end), ros_domain, ROS_LOG_DIR=str(logs))
     peer.close()
     assert done.stderr == ""
     assert done.stdout.strip() == "the observer has been stopped"
     assert done.returncode == 0
+    assert not logs.exists()
 
 
 def test_its_node_leaves_the_graph_when_it_stops(ros_domain: int) -> None:

@@ -241,3 +241,16 @@ def test_the_lists_of_nodes_and_services_leave_out_deck_itself(
     assert [row.name for row in watcher.update.topics] == sorted(
         row.name for row in watcher.update.topics
     )
+
+
+def test_a_topic_that_only_deck_publishes_has_no_publisher_to_be_shown(
+    peer: Peer, watcher: Watcher
+) -> None:
+    peer.listen("/from_deck", type_name=STRING)
+    watcher.observer.follow(["/from_deck"])
+    watcher.wait_for("/from_deck", lambda row: row.measured, "is listened to")
+    watcher.observer.publish("/from_deck", STRING, {"data": "x"}).result(20)
+    wait_until(lambda: watcher.of("/from_deck") == ["x"], "Deck hears itself")
+    row = watcher.wait_for("/from_deck", lambda row: row.trouble is None, "no trouble")
+    assert (row.publishers, row.subscribers) == (0, 1)
+    assert row.published_by == ()

@@ -1,0 +1,25 @@
+"""How the C library keeps memory: pictures come ten times a second and are let go at once."""
+
+from __future__ import annotations
+
+import ctypes
+
+M_TRIM_THRESHOLD = -1
+M_MMAP_THRESHOLD = -3
+"""Source: `malloc.h` of glibc, mallopt(3)."""
+LARGEST_BYTES = 4_000_000
+KEPT_BYTES = 2 * LARGEST_BYTES
+
+
+def keep_room_for_large_messages() -> None:
+    """Let the C library keep a few megabytes in place of giving them back after each message.
+
+    Else every picture of 640x480 is some 400 page faults, two thirds of what it costs to take it
+    (measured: 1.6 ms against 0.5 ms). Does nothing where the C library is not glibc.
+    """
+    try:
+        mallopt = ctypes.CDLL(None).mallopt
+    except (AttributeError, OSError):
+        return
+    mallopt(M_MMAP_THRESHOLD, LARGEST_BYTES)
+    mallopt(M_TRIM_THRESHOLD, KEPT_BYTES)
