@@ -158,13 +158,20 @@ class Observer:
         interest = self._interest
         while not self._stopping:
             self._carry_out_orders(station)
-            under_way = station.step()
-            now_s = time.monotonic()
-            if now_s >= next_look_s or self._interest is not interest:
-                interest = self._interest
-                self._look(station, interest, on_update)
-                period_s = LOOK_AT_GRAPH_S if station.is_idle else self._period_s
-                next_look_s = max(now_s, next_look_s + period_s)
+            try:
+                under_way = station.step()
+                now_s = time.monotonic()
+                if now_s >= next_look_s or self._interest is not interest:
+                    interest = self._interest
+                    period_s = LOOK_AT_GRAPH_S if station.is_idle else self._period_s
+                    next_look_s = max(now_s, next_look_s + period_s)
+                    self._look(station, interest, on_update)
+            except Exception as error:
+                # The graph is in motion while it is looked at: the next look has another chance.
+                logger.exception("a look at the graph failed")
+                error_update = GraphUpdate(time.time(), error=f"the ROS graph: {error}")
+                self._tell(on_update, error_update)
+                next_look_s, under_way = time.monotonic() + LOOK_AT_GRAPH_S, False
             wait_s = next_look_s - time.monotonic()
             if self._wake.wait(max(0.0, min(wait_s, PENDING_S) if under_way else wait_s)):
                 self._wake.clear()
@@ -172,12 +179,7 @@ class Observer:
     def _look(
         self, station: Station, interest: Interest, on_update: Callable[[GraphUpdate], None]
     ) -> None:
-        try:
-            update = station.look(interest)
-        except Exception as error:
-            # The graph is in motion while it is looked at; the next look has another chance.
-            logger.exception("a look at the graph failed")
-            update = GraphUpdate(time.time(), error=f"the ROS graph cannot be read: {error}")
+        update = station.look(interest)
         if update is not None:
             self._tell(on_update, update)
 

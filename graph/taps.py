@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from collections import Counter
 from dataclasses import replace
@@ -10,17 +9,15 @@ from typing import TYPE_CHECKING
 
 from graph.data import Sample, TopicRow, Trouble
 from graph.interest import Interest
-from graph.qos import TRANSIENT_LOCAL, to_hear
+from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
 from graph.rates import QUIET_S
 from graph.scan import Scan, TopicEnds
 from graph.tap import FOLLOWED, Tap, first_depth
 from graph.troubles import Finding, quiet, structural
-from graph.types import UnknownTypeError, load_message
+from graph.types import UnknownTypeError
 
 if TYPE_CHECKING:
     from rclpy.node import Node
-
-logger = logging.getLogger(__name__)
 
 
 class Taps:
@@ -29,6 +26,7 @@ class Taps:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._taps: dict[str, Tap] = {}
+        self._refused: dict[tuple[str, str, Qos], UnknownTypeError] = {}
         self._rows: dict[str, TopicRow] = {}
         """What is known without a message, by topic."""
         self._scan = Scan()
@@ -107,29 +105,29 @@ class Taps:
         if tap and not heard:
             tap.since_s = time.time()
             return None
-        try:
-            load_message(_type_to_show(ends))
-            self._open(topic, ends)
-        except UnknownTypeError as error:
-            self._close(topic)
-            return error
-        except Exception:
-            # Fast DDS refuses two types under one name in one process, for one.
-            self._close(topic)
-            logger.exception("no subscription to %s", topic)
-        return None
+        return self._open(topic, ends)
 
-    def _open(self, topic: str, ends: TopicEnds) -> None:
+    def _open(self, topic: str, ends: TopicEnds) -> UnknownTypeError | None:
         type_name, qos = _type_to_show(ends), to_hear(ends.everyone_publishing)
         depth, meter = first_depth(type_name), None
         tap = self._taps.get(topic)
         if tap and tap.type_name == type_name:
             depth = tap.better_depth(one_publisher=self._one_publisher(topic))
             if tap.qos == qos and tap.depth == depth:
-                return
+                return None
             meter = tap.meter
         self._close(topic)
-        self._taps[topic] = Tap(self._node, topic, type_name, qos, depth, meter)
+        key = (topic, type_name, qos)
+        if key not in self._refused:
+            # Asked twice, rcl would write its complaint on the terminal twice.
+            try:
+                self._taps[topic] = Tap(self._node, topic, type_name, qos, depth, meter)
+            except UnknownTypeError as error:
+                self._refused[key] = error
+            except Exception as error:  # noqa: BLE001 - a second type under one name, for one
+                reason = f"{topic} cannot be subscribed as {type_name}: {error}"
+                self._refused[key] = UnknownTypeError(type_name, type_name.split("/")[0], reason)
+        return self._refused.get(key)
 
     def _close(self, topic: str) -> None:
         tap = self._taps.pop(topic, None)

@@ -171,13 +171,13 @@ def test_a_type_that_is_not_installed_is_shown_as_such(
     for module in [name for name in sys.modules if name.split(".")[0] == "nav_msgs"]:
         monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, "nav_msgs", None)
-    peer.advertise("/odom", type_name="nav_msgs/msg/Odometry")
+    peer.advertise("/strange", type_name="nav_msgs/msg/Odometry")
     peer.advertise("/known", type_name=FLOAT, durability="transient_local")
     peer.publish("/known", value={"data": 7.0})
-    watcher.observer.watch(["/odom", "/known"])
-    row = watcher.wait_for("/odom", lambda row: row.trouble is Trouble.UNKNOWN_TYPE, "unknown")
+    watcher.observer.watch(["/strange", "/known"])
+    row = watcher.wait_for("/strange", lambda row: row.trouble is Trouble.UNKNOWN_TYPE, "unknown")
     assert row.facts["package"] == "nav_msgs"
-    assert "ros-jazzy-nav-msgs" in row.detail
+    assert row.detail.startswith("package nav_msgs is not installed: 'apt install ros-jazzy-nav")
     assert not row.measured
     wait_until(lambda: watcher.of("/known") == [7.0], "the other topic is not harmed")
 
@@ -254,3 +254,19 @@ def test_a_topic_that_only_deck_publishes_has_no_publisher_to_be_shown(
     row = watcher.wait_for("/from_deck", lambda row: row.trouble is None, "no trouble")
     assert (row.publishers, row.subscribers) == (0, 1)
     assert row.published_by == ()
+
+
+def test_a_topic_that_deck_cannot_subscribe_says_so_and_harms_no_other(
+    peer: Peer, watcher: Watcher
+) -> None:
+    """Fast DDS knows one type a topic in one process, and Deck publishes another one here."""
+    watcher.observer.publish("/clash", STRING, {"data": "x"}).result(20)
+    for topic in ("/clash", "/no_clash"):
+        peer.advertise(topic, type_name=FLOAT)
+        peer.repeat(topic, value={"data": 1.0}, hz=20)
+    watcher.observer.watch(["/clash", "/no_clash"])
+    row = watcher.wait_for(
+        "/clash", lambda row: row.trouble is Trouble.UNKNOWN_TYPE, "cannot be subscribed"
+    )
+    assert f"/clash cannot be subscribed as {FLOAT}" in row.detail
+    wait_until(lambda: watcher.of("/no_clash"), "the other topic")
