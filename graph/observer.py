@@ -78,7 +78,9 @@ class Observer:
         self._stopping = True
         self._wake.set()
         atexit.unregister(self.stop)
-        if self._thread is not None and self._thread is not threading.current_thread():
+        if self._thread is None:
+            self._refuse_orders(ObserverError("the observer was never started"))
+        elif self._thread is not threading.current_thread():
             self._thread.join(STOP_WITHIN_S)
 
     def watch(self, topics: Iterable[str]) -> None:

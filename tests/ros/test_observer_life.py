@@ -12,8 +12,10 @@ from pathlib import Path
 import pytest
 
 from graph.data import GraphUpdate
+from graph.interest import Interest
 from graph.observer import Observer
 from graph.orders import ObserverError
+from graph.station import Station
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 
@@ -43,6 +45,7 @@ def test_importing_the_room_imports_neither_rclpy_nor_numpy(ros_domain: int) -> 
 
 WORKING = """
 import sys, threading, time
+from graph.interest import Interest
 from graph.observer import Observer
 seen = threading.Event()
 observer = Observer({domain})
@@ -155,3 +158,44 @@ def test_a_screen_that_fails_to_take_an_update_gets_the_next(ros_domain: int) ->
     wait_until(lambda: len(taken) > 3, "more updates")
     observer.stop()
     peer.close()
+
+
+def test_one_look_that_fails_is_told_and_the_next_has_another_chance(
+    ros_domain: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    look, failures = Station.look, [RuntimeError("the node went"), RuntimeError("and another")]
+
+    def failing(station: Station, interest: Interest) -> GraphUpdate | None:
+        if failures:
+            raise failures.pop()
+        return look(station, interest)
+
+    monkeypatch.setattr(Station, "look", failing)
+    updates: list[GraphUpdate] = []
+    peer, observer = Peer("talker", ros_domain), Observer(ros_domain)
+    observer.start(updates.append)
+    wait_until(lambda: any(u.nodes for u in updates), "the graph")
+    assert [u.error for u in updates[:2]] == [
+        "the ROS graph: and another",
+        "the ROS graph: the node went",
+    ]
+    assert updates[-1].error == ""
+    observer.stop()
+    peer.close()
+
+
+def test_peers_named_by_their_address_are_found(ros_domain: int) -> None:
+    peer, updates = Peer("talker", ros_domain), []
+    observer = Observer(ros_domain, ("127.0.0.1",))
+    observer.start(updates.append)
+    wait_until(lambda: any(u.nodes for u in updates), "the graph")
+    observer.stop()
+    peer.close()
+
+
+def test_one_that_is_stopped_before_it_was_started_refuses_what_it_was_asked_for() -> None:
+    observer = Observer(1)
+    future = observer.publish("/x", "std_msgs/msg/String", {"data": "x"})
+    observer.stop()
+    with pytest.raises(ObserverError, match="never started"):
+        future.result(1)
