@@ -156,6 +156,7 @@ def test_a_command_that_is_not_renewed_becomes_a_stop(peer: Peer, ros_domain: in
     params: dict[str, object] = {"max_age_s": 0.3, "rate": 20}
     with NodeProcess("nodes.electronic_differential", ros_domain, params=params) as node:
         heard = peer.hear("/wheel_commands", JointState)
+        wait_until(lambda: heard, "standing wheels, before they turn for a moment")
         peer.say("/drive", drive(0.3))
         wait_until(lambda: any(rims(m)[0] > 0 for m in heard), "moving wheels")
         wait_for_rims(heard, 0.0, 0.0)
