@@ -35,9 +35,7 @@ class NodeState(str, Enum):
         return self in _ALIVE
 
 
-_ALIVE = frozenset(
-    {NodeState.STARTING, NodeState.READY, NodeState.RUNNING, NodeState.STOPPING}
-)
+_ALIVE = frozenset({NodeState.STARTING, NodeState.READY, NodeState.RUNNING, NodeState.STOPPING})
 
 
 class Severity(str, Enum):
