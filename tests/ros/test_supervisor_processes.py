@@ -121,7 +121,7 @@ async def test_how_a_node_ended_is_told(
 async def test_a_command_that_does_not_exist_fails_at_once(start: Launch) -> None:
     client = await start({"node": {"exec": ["no-such-program-1"], "restart": "always"}})
     status = await until_state(client, "node", NodeState.FAILED)
-    assert status.detail == "exit code 127: deck: command not found: no-such-program-1"
+    assert status.detail == "no-such-program-1 is not installed"
 
 
 async def test_a_killed_node_returns(start: Launch) -> None:
