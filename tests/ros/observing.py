@@ -123,7 +123,3 @@ def let_updates_come(watcher: Watcher, count: int) -> None:
     """Wait until so many more updates have come: what would have shown up has had its time."""
     goal = watcher.updates + count
     wait_until(lambda: watcher.updates >= goal, f"{count} more updates")
-
-
-def seconds(since_s: float) -> float:
-    return time.monotonic() - since_s
