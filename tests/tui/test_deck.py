@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from textual.events import Key
 from textual.pilot import Pilot
 from textual.widgets import Input
 
@@ -31,6 +32,7 @@ from tui.panels.shelf import Shelf
 from tui.panels.sonar import SonarFeed
 from tui.panels.wheels import WheelsFeed
 from tui.screens.deck import LessonDeck
+from tui.widgets.command_line import CommandLine
 from tui.widgets.image_view import ImageView
 from tui.widgets.nodes_table import NodesTable, duration
 from tui.widgets.sonar import SonarPanel
@@ -269,6 +271,14 @@ async def test_a_command_is_written_and_published() -> None:
         assert pad.graph.published == [sent]
         await pilot.press("escape")
         assert not isinstance(app.focused, Input)
+
+
+async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_field() -> None:
+    async with opened() as (app, pilot):
+        for key in "cleft":
+            app.post_message(Key(key, key))
+        await pilot.pause()
+        assert app.screen.query_one(CommandLine).field.value == "left"
 
 
 async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from textual.events import Key
 from textual.pilot import Pilot
 
 from launcher.events import LogEvent
@@ -14,6 +15,7 @@ from launcher.status import Severity
 from tests.tui.recorded import LINES, RecordedPad, RecordedSession, line
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
 from tui.screens.logs import LogsScreen
+from tui.widgets.key_bar import KeyBar
 from tui.widgets.log_view_bar import LogBar
 
 HOME = Look((120, 40), "en")
@@ -59,6 +61,26 @@ async def test_lines_that_come_are_appended_whatever_screen_is_in_front() -> Non
         await pilot.press("4")
         await pilot.pause()
         assert screen.pane.view.ring.entries[-1].text == "while away"
+
+
+async def test_what_is_typed_without_a_pause_after_the_key_is_searched_for() -> None:
+    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        for key in ("slash", *"sonar"):
+            pilot.app.post_message(Key(key, "/" if key == "slash" else key))
+        await pilot.pause()
+        assert screen_of(pilot).pane.view.log_filter.search == "sonar"
+
+
+async def test_the_key_that_pauses_is_called_by_what_it_does_now() -> None:
+    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        bar = screen_of(pilot).query_one(KeyBar)
+        assert "p Pause" in bar.render().plain
+        await pilot.press("p")
+        assert "p Resume" in bar.render().plain
+        await pilot.press("p")
+        assert "p Pause" in bar.render().plain
 
 
 @pytest.mark.parametrize("keys", ["lmo", "дьщ"])

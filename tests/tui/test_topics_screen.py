@@ -6,11 +6,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from textual.events import Key
 
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from tests.tui.recorded import TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
 from tests.tui.snapshots import Look, settle
 from tui.screens.topics import TopicsScreen
+from tui.widgets.key_bar import KeyBar
 from tui.widgets.topic_detail import TopicHead
 
 if TYPE_CHECKING:
@@ -189,6 +191,7 @@ async def test_a_pause_holds_the_message_and_says_so(room: Room) -> None:
     await room.show(lesson_update(samples={SONAR: (newer,)}))
     assert "1.84" in room.echo()
     assert "PAUSED" in room.head()
+    assert "p Resume" in room.screen.query_one(KeyBar).render().plain
     await room.pilot.press("p")
     await room.pilot.pause()
     assert "0.5" in room.echo()
@@ -220,6 +223,13 @@ async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(room: Roo
     await room.pilot.press("escape")
     await room.pilot.pause()
     assert len(room.screen.table.shown) == 11
+
+
+async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_filter(room: Room) -> None:
+    for key in ("slash", *"sonar"):
+        room.app.post_message(Key(key, "/" if key == "slash" else key))
+    await room.pilot.pause()
+    assert room.screen.filter.value == "sonar"
 
 
 async def test_space_stops_the_robot_from_table_and_tree(room: Room) -> None:

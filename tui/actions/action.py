@@ -31,7 +31,11 @@ class Action(Generic[Target]):
     footer: ClassVar[bool] = False
     """Whether the footer shows it."""
     priority: ClassVar[bool] = False
-    """Whether it comes before the focused widget; a text field keeps what it can type."""
+    """Whether it comes before the focused widget; a text field keeps what it can type.
+
+    An action that goes to a text field needs it: else the keys that are typed at once after its
+    own are on their way to the widget that had the focus.
+    """
     palette: ClassVar[bool] = True
     """Whether the palette offers it."""
 
@@ -47,6 +51,12 @@ class Action(Generic[Target]):
         """Return whether it can be done now; None shows it dimmed, False hides it."""
         del target
         return True
+
+    @classmethod
+    def label(cls, target: Target) -> str:
+        """Return the title for the footer, which may depend on what it would do now."""
+        del target
+        return cls.title
 
     @classmethod
     async def run(cls, target: Target) -> None:

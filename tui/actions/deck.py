@@ -196,6 +196,7 @@ class WriteCommand(DeckAction):
     title = N_("Command")
     tooltip = N_("Write a word to /ai_command: forward, left, right, back, stop. Escape leaves.")
     footer = True
+    priority = True
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:

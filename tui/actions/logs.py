@@ -26,6 +26,11 @@ class Follow(LogsAction):
     footer = True
 
     @classmethod
+    def label(cls, target: LogsScreen) -> str:
+        """By what it would do now."""
+        return cls.title if target.pane.view.following else N_("Resume")
+
+    @classmethod
     async def run(cls, target: LogsScreen) -> None:
         """Do the other of the two."""
         target.pane.view.toggle_following()
@@ -39,6 +44,7 @@ class Search(LogsAction):
     title = N_("Search")
     tooltip = N_("Find text in the lines while it is written; Escape ends it.")
     footer = True
+    priority = True
 
     @classmethod
     async def run(cls, target: LogsScreen) -> None:

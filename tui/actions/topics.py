@@ -23,6 +23,7 @@ class Filter(TopicsAction):
     title = N_("Filter")
     tooltip = N_("Show only topics whose name or type has the words that you type.")
     footer = True
+    priority = True
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:
@@ -38,6 +39,11 @@ class Pause(TopicsAction):
     title = N_("Pause")
     tooltip = N_("Hold the message still, or go on with the newest one.")
     footer = True
+
+    @classmethod
+    def label(cls, target: TopicsScreen) -> str:
+        """By what it would do now."""
+        return N_("Resume") if target.detail.echo.paused else cls.title
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:

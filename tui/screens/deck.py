@@ -154,8 +154,8 @@ class LessonDeck(DeckScreen):
         return any(node.command == DRIVER for node in self.feed.nodes.values())
 
     def write_command(self) -> None:
-        """Go to the command line, or back to the nodes."""
-        self.query_one(CommandLine).field.focus()
+        """Go to the command line, at once: what is typed next belongs there."""
+        self.set_focus(self.query_one(CommandLine).field)
 
     def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
         """Say it to the driver."""

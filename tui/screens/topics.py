@@ -147,6 +147,7 @@ class TopicsScreen(DeckScreen):
     @on(EchoTree.PauseChanged)
     def _pause_changed(self) -> None:
         self.detail.relabel()
+        self.refresh_bindings()
 
     @on(Input.Changed, "#topics-filter")
     def _filter_changed(self, event: Input.Changed) -> None:
@@ -164,7 +165,7 @@ class TopicsScreen(DeckScreen):
 
     def focus_filter(self) -> None:
         """Put the cursor into the filter."""
-        self.filter.focus()
+        self.set_focus(self.filter)
 
     def toggle_housekeeping(self) -> None:
         """Show or hide topics of ROS itself."""

@@ -77,7 +77,7 @@ class KeyBar(Widget):
         first = min(keys, key=lambda one: (*wanted, one.binding.key).index(one.binding.key))
         key = self.app.get_key_display(first.binding)
         everywhere = first.node is self.app
-        return Key(key, _(action.title), action.id, first.enabled, everywhere)
+        return Key(key, _(action.label(first.node)), action.id, first.enabled, everywhere)
 
     def on_mouse_move(self, event: MouseMove) -> None:
         """Explain the key under the pointer."""

@@ -76,7 +76,7 @@ class LogPrompt(Horizontal):
         with self.prevent(Input.Changed):
             field.value = text
         field.cursor_position = len(text)
-        field.focus()
+        self.screen.set_focus(field)
 
     def remark(self, words: str) -> None:
         """Say something about the answer."""
