@@ -22,7 +22,7 @@ from graph.data import GraphUpdate
 from tests.e2e.terminal import Terminal
 from tests.tui.recorded import RecordedGraph, RecordedPad, sample, topic
 from tui.app import DeckApp
-from tui.seams import Order
+from tui.orders import Order
 from tui.terminal import DeckDriver
 from tui.widgets.topics_table import TopicsTable
 

@@ -29,7 +29,8 @@ from tui.emergency import stop_words
 from tui.feed import Feed, GraphReady
 from tui.i18n import LANGUAGES, NAMES, _, language, pick, said, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
-from tui.seams import Order
+from tui.orders import Order
+from tui.screens.opening import OpeningScreen
 from tui.themes import CYCLE, HIGH_CONTRAST, after
 from tui.widgets.plain import plain
 
@@ -86,9 +87,25 @@ class DeckApp(App[int], Acting):
 
     # Screens
 
-    async def on_mount(self) -> None:
-        """Begin with the lesson, or with the picker if none was named."""
+    def get_default_screen(self) -> Screen[Any]:
+        """Begin with a screen that costs next to nothing: nobody waits for a first frame."""
+        return OpeningScreen(_("Lessons") if self._picking else self._ordered())
+
+    def on_mount(self) -> None:
+        """Go on when the first frame is out."""
+        # A moment of rest lets the threads that write to the terminal have their turn.
+        self.call_after_refresh(self.set_timer, 0.01, self._begin)
+
+    async def _begin(self) -> None:
+        """Show the lesson, or the picker if none was named, and open what was ordered."""
         await self.push_screen(self._made_screen(self._first_screen))
+        if not self._picking:
+            self.open(self.defaults)
+
+    def _ordered(self) -> str:
+        """Name what is being opened."""
+        name = self.defaults.attach or (self.defaults.profile or Path()).stem
+        return _("opening {name}…").format(name=name)
 
     async def show_screen(self, name: str) -> None:
         """Bring one of `SCREENS` to the front."""
@@ -109,11 +126,6 @@ class DeckApp(App[int], Acting):
             self.push_screen(HelpScreen(self.screen))
 
     # The session
-
-    def on_ready(self) -> None:
-        """Open what was ordered, now that the first frame is out."""
-        if not self._picking:
-            self.open(self.defaults)
 
     @work(exclusive=True, group="session")
     async def open(self, order: Order) -> None:
@@ -347,7 +359,8 @@ def every_action() -> frozenset[str]:
     """Return the binding id of every action there is; it takes every screen to know them."""
     for module, _made in SCREENS.values():
         import_module(module)
-    import_module("tui.screens.help")
+    for dialog in ("help", "refused", "stopping", "strays"):
+        import_module(f"tui.screens.{dialog}")
     return frozenset(REGISTRY)
 
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from textual.message import Message
 
-from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
 from tui.emergency import FOLLOWED
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
@@ -21,6 +20,7 @@ from tui.screens.base import DeckScreen
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
+    from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, SessionInfo
     from tui.app import DeckApp
     from tui.seams import GraphLink, SessionLink
@@ -111,6 +111,9 @@ class Feed:
             await self._on_event(event)
 
     async def _on_event(self, event: Event) -> None:
+        # The first frame does without.
+        from launcher.events import ClosedEvent, LogEvent, StatusEvent, StraysEvent
+
         if isinstance(event, StatusEvent):
             self._tell_status(frozenset(node.name for node in event.nodes))
         elif isinstance(event, LogEvent):

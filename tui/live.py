@@ -13,7 +13,6 @@ from textual.theme import BUILTIN_THEMES
 
 from launcher.errors import LauncherError
 from launcher.rundir import log_dir
-from launcher.status import LogLine, Severity
 from tui import clock
 from tui.app import DeckApp, every_action
 from tui.i18n import _, detect, set_language
@@ -25,7 +24,10 @@ from tui.themes import HIGH_CONTRAST
 from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
-    from tui.seams import Order
+    from collections.abc import Sequence
+
+    from launcher.status import LogLine
+    from tui.orders import Order
 
 LOOK_S = 0.5
 """How often the terminal is asked whether it is still there."""
@@ -45,7 +47,7 @@ class LiveApp(DeckApp):
         self._stray_count = 0
         self._deserted = False
 
-    async def on_mount(self) -> None:
+    def on_mount(self) -> None:
         """Take the settings, and watch the terminal."""
         if self._settings.theme:
             self.theme = self._settings.theme
@@ -101,13 +103,18 @@ class LiveApp(DeckApp):
         fresh = self._stray.new_lines()
         first, self._stray_count = self._stray_count + 1, self._stray_count + len(fresh)
         if fresh:
-            now_s = clock.now()
-            self.feed.note(
-                [
-                    LogLine("deck", first + at, now_s, Severity.INFO, plain(text), source="deck")
-                    for at, text in enumerate(fresh)
-                ]
-            )
+            self.feed.note(_as_lines(fresh, first))
+
+
+def _as_lines(texts: Sequence[str], first: int) -> list[LogLine]:
+    """Return what was printed past the screen as lines of the log, by the node `deck`."""
+    from launcher.status import LogLine, Severity
+
+    now_s = clock.now()
+    return [
+        LogLine("deck", first + at, now_s, Severity.INFO, plain(text), source="deck")
+        for at, text in enumerate(texts)
+    ]
 
 
 def run_live(order: Order, lang: str | None) -> int:

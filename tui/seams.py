@@ -1,21 +1,21 @@
 """The two seams of the screen: what it needs of the supervisor and of the ROS graph.
 
 `launcher.client.SupervisorClient` and `graph.observer.Observer` fit them, and so do the recorded
-ones of the tests. A `Launchpad` lists what can be opened and opens it.
+ones of the tests. A `Launchpad` lists what can be opened and opens it. For type checkers only:
+whoever runs needs none of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable, Iterable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, Value
     from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from tui.orders import Lesson, Order
 
 
 class SessionLink(Protocol):
@@ -93,35 +93,6 @@ class GraphLink(Protocol):
         self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
     ) -> Future[CallResult]:
         """Call a service."""
-
-
-@dataclass(frozen=True)
-class Lesson:
-    """One profile as the picker shows it."""
-
-    name: str
-    """File name without its ending: `09-brain`."""
-    path: Path
-    title: Mapping[str, str]
-    """Language code to title."""
-    about: Mapping[str, str] = field(default_factory=dict)
-    """Language code to a few sentences."""
-    lesson: str = ""
-    nodes: tuple[str, ...] = ()
-    panels: tuple[str, ...] = ()
-    error: str = ""
-    """Why it cannot be started: `file:line:column: field: message`; empty if it can."""
-
-
-@dataclass(frozen=True)
-class Order:
-    """What is to be opened: a profile to be started, or a session that runs already."""
-
-    profile: Path | None = None
-    attach: str | None = None
-    hardware: str = "mock"
-    overrides: tuple[str, ...] = ()
-    domain: int | None = None
 
 
 class Launchpad(Protocol):

@@ -12,12 +12,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from tui.i18n import language
-from tui.seams import Lesson
+from tui.orders import Lesson
 
 if TYPE_CHECKING:
     from launcher.catalog import ProfileEntry
     from launcher.status import SessionInfo
-    from tui.seams import GraphLink, Order, SessionLink
+    from tui.orders import Order
+    from tui.seams import GraphLink, SessionLink
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
@@ -50,6 +49,8 @@ def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[s
         return Settings()
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: {error}") from error
+    import json
+
     try:
         raw = json.loads(text)
     except json.JSONDecodeError as error:
@@ -62,6 +63,8 @@ def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[s
 
 def save(path: Path, settings: Settings) -> None:
     """Write the settings, whole or not at all; a disk that refuses is no reason to stop."""
+    import json
+
     raw = {name: value for name, value in vars(settings).items() if value}
     beside = path.with_suffix(".new")
     try:

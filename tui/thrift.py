@@ -21,11 +21,28 @@ _TOKENS = re.compile(
 _SYNC = re.compile(r"\x1b\[\?2026[hl]")
 _ODD = re.compile(r"\x1b\]|\x1b\[(?:[0-3]?[JK]|\d*[ABCDEFGSTLMPXd])")
 """Sequences after which the cells remembered may not be those shown."""
-_PLAIN = re.compile(
-    "[\u0020-\u007e\u00a0-\u00ac\u00ae-\u02ff\u0370-\u03ff\u0400-\u0482\u048a-\u052f"
-    "\u2010-\u2027\u2030-\u205e\u2190-\u21ff\u2200-\u22ff\u2500-\u2595\u2598-\u259f\u2800-\u28ff"
-    "\u25a0\u25b2-\u25b8\u25bc-\u25c2\u25c6-\u25d7\u2713\u2717\u2718\u26a0\u2298]+"
+_PLAIN_RANGES = (
+    (0x20, 0x7E),
+    (0xA0, 0xAC),
+    (0xAE, 0x2FF),
+    (0x370, 0x3FF),
+    (0x400, 0x482),
+    (0x48A, 0x52F),
+    (0x2010, 0x2027),
+    (0x2030, 0x205E),
+    (0x2190, 0x22FF),
+    (0x2500, 0x2595),
+    (0x2598, 0x259F),
+    (0x25A0, 0x25A0),
+    (0x25B2, 0x25B8),
+    (0x25BC, 0x25C2),
+    (0x25C6, 0x25D7),
+    (0x26A0, 0x26A0),
+    (0x2713, 0x2713),
+    (0x2717, 0x2718),
+    (0x2800, 0x28FF),
 )
+_PLAIN = frozenset(chr(code) for first, last in _PLAIN_RANGES for code in range(first, last + 1))
 """Characters of one cell on every terminal."""
 
 
@@ -102,7 +119,7 @@ class Thrift:
 
     def _text(self, x: int, y: int, text: str, sgr: str) -> int:
         """Send those cells of `text` that differ; return the column after it."""
-        if not (0 <= y < self._height and _PLAIN.fullmatch(text) and x + len(text) <= self._width):
+        if not (0 <= y < self._height and _PLAIN.issuperset(text) and x + len(text) <= self._width):
             return self._unsure(x, y, text, sgr)
         row = self._rows[y]
         first = -1

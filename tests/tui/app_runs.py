@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.seams import Order
+from tui.orders import Order
 
 LESSON_9 = Order(Path("profiles/09-brain.yaml"))
 

@@ -18,7 +18,8 @@ from graph.data import CallResult, GraphUpdate, NodeRow, Sample, ServiceRow, Top
 from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray
 from tests.tui.recorded_image import colour_bars
-from tui.seams import GraphLink, Lesson, Order, SessionLink
+from tui.orders import Lesson, Order
+from tui.seams import GraphLink, SessionLink
 
 NOW_S = 1_767_225_600.0
 """Unix time of the recording: 2026-01-01 00:00:00 UTC."""

@@ -24,8 +24,8 @@ from textual.pilot import Pilot
 from tests.tui.recorded import RecordedPad
 from tui.app import DeckApp
 from tui.i18n import set_language
+from tui.orders import Order
 from tui.screens.picker import PickerScreen
-from tui.seams import Order
 from tui.widgets.rows import Rows
 
 SnapCompare = Callable[..., bool]
@@ -65,7 +65,9 @@ async def settle(pilot: Pilot[Any]) -> None:
 
 def _lists(app: DeckApp) -> bool:
     """Whether the picker is in front and has its lessons."""
-    return isinstance(app.screen, PickerScreen) and bool(app.screen.query_one(Rows).chosen)
+    return isinstance(app.screen, PickerScreen) and any(
+        rows.chosen for rows in app.screen.query(Rows)
+    )
 
 
 def _looks(chosen: Sequence[tuple[tuple[int, int], str]]) -> pytest.MarkDecorator:

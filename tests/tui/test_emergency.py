@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from textual.color import Color
 from textual.widgets import Input
@@ -159,7 +157,7 @@ async def test_another_session_begins_without_the_stop_of_the_one_before() -> No
     async with opened(pad) as (app, pilot):
         await pilot.press("space", "f8")
         await pilot.pause()
-        app.open(replace(app.defaults))
+        app.open(app.defaults)
         await pilot.pause()
         await pilot.pause()
         assert not app.brake.state.engaged

@@ -13,9 +13,9 @@ from launcher.words import say
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, SESSION, RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
+from tui.orders import Order
 from tui.screens.picker import PickerScreen
 from tui.screens.refused import RefusedScreen
-from tui.seams import Order
 from tui.widgets.rows import Rows
 
 PICK = Order(hardware="mock", domain=42)
@@ -49,7 +49,7 @@ async def test_enter_starts_lesson_nine() -> None:
         await pilot.press("enter")
         await pilot.pause()
         lesson_9 = next(lesson for lesson in LESSONS if lesson.name == "09-brain")
-        assert pad.orders == [replace(PICK, profile=lesson_9.path)]
+        assert pad.orders == [PICK._replace(profile=lesson_9.path)]
         assert app.feed.session is SESSION
 
 
@@ -92,7 +92,7 @@ async def test_what_runs_in_the_background_is_attached_to() -> None:
         assert "Runs already" in about(app.screen)
         await pilot.press("enter")
         await pilot.pause()
-        assert pad.orders == [replace(PICK, attach="02-sonar-safety")]
+        assert pad.orders == [PICK._replace(attach="02-sonar-safety")]
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])

@@ -215,7 +215,7 @@ class Quit(AppAction):
     """Leave."""
 
     id = "app.quit"
-    key = "q,ctrl+q"
+    key = "q,й,ctrl+q"
     title = N_("Quit")
     tooltip = N_("Stop the nodes that this screen has started, and leave.")
     footer = True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual import work
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from launcher.status import SessionInfo
     from tui.app import DeckApp
     from tui.messages import LanguageChanged
-    from tui.seams import Lesson, Order
+    from tui.orders import Lesson, Order
 
 FIRST = "09-brain"
 """The lesson that is ready to be started by Enter."""
@@ -149,9 +148,9 @@ class PickerScreen(Screen[None], Acting):
         """Return what Enter would open; None where that is nothing."""
         session, lesson = self._chosen_session(), self._chosen_lesson()
         if session is not None:
-            return replace(self.deck.defaults, attach=session.name)
+            return self.deck.defaults._replace(attach=session.name)
         if lesson is not None and not lesson.error:
-            return replace(self.deck.defaults, profile=lesson.path)
+            return self.deck.defaults._replace(profile=lesson.path)
         return None
 
     def open_chosen(self) -> None:
@@ -176,12 +175,16 @@ class PickerScreen(Screen[None], Acting):
         message.stop()
         self.open_chosen()
 
+    @property
+    def _chosen(self) -> str:
+        return next((rows.chosen for rows in self.query(Rows)), "")
+
     def _chosen_lesson(self) -> Lesson | None:
-        chosen = self.query_one(Rows).chosen
+        chosen = self._chosen
         return next((lesson for lesson in self._lessons if _key(lesson) == chosen), None)
 
     def _chosen_session(self) -> SessionInfo | None:
-        chosen = self.query_one(Rows).chosen
+        chosen = self._chosen
         found = (one for one in self._sessions if f"{RUNNING}{one.name}" == chosen)
         return next(found, None)
 

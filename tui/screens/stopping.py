@@ -20,7 +20,7 @@ class StopNow(Action["StoppingScreen"]):
     """Skip the waiting."""
 
     id = "stopping.now"
-    key = "q,ctrl+q,ctrl+c"
+    key = "q,й,ctrl+q,ctrl+c"
     title = N_("Stop at once")
     tooltip = N_("Kill what has not stopped yet.")
     footer = True

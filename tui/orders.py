@@ -1,0 +1,34 @@
+"""What can be picked, and what is asked to be opened: plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+
+class Lesson(NamedTuple):
+    """One profile as the picker shows it."""
+
+    name: str
+    """File name without its ending: `09-brain`."""
+    path: Path
+    title: Mapping[str, str]
+    """Language code to title."""
+    about: Mapping[str, str] = {}
+    """Language code to a few sentences."""
+    lesson: str = ""
+    nodes: tuple[str, ...] = ()
+    panels: tuple[str, ...] = ()
+    error: str = ""
+    """Why it cannot be started: `file:line:column: field: message`; empty if it can."""
+
+
+class Order(NamedTuple):
+    """What is to be opened: a profile to be started, or a session that runs already."""
+
+    profile: Path | None = None
+    attach: str | None = None
+    hardware: str = "mock"
+    overrides: tuple[str, ...] = ()
+    domain: int | None = None
