@@ -87,6 +87,7 @@ class PickerScreen(Screen[None], Acting):
         super().__init__()
         self._lessons: list[Lesson] = []
         self._sessions: list[SessionInfo] = []
+        self._offered = ""
 
     @property
     def deck(self) -> DeckApp:
@@ -117,11 +118,18 @@ class PickerScreen(Screen[None], Acting):
     async def look(self) -> None:
         """Ask for the lessons and for what runs."""
         self._lessons = await self.deck.pad.lessons()
+        self._offer()
         self._sessions = await self.deck.pad.running()
-        chosen = self.query_one(Rows).chosen
+        self._offer()
+
+    def _offer(self) -> None:
+        """Draw what is known, the likeliest row chosen, unless a person has chosen another."""
+        rows = self.query_one(Rows)
+        untouched = rows.chosen in ("", self._offered)
         self.redraw()
-        if not chosen:
-            self.query_one(Rows).choose(self._first())
+        if untouched:
+            self._offered = self._first()
+            rows.choose(self._offered)
 
     def _first(self) -> str:
         """Return the row to begin with: what runs already, else lesson 9."""
