@@ -20,9 +20,14 @@ from tests.e2e.terminal import Terminal
 
 DOMAIN = int(os.environ.get("BENCH_DOMAIN", "77"))
 ROUNDS = 7
+TITLE = "One screen instead of five terminals"
+FRAME_BYTES = 2000
+"""More than switching the terminal over takes, less than any frame."""
 REST_S = 30.0
 PRESSES = 30
-FLOOD_S = 20.0
+FLOOD_S = 30.0
+FILLING_S = 25.0
+"""Until the buffers, which are bounded, are full."""
 
 FLOOD = """
 import sys, time
@@ -63,19 +68,22 @@ def deck(folder: Path, *args: str) -> Iterator[Terminal]:
         terminal.close()
 
 
-def first_frame(folder: Path) -> tuple[float, float]:
-    """Median seconds until the first frame is drawn, and of `import textual.app` alone."""
-    frames, imports = [], []
+def first_frame(folder: Path) -> tuple[float, float, float]:
+    """Median seconds until a first frame, until the lessons, and of `import textual.app` alone."""
+    frames, lists, imports = [], [], []
     for _ in range(ROUNDS):
         started = time.monotonic()
         subprocess.run([sys.executable, "-c", "import textual.app"], check=True)
         imports.append(time.monotonic() - started)
         started = time.monotonic()
         with deck(folder) as terminal:
-            while "Lessons" not in terminal.text():
-                time.sleep(0.002)
+            # Looking at the screen would take CPU from who draws it.
+            while terminal.received < FRAME_BYTES:
+                time.sleep(0.001)
             frames.append(time.monotonic() - started)
-    return statistics.median(frames), statistics.median(imports)
+            terminal.wait_for(TITLE)
+            lists.append(time.monotonic() - started)
+    return statistics.median(frames), statistics.median(lists), statistics.median(imports)
 
 
 def screen_processes(terminal: Terminal) -> list[int]:
@@ -135,7 +143,7 @@ def flooded(folder: Path) -> tuple[list[float], float, int, int]:
     )
     with deck(folder, str(profile)) as terminal:
         terminal.wait_for("2/2")
-        time.sleep(5)
+        time.sleep(FILLING_S)
         before = pss_mb(screen_processes(terminal))
         until = time.monotonic() + FLOOD_S
         delays = []
@@ -155,7 +163,7 @@ def main() -> None:
     """Measure all and print a table."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        frame, imported = first_frame(folder)
+        frame, listed, imported = first_frame(folder)
         with deck(folder, "09-brain") as terminal:
             terminal.wait_for("8/8")
             time.sleep(5)
@@ -165,13 +173,14 @@ def main() -> None:
     print("| what | measured | goal |")
     print("| --- | --- | --- |")
     print(f"| first frame / `import textual.app` | {frame / imported:.2f} | 1.5 |")
+    print(f"| the list of lessons / `import textual.app` | {listed / imported:.2f} | - |")
     print(f"| screen and supervisor at rest, CPU of one core | {cpu:.1f} % | 12 % |")
     print(f"| screen and supervisor at rest, PSS | {pss:.0f} MB | 150 MB |")
     print(f"| to the terminal at rest | {sent / 1000:.1f} kB/s | 8 kB/s |")
     print(f"| a key to its effect, median | {statistics.median(keys):.0f} ms | 50 ms |")
     print(f"| a key under 10 000 lines/s, median | {statistics.median(delays):.0f} ms | 200 ms |")
     print(f"| a key under 10 000 lines/s, longest | {max(delays):.0f} ms | 500 ms |")
-    print(f"| memory grown in {FLOOD_S:.0f} s of flood | {growth:+.1f} MB | flat |")
+    print(f"| memory grown in {FLOOD_S:.0f} s of flood, buffers full | {growth:+.1f} MB | flat |")
     print(f"| lines of the other node lost in the flood | {written - kept} of {written} | 0 |")
 
 
