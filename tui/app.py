@@ -35,6 +35,7 @@ from tui.themes import CYCLE, HIGH_CONTRAST, after
 from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
+    from textual.command import Provider
     from textual.driver import Driver
     from textual.screen import Screen
 
@@ -54,11 +55,18 @@ TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs)
 WELL = frozenset({"ready", "running"})
 
 
+def _commands() -> type[Provider]:
+    from tui.palette import Commands
+
+    return Commands
+
+
 class DeckApp(App[int], Acting):
     """One screen for the lessons."""
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(*APP_ACTIONS)
+    COMMANDS: ClassVar = {_commands}
     ENABLE_COMMAND_PALETTE = False
     """Textual's own key for it; ours speaks the language of the screen."""
 

@@ -34,7 +34,7 @@ SESSION = SessionInfo(
     },
     lesson="9",
     domain=42,
-    panels=("sonar", "wheels", "camera", "head", "voice", "composer"),
+    panels=("sonar", "wheels", "camera", "head", "voice"),
     supervisor_pid=4100,
     log_dir="/var/log/deck/20260101-000000-1",
 )

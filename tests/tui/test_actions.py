@@ -152,6 +152,18 @@ async def test_the_palette_finds_an_action_by_name_and_does_it() -> None:
         assert pad.link.asked == [("restart", "camera")]
 
 
+async def test_the_palette_says_when_nothing_is_called_that() -> None:
+    async with opened() as (app, pilot):
+        app.speak("ru")
+        await pilot.press("ctrl+p", *"zzqq")
+        for _round in range(100):
+            await pilot.pause(0.02)
+            screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+            if "Ничего с таким названием нет." in screen:
+                break
+        assert "Ничего с таким названием нет." in screen
+
+
 async def test_the_palette_offers_only_what_is_possible() -> None:
     async with opened() as (app, _pilot):
         titles = {command.title for command in app.get_system_commands(app.screen)}

@@ -16,25 +16,33 @@ from launcher.status import NodeState, Severity
 from tests.tui.app_runs import opened
 from tests.tui.recorded import (
     NODES,
+    NOW_S,
     SESSION,
     TOPICS,
     RecordedGraph,
     RecordedPad,
     RecordedSession,
+    lesson_samples,
     lesson_update,
     line,
+    sample,
     topic,
 )
 from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
 from tui.app import DeckApp
 from tui.panels.camera import CameraFeed
-from tui.panels.shelf import Shelf
+from tui.panels.head import HeadFeed
+from tui.panels.llm import LlmFeed
+from tui.panels.shelf import Shelf, heights, in_rows, paged
 from tui.panels.sonar import SonarFeed
+from tui.panels.voice import VoiceFeed
 from tui.panels.wheels import WheelsFeed
 from tui.screens.deck import LessonDeck
 from tui.widgets.command_line import CommandLine
 from tui.widgets.image_view import ImageView
 from tui.widgets.nodes_table import NodesTable, duration
+from tui.widgets.outcome import Outcome
+from tui.widgets.outcome_story import SENT_TO
 from tui.widgets.sonar import SonarPanel
 from tui.widgets.wheels import WheelsPanel
 
@@ -107,6 +115,42 @@ def test_deck_looks(look: Look, snap_compare: SnapCompare) -> None:
 def test_deck_of_the_first_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
     """One node above, its log below over the whole width, no panels and no empty frames."""
     assert snap_compare(look.app(pad=hello()), terminal_size=look.size, run_before=look.settle)
+
+
+LLM_JSON = (
+    '{"thought": "Turn and look", "commands": [{"action": "drive", "speed": 0.3, "steering": 0.5},'
+    ' {"action": "turn_head", "pan": 45, "tilt": 10}]}'
+)
+
+
+def llm() -> RecordedPad:
+    """Lesson 10: a message to the parser, and what came of it."""
+    panels = ("composer", "wheels", "head")
+    lesson = replace(SESSION, name="10-llm-json", lesson="10", panels=panels)
+    results = (
+        '{"event": "accepted", "commands": 2, "thought": "Turn and look"}',
+        '{"event": "head", "pan": 45, "tilt": 10, "sum": 1}',
+    )
+    samples = lesson_samples()
+    samples["/llm_raw_json"] = (sample("/llm_raw_json", "std_msgs/msg/String", {"data": LLM_JSON}),)
+    samples["/llm_result"] = tuple(
+        sample("/llm_result", "std_msgs/msg/String", {"data": text}) for text in results
+    )
+    just_now = {
+        topic: tuple(
+            replace(one, received_s=NOW_S + 16.0 + (0.004 * (n + 1) if topic != SENT_TO else 0.0))
+            for n, one in enumerate(each)
+        )
+        for topic, each in samples.items()
+    }
+    graph = RecordedGraph(lesson_update(samples=just_now))
+    return RecordedPad(RecordedSession(lesson), graph)
+
+
+@each_size
+def test_deck_of_the_llm_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Accepted, the drive, the head done: the trail of the newest JSON with its delays."""
+    assert snap_compare(look.app(pad=llm()), terminal_size=look.size, run_before=look.settle)
 
 
 @each_size
@@ -249,6 +293,14 @@ async def test_the_rear_sonar_comes_with_its_publisher_and_stays_without_it() ->
         assert gauge.has_class("-both")
 
 
+async def test_the_trail_of_a_json_shows_without_the_composer() -> None:
+    async with opened(llm()) as (app, pilot):
+        await pilot.pause()
+        trail = app.screen.query_one(LlmFeed).query_one(Outcome)
+        assert any("Turn and look" in entry.text for entry in trail.entries)
+        assert ("set_head_position", "✓") in {(entry.topic, entry.mark) for entry in trail.entries}
+
+
 async def test_only_what_is_shown_is_asked_for() -> None:
     pad = RecordedPad()
     async with opened(pad) as (_app, pilot):
@@ -293,9 +345,24 @@ async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:
         await pilot.press("v")
         await pilot.pause()
         assert set(first).isdisjoint(shown())
-        await pilot.press("v")
+        await pilot.click(Shelf, offset=(5, 0))
         await pilot.pause()
         assert shown() == first
+
+
+@pytest.mark.parametrize("width", [30, 52, 79, 80, 120])
+@pytest.mark.parametrize("height", [1, 6, 13, 22, 38, 60])
+def test_every_panel_has_a_place_on_one_page_and_pages_are_filled(width: int, height: int) -> None:
+    panels = [SonarFeed(), WheelsFeed(), CameraFeed(), HeadFeed(), VoiceFeed()]
+    rows = in_rows(panels, width)
+    pages = paged(rows, height, 1)
+    placed = [panel for page in pages for row in page for panel in row]
+    assert sorted(map(id, placed)) == sorted(map(id, panels))
+    for page in pages:
+        lines = heights(page, height, 1)
+        needed = [1 + max(panel.least for panel in row) for row in page]
+        assert all(given >= least for given, least in zip(lines, needed, strict=True))
+        assert sum(lines) == height or len(page) == 1
 
 
 @pytest.mark.parametrize("size", [(40, 10), (20, 5), (3, 2), (59, 60), (300, 8)])

@@ -143,6 +143,7 @@ class ShowPalette(AppAction):
     key = "ctrl+p"
     title = N_("Palette")
     tooltip = N_("Find anything that can be done by its name.")
+    footer = True
     priority = True
     palette = False
 

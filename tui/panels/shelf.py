@@ -11,7 +11,7 @@ from tui.i18n import _
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from textual.events import Resize
+    from textual.events import Click, Resize
 
     from tui.panels.panel import Panel
 
@@ -52,6 +52,12 @@ class Shelf(Container):
         if self._pages:
             self._page = (self._page + 1) % len(self._pages)
             self._lay_out(self.size.height)
+
+    def on_click(self, event: Click) -> None:
+        """Turn the page by a click on the title that tells of it."""
+        first = next((panel for panel in self._panels if panel.display), None)
+        if first is not None and event.screen_y == first.region.y and self.pages > 1:
+            self.turn()
 
     def on_resize(self, event: Resize) -> None:
         """Place the panels anew."""

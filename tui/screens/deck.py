@@ -49,6 +49,7 @@ PANELS = {
     "camera": ("tui.panels.camera", "CameraFeed"),
     "head": ("tui.panels.head", "HeadFeed"),
     "voice": ("tui.panels.voice", "VoiceFeed"),
+    "composer": ("tui.panels.llm", "LlmFeed"),
 }
 """What a profile's `panels` may name; imported when a session that has them is opened."""
 
@@ -289,7 +290,7 @@ class LessonDeck(DeckScreen):
         self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
 
     def _say_small(self) -> None:
-        words = _("The panels need {columns}×{rows}; this terminal is smaller.")
+        words = _("Too small for panels: they need {columns}×{rows}")
         self.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))
 
     def _file_of(self, node: str) -> str:

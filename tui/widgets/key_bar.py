@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from tui.actions import Action
 
 
+SPARED = "app.palette"
+"""What gives way on a very narrow terminal."""
+
+
 class Key(NamedTuple):
     """One thing that can be done now."""
 
@@ -95,6 +99,9 @@ class KeyBar(Widget):
         """Draw the keys of every screen at the right, before them as many others as fit."""
         always = [entry for entry in self.keys() if entry.everywhere]
         room = self.size.width - sum(map(_cells, always))
+        if room < 0:
+            # The page of help names all keys, those of the palette too.
+            always = [entry for entry in always if entry.id != SPARED]
         shown: list[Key] = []
         for entry in self.keys():
             room -= 0 if entry.everywhere else _cells(entry)

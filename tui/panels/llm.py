@@ -1,0 +1,85 @@
+"""What came of the newest JSON on /llm_raw_json, whoever sent it."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, cast
+
+from tui import clock
+from tui.actions.app import ShowComposer
+from tui.i18n import N_, _
+from tui.panels.panel import Panel, row_of
+from tui.widgets.outcome import Outcome
+from tui.widgets.outcome_story import FOLLOWED, SENT_TO, Story
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate, Sample
+    from robot.commands import LlmResponse
+    from tui.app import DeckApp
+
+
+class LlmFeed(Panel):
+    """The trail of the newest message: accepted or refused, drive, wheels, head."""
+
+    title = N_("LLM commands")
+    least = 4
+    weight = 3
+    across_below = 100
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._story: Story | None = None
+        self._newest: dict[str, Sample] = {}
+
+    def compose(self) -> ComposeResult:
+        """The trail."""
+        yield Outcome()
+
+    def on_mount(self) -> None:
+        """Say how to begin."""
+        self._say()
+
+    def followed(self) -> set[str]:
+        """The messages, and everything that may come of them."""
+        return {SENT_TO, *FOLLOWED}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Begin a trail with each message, and follow it."""
+        for sample in update.samples.get(SENT_TO, ()):
+            row = row_of(update, SENT_TO)
+            listeners = [str(row.subscribers)] if row is not None and row.subscribers else []
+            expected = _read(str(sample.value.get("data", "")))
+            self._story = Story(sample.received_s, listeners, expected, self._newest)
+        if self._story is not None and not self._story.over(clock.now()):
+            self._story.see(update.samples)
+        self._newest.update(
+            {topic: update.samples[topic][-1] for topic in FOLLOWED & update.samples.keys()}
+        )
+        self._say()
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        super().words_changed()
+        self._say()
+
+    def _say(self) -> None:
+        trail = self.query_one(Outcome)
+        if self._story is None:
+            key = cast("DeckApp", self.app).keys_of(ShowComposer)[0]
+            trail.show(_("Nothing has come yet; {key} opens the Composer.").format(key=key), ())
+            return
+        at = time.strftime("%H:%M:%S", time.localtime(self._story.sent_s))
+        entries = self._story.entries(clock.now())
+        trail.show(_("Came at {time}").format(time=at), entries)
+
+
+def _read(text: str) -> LlmResponse | None:
+    # pydantic is imported for the lessons that need it.
+    from robot.commands import CommandError, parse_llm
+
+    try:
+        return parse_llm(text)
+    except CommandError:
+        return None
