@@ -114,8 +114,7 @@ class Rows(ScrollView, can_focus=True):
         before, self._rows = self._rows, tuple(rows)
         if tuple(columns) != self._columns:
             self._columns = tuple(columns)
-            self._widths = _widths(self._columns, self.size.width - MARK)
-            self.refresh()
+            self._place()
         if len(before) != len(self._rows):
             self.virtual_size = Size(0, self._top + len(self._rows))
             self.refresh()
@@ -147,7 +146,7 @@ class Rows(ScrollView, can_focus=True):
         row = self._rows[index]
         chosen = bool(row.key) and row.key == self._chosen
         if chosen:
-            base += self.get_component_rich_style("rows--cursor", partial=True)
+            base += self.get_component_rich_style("rows--cursor")
         return self._strip(row.cells, "▶ " if chosen else "  ", base, width, plain=chosen)
 
     def action_move(self, by: int) -> None:
@@ -174,9 +173,15 @@ class Rows(ScrollView, can_focus=True):
                 self.action_open()
 
     def on_resize(self) -> None:
-        """Place the columns anew."""
-        self._widths = _widths(self._columns, self.size.width - MARK)
-        self.refresh()
+        """Place the columns anew, and keep the chosen row in sight."""
+        self._place()
+        index = self._index(self._chosen)
+        if index is not None:
+            self._bring_into_view(index)
+
+    def watch_show_vertical_scrollbar(self) -> None:
+        """Make room for the scroll bar, or use what it has left."""
+        self._place()
 
     def on_focus(self) -> None:
         """Draw the cursor as that of the focused widget."""
@@ -185,6 +190,10 @@ class Rows(ScrollView, can_focus=True):
     def on_blur(self) -> None:
         """Draw the cursor as that of a widget in the background."""
         self._refresh_row(self._index(self._chosen))
+
+    def _place(self) -> None:
+        self._widths = _widths(self._columns, self.scrollable_size.width - MARK)
+        self.refresh()
 
     def _index(self, key: str) -> int | None:
         return next((i for i, row in enumerate(self._rows) if row.key and row.key == key), None)
@@ -206,6 +215,9 @@ class Rows(ScrollView, can_focus=True):
             self._chosen = key
             self._refresh_row(index)
             self.post_message(self.Highlighted(self, key))
+        self._bring_into_view(index)
+
+    def _bring_into_view(self, index: int) -> None:
         top, rows = self.scroll_offset.y, max(1, self.size.height - self._top)
         target = min(index, max(top, index - rows + 1))
         if target != top:
@@ -236,7 +248,15 @@ class Rows(ScrollView, can_focus=True):
         if not cells or cells >= len(self._widths):
             return self._widths
         kept = self._widths[: cells - 1]
-        return (*kept, max(0, self.size.width - MARK - sum(kept) - len(kept)))
+        return (*kept, max(0, self.scrollable_size.width - MARK - sum(kept) - len(kept)))
+
+    def _ink(self, name: str) -> Style:
+        """Return the colour of a component, blended with the background, and its weight.
+
+        A partial style would lose how strong the colour is, and whether it is to be dark or light.
+        """
+        look = self.get_component_rich_style(name)
+        return type(look)(color=look.color, bold=look.bold)
 
     def _strip(
         self, cells: Sequence[Cell], mark: str, base: Style, width: int, *, plain: bool = False
@@ -246,7 +266,7 @@ class Rows(ScrollView, can_focus=True):
         for column, cell, room in zip(self._columns, cells, widths):  # noqa: B905
             style = base
             if cell.meaning and not plain:
-                style = base + self.get_component_rich_style(f"rows--{cell.meaning}", partial=True)
+                style = base + self._ink(f"rows--{cell.meaning}")
             right = column.right and len(cells) == len(self._columns)
             segments.append(Segment(_fitted(cell.text, room, right), style))
             segments.append(Segment(" ", base))
