@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from textual.events import Key
+from textual.widgets import Static
 
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from tests.tui.recorded import TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
@@ -55,6 +56,10 @@ class Room:
     def head(self) -> str:
         """The lines above the message."""
         return self.screen.query_one(TopicHead).render().plain
+
+    def count(self) -> str:
+        """How many topics are said to be there."""
+        return str(self.screen.query_one("#topics-count", Static).content)
 
     def echo(self) -> str:
         """The message, or the words in its place."""
@@ -139,6 +144,34 @@ async def test_a_picture_that_cannot_be_shown_is_told(room: Room) -> None:
 async def test_nobody_who_publishes_is_told(room: Room) -> None:
     await room.choose("/emergency_stop")
     assert room.echo().startswith("nobody publishes this topic\nStart the node")
+
+
+async def test_a_topic_that_only_deck_publishes_is_not_said_to_have_a_silent_publisher(
+    room: Room,
+) -> None:
+    await room.choose(SONAR)
+    quiet = row(SONAR, trouble=Trouble.QUIET, publishers=0, age_s=None, hz=None, bytes_per_s=None)
+    await room.show(with_row(quiet))
+    assert room.echo() == "only Deck itself publishes here\nIt has sent nothing yet."
+
+
+async def test_topics_that_only_deck_knows_are_not_listed(room: Room) -> None:
+    ours = TopicRow("/llm_result", ("std_msgs/msg/String",), 0, 0, trouble=Trouble.NO_PUBLISHER)
+    await room.show(lesson_update())
+    count = room.count()
+    await room.show(with_row(ours))
+    assert "/llm_result" not in [row.name for row in room.screen.table.shown]
+    assert room.count() == count
+
+
+async def test_the_chosen_topic_stays_when_everybody_has_left_it(room: Room) -> None:
+    await room.choose(SONAR)
+    left = row(SONAR, publishers=0, subscribers=0, trouble=Trouble.NO_PUBLISHER)
+    await room.show(with_row(left))
+    assert room.screen.table.chosen == SONAR
+    await room.choose(CAMERA)
+    await room.show(with_row(left))
+    assert SONAR not in [row.name for row in room.screen.table.shown]
 
 
 async def test_a_qos_mismatch_names_who_and_what_to_change(room: Room) -> None:

@@ -105,7 +105,8 @@ def test_ages_are_whole(age: float | None, shown: str) -> None:
         ({"trouble": Trouble.NO_PUBLISHER}, "○ no publisher"),
         ({"trouble": Trouble.QOS_MISMATCH}, "✗ QoS mismatch"),
         ({"trouble": Trouble.UNKNOWN_TYPE}, "? unknown type"),
-        ({"trouble": Trouble.QUIET}, "… quiet"),
+        ({"trouble": Trouble.QUIET, "age_s": 12.3}, "· 12 s ago"),
+        ({"trouble": Trouble.QUIET, "age_s": None}, "· waiting"),
         ({"measured": False, "hz": None}, "– not measured"),
         ({"age_s": None, "hz": None}, "· waiting"),
         ({"detail": "peers disagree"}, "! peers disagree"),
@@ -124,6 +125,8 @@ def test_titles_and_states_fit_their_columns_in_every_language(language: str) ->
         assert not column.width or len(_(column.title) + "▲") <= column.width
     for trouble in Trouble:
         assert len(state_text(topic("/a", FLOAT, 1.0, trouble=trouble))) <= by_id["state"].width
+    old = topic("/a", FLOAT, 1.0, trouble=Trouble.QUIET, age_s=3599.0)
+    assert len(state_text(old)) <= by_id["state"].width
     assert len(state_text(topic("/a", FLOAT, 1.0, measured=False))) <= by_id["state"].width
     assert len(age_text(3599.0)) <= by_id["age"].width
     assert len(bandwidth_text(999_499.0)) <= by_id["bandwidth"].width

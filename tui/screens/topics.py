@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.timer import Timer
 
-    from graph.data import Sample, Value
+    from graph.data import Sample, TopicRow, Value
     from tui.messages import GraphChanged, LanguageChanged, SessionChanged
 
 IMAGE = "sensor_msgs/msg/Image"
@@ -68,6 +68,7 @@ class TopicsScreen(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self._settling: Timer | None = None
+        self._listed: tuple[TopicRow, ...] = ()
 
     def compose_body(self) -> ComposeResult:
         """The filter above table and message."""
@@ -108,7 +109,8 @@ class TopicsScreen(DeckScreen):
         update = message.update
         if update.error:
             self.table.show_words(_("ROS cannot be observed"), update.error)
-        self.table.show(update.topics)
+        self._listed = tuple(row for row in update.topics if self._is_listed(row))
+        self.table.show(self._listed)
         self.detail.show_topic(self.table.chosen_row)
         self._count()
         samples = update.samples.get(self.table.chosen or "", ())
@@ -119,6 +121,7 @@ class TopicsScreen(DeckScreen):
         """Forget the topics of a session that has ended."""
         del message
         if self.feed.link is None:
+            self._listed = ()
             self.table.show(())
             self._label()
 
@@ -199,6 +202,10 @@ class TopicsScreen(DeckScreen):
             words += " " + _("Long arrays were cut.")
         self.notify(words, markup=False)
 
+    def _is_listed(self, row: TopicRow) -> bool:
+        """Leave out what only Deck has asked for; the chosen one stays when all have left it."""
+        return bool(row.publishers or row.subscribers) or row.name == self.table.chosen
+
     def _show_message(self, sample: Sample) -> None:
         first = self.detail.sample is None
         self.detail.show_message(sample)
@@ -232,8 +239,7 @@ class TopicsScreen(DeckScreen):
         self._count()
 
     def _count(self) -> None:
-        update = self.feed.update
-        everything = 0 if update is None else len(update.topics)
+        everything = len(self._listed)
         shown = len(self.table.shown)
         words = ngettext("{n} topic", "{n} topics", everything).format(n=everything)
         if shown != everything:

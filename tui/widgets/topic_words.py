@@ -24,6 +24,8 @@ def advice(row: TopicRow) -> tuple[str, str]:
     """Why nothing can be shown of the topic, and the way out; both empty if there is no trouble."""
     if row.trouble is None:
         return "", _remark(row)
+    if row.trouble is Trouble.QUIET and not row.publishers:
+        return _("only Deck itself publishes here"), _what_deck_sent(row)
     return trouble_words(row.trouble, row.age_s), plain(_way_out(row, row.trouble), LONGEST)
 
 
@@ -31,8 +33,6 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
     facts = row.facts
     if trouble is Trouble.NO_PUBLISHER:
         return _("Start the node that publishes it, or look for a misspelt or remapped name.")
-    if trouble is Trouble.QUIET and not row.publishers:
-        return _("Only Deck itself publishes here.")
     if trouble is Trouble.QUIET:
         return _("Publishers are there: {nodes}. Look at their logs.").format(
             nodes=names(row.published_by) or row.publishers
@@ -47,6 +47,10 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
         )
         return words.format(**facts)
     return row.detail
+
+
+def _what_deck_sent(row: TopicRow) -> str:
+    return _("It has sent nothing yet.") if row.age_s is None else no_data_words(row.age_s)
 
 
 def _remark(row: TopicRow) -> str:

@@ -24,7 +24,6 @@ _TROUBLES = {
     Trouble.NO_PUBLISHER: N_("○ no publisher"),
     Trouble.QOS_MISMATCH: N_("✗ QoS mismatch"),
     Trouble.UNKNOWN_TYPE: N_("? unknown type"),
-    Trouble.QUIET: N_("… quiet"),
 }
 
 
@@ -82,20 +81,36 @@ def type_text(row: TopicRow) -> str:
     return plain(" | ".join(name.replace("/msg/", "/") for name in row.type_names))
 
 
+def needs_mending(row: TopicRow) -> bool:
+    """Tell whether something is wrong; most that is quiet speaks only when there is news."""
+    return row.trouble in _TROUBLES
+
+
 def state_text(row: TopicRow) -> str:
     """A mark and a word: what is wrong, or why there are no figures; empty if all is well."""
-    if row.trouble is not None:
-        return _(_TROUBLES[row.trouble])
+    if needs_mending(row):
+        return _(_TROUBLES[row.trouble]) if row.trouble else ""
     if not row.measured:
         return _("– not measured")
     if row.age_s is None:
         return _("· waiting")
+    if row.trouble is Trouble.QUIET:
+        return _("· {age} ago").format(age=age_text(row.age_s))
     return _("! {detail}").format(detail=plain(row.detail, STEP)) if row.detail else ""
 
 
 def _figure(value: float | None) -> float:
     """Rounded as it is shown, so that rows whose figures look alike do not change places."""
     return -1.0 if value is None else float(f"{value:.2g}")
+
+
+def _state_key(row: TopicRow) -> SortKey:
+    """Troubles, then what is not measured, then what is quiet: without ages, which change."""
+    if needs_mending(row):
+        return 0.0, state_text(row)
+    if not row.measured:
+        return 1.0, ""
+    return (2.0 if row.age_s is None or row.trouble else 3.0), ""
 
 
 COLUMNS = (
@@ -152,7 +167,7 @@ COLUMNS = (
         N_("State"),
         15,
         state_text,
-        lambda row: (0.0 if row.trouble else 1.0 if not row.measured else 2.0, state_text(row)),
+        _state_key,
     ),
 )
 """In the order of the screen."""

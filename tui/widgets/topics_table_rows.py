@@ -10,7 +10,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from tui.i18n import _
-from tui.widgets.topics_table_columns import Place, placed
+from tui.widgets.topics_table_columns import Place, needs_mending, placed
 from tui.widgets.topics_table_order import Order
 from tui.widgets.words import word_strips
 
@@ -140,16 +140,16 @@ class TopicsRows(ScrollView, can_focus=True):
         if chosen:
             base = self.get_component_rich_style("topics-table--cursor")
         trouble = base
-        if row.trouble is not None and not chosen:
+        if needs_mending(row) and not chosen:
             trouble += self.get_component_rich_style("topics-table--trouble", partial=True)
         styles = [trouble if place.column.id == "state" else base for place in self._places]
         return self._strip("▶ " if chosen else "", cells, styles, width, base)
 
     def _header(self, width: int) -> Strip:
         style = self.get_component_rich_style("topics-table--header")
-        by_style: Style = style + self.get_component_rich_style(
-            "topics-table--sorted", partial=True
-        )
+        # A partial style would not know whether it stands on a dark or on a light ground.
+        sorted_by = self.get_component_rich_style("topics-table--sorted")
+        by_style = style + type(style)(color=sorted_by.color)
         by, arrow = self._order.column, "▼" if self._order.falling else "▲"
         styles = [by_style if place.column is by else style for place in self._places]
         titles = tuple(
