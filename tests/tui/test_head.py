@@ -10,7 +10,7 @@ from graph.data import Trouble
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
 from tui.i18n import set_language
-from tui.widgets.head import HeadPanel
+from tui.widgets.head import CAPTION_FROM, DRAWN_FROM, HeadPanel
 from tui.widgets.head_reading import Pose, head_in
 
 
@@ -72,6 +72,16 @@ async def test_impossible_angles_and_sizes_do_no_harm(pose: Pose, size: tuple[in
         panel.show(pose)
         panel.command(pose)
         assert len(rows(panel)) == size[1]
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+async def test_the_captions_are_whole_wherever_the_views_are_drawn(language: str) -> None:
+    set_language(language)
+    panel = HeadPanel()
+    async with alone(panel, DRAWN_FROM[0], CAPTION_FROM).run_test(size=(80, 30)):
+        panel.show(Pose(0, 0))
+        assert rows(panel)[0].split()
+        assert "…" not in rows(panel)[0]
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])

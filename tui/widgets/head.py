@@ -98,11 +98,10 @@ class HeadPanel(Drawing):
     def _views(self, pose: Pose, width: int, rows: int) -> list[Line]:
         columns = (width - 2) // 2
         above, side = Dots(columns, rows), Dots(columns, rows)
-        radius = min(above.width / 2, above.height) - 2
+        radius = min(above.width / 2, above.height / 2) - 2
         told = self._told
-        dial = Dial(above, (above.width / 2, above.height - 1.0), radius, 90.0)
+        dial = Dial(above, (above.width / 2, (above.height + radius) / 2), radius, 90.0)
         dial.draw(pose.pan_deg, None if told is None else told.pan_deg, "accent")
-        radius = min(side.width, side.height / 2) - 2
         dial = Dial(side, ((side.width - radius) / 2, side.height / 2), radius, 0.0)
         dial.draw(pose.tilt_deg, None if told is None else told.tilt_deg, "second")
         gap = Ink(" " * (width - 2 * columns))
@@ -111,7 +110,7 @@ class HeadPanel(Drawing):
 
 def _caption(width: int) -> Line:
     half = width // 2
-    return [Ink(fit(_("from above"), half), "muted"), Ink(fit(_("from its right"), half), "muted")]
+    return [Ink(fit(_("from above"), half), "muted"), Ink(fit(_("from right"), half), "muted")]
 
 
 class Dial(NamedTuple):
