@@ -75,6 +75,25 @@ def test_the_token_at_a_place_is_found_and_is_never_empty() -> None:
     assert token_at("x", 99) == (99, 100)
 
 
+async def test_the_line_of_the_cursor_keeps_its_colours() -> None:
+    app = EditorApp()
+    async with app.run_test() as pilot:
+
+        def colours(y: int) -> set[object]:
+            text = app.editor.render_line(y).crop(app.editor.gutter_width)
+            return {segment.style.color for segment in text if segment.style}
+
+        app.editor.move_cursor((0, 0))
+        await pilot.pause()
+        elsewhere = colours(1)
+        app.editor.move_cursor((1, 0))
+        await pilot.pause()
+        assert elsewhere <= colours(1)
+        (end,) = list(app.editor.render_line(1))[-1:]
+        cursor_line = app.editor.get_component_styles("text-area--cursor-line").background
+        assert end.style.bgcolor == (app.editor.background_colors[1] + cursor_line).rich_color
+
+
 @pytest.mark.parametrize("language", ["en", "ru"])
 def test_templates_are_what_their_titles_say(language: str) -> None:
     set_language(language)

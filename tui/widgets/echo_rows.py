@@ -37,7 +37,7 @@ class EchoRows(ScrollView, can_focus=True):
         &> .echo-tree--key { color: $text-primary; }
         &> .echo-tree--text { color: $text-success; }
         &> .echo-tree--bytes { color: $text-warning; }
-        &> .echo-tree--note { color: $text-muted; text-style: italic; }
+        &> .echo-tree--note { color: $foreground; text-style: italic dim; }
         &> .echo-tree--cursor {
             color: $block-cursor-foreground; background: $block-cursor-background;
         }

@@ -63,7 +63,7 @@ class JsonEditor(TextArea):
         & .json-editor--string { color: $text-success; }
         & .json-editor--number { color: $text-warning; }
         & .json-editor--word { color: $text-accent; }
-        & .json-editor--mark { color: $text-muted; }
+        & .json-editor--mark { color: $foreground; text-style: dim; }
         & .json-editor--bad { color: $text-error; }
         & .json-editor--problem { color: $text-error; text-style: bold underline; }
         & .json-editor--gutter { color: $text-error; text-style: bold; }
@@ -129,6 +129,15 @@ class JsonEditor(TextArea):
         before, after = self.gutter_width - MARGIN, self.gutter_width - MARGIN + 1
         mark = Strip([Segment(MARK, self._style("gutter"))], 1)
         return Strip.join([strip.crop(0, before), mark, strip.crop(after)])
+
+    def get_component_rich_style(
+        self, *names: str, partial: bool = False, default: Style | None = None
+    ) -> Style:
+        """The line of the cursor gets a background only: its tokens keep their colours."""
+        style = super().get_component_rich_style(*names, partial=partial, default=default)
+        if "text-area--cursor-line" in names:
+            return type(style)(bgcolor=style.bgcolor)
+        return style
 
     def _style(self, kind: str) -> Style:
         return self.get_component_rich_style(f"json-editor--{kind}", partial=True)

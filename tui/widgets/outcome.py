@@ -38,7 +38,7 @@ class Outcome(ScrollView, can_focus=True):
         &> .outcome--bad { color: $text-error; text-style: bold; }
         &> .outcome--held { color: $text-warning; text-style: bold; }
         &> .outcome--passed { color: $text-primary; }
-        &> .outcome--awaited { color: $text-muted; }
+        &> .outcome--awaited { color: $foreground; text-style: dim; }
     }
     """
 
