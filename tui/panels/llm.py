@@ -25,7 +25,7 @@ class LlmFeed(Panel):
 
     title = N_("LLM commands")
     least = 4
-    weight = 3
+    weight = 5
     across_below = 100
 
     def __init__(self) -> None:

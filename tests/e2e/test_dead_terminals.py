@@ -1,0 +1,85 @@
+"""Terminals that stall or vanish without a word: the robot stops, and the screen ends by itself."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import signal
+import struct
+import subprocess
+import sys
+import termios
+from collections.abc import Iterator
+
+import pyte
+import pytest
+
+from tests.e2e import marked
+from tests.e2e.conftest import ROOT, Deck
+from tests.waiting import wait_until
+
+Line = tuple[int, int, "subprocess.Popen[bytes]"]
+
+
+@pytest.fixture
+def line(deck: Deck) -> Iterator[Line]:
+    """`deck` on a terminal that is not its controlling one: (own end, program's end, program)."""
+    own, program = pty.openpty()
+    fcntl.ioctl(own, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 120, 0, 0))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "tui", "02-sonar-safety"],
+        stdin=program,
+        stdout=program,
+        stderr=program,
+        cwd=ROOT,
+        env={**os.environ, "TERM": "xterm-256color", **deck.env},
+        start_new_session=True,
+    )
+    yield own, program, process
+    process.kill()
+    process.wait()
+    os.close(program)
+
+
+def read_until(own: int, word: str) -> None:
+    """Read what is written until `word` stands on the screen that comes of it."""
+    screen = pyte.Screen(120, 40)
+    stream = pyte.ByteStream(screen)
+
+    def more() -> bool:
+        stream.feed(os.read(own, 65536))
+        return word in "\n".join(screen.display)
+
+    wait_until(more, f"{word!r} on the terminal")
+
+
+def test_a_terminal_that_takes_nothing_keeps_nobody_from_stopping_the_robot(
+    line: Line, deck: Deck
+) -> None:
+    own, program, process = line
+    read_until(own, "2/2")
+    # What Ctrl+S does, or a line to a host that is gone.
+    termios.tcflow(program, termios.TCOOFF)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(30) == 128 + signal.SIGTERM
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
+    os.close(own)
+
+
+def test_a_terminal_that_vanishes_without_a_signal_is_noticed(line: Line, deck: Deck) -> None:
+    own, _program, process = line
+    read_until(own, "2/2")
+    os.close(own)
+    assert process.wait(30) == 128 + signal.SIGHUP
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
+
+
+def test_interrupting_twice_does_not_wait_for_anybody(line: Line, deck: Deck) -> None:
+    own, _program, process = line
+    read_until(own, "2/2")
+    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30) == 128 + signal.SIGINT
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
+    os.close(own)
