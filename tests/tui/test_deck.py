@@ -331,6 +331,8 @@ async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_field() -> 
             app.post_message(Key(key, key))
         await pilot.pause()
         assert app.screen.query_one(CommandLine).field.value == "left"
+        await pilot.press("c", "с", "x")
+        assert app.screen.query_one(CommandLine).field.value == "leftcсx"
 
 
 async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:

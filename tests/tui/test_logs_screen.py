@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from textual.events import Key
 from textual.pilot import Pilot
+from textual.widgets import Input
 
 from launcher.events import LogEvent
 from launcher.status import Severity
@@ -70,6 +71,16 @@ async def test_what_is_typed_without_a_pause_after_the_key_is_searched_for() -> 
             pilot.app.post_message(Key(key, "/" if key == "slash" else key))
         await pilot.pause()
         assert screen_of(pilot).pane.view.log_filter.search == "sonar"
+        await pilot.press("slash", "x")
+        assert screen_of(pilot).pane.view.log_filter.search == "sonar/x"
+
+
+async def test_a_slash_is_a_part_of_a_files_name() -> None:
+    async with HOME.app("logs").run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        await pilot.press("ctrl+s", "slash", "x")
+        field = screen_of(pilot).query_one(Input)
+        assert (screen_of(pilot).pane.prompt.kind, field.value[-2:]) == ("save", "/x")
 
 
 async def test_the_key_that_pauses_is_called_by_what_it_does_now() -> None:

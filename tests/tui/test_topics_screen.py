@@ -263,6 +263,8 @@ async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_filter(room
         room.app.post_message(Key(key, "/" if key == "slash" else key))
     await room.pilot.pause()
     assert room.screen.filter.value == "sonar"
+    await room.pilot.press("slash", "f")
+    assert room.screen.filter.value == "sonar/f"
 
 
 async def test_space_stops_the_robot_from_table_and_tree(room: Room) -> None:

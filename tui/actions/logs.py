@@ -47,6 +47,11 @@ class Search(LogsAction):
     priority = True
 
     @classmethod
+    def possible(cls, target: LogsScreen) -> bool | None:
+        """Not where one is asked already: there a slash is a slash."""
+        return not target.pane.prompt.kind
+
+    @classmethod
     async def run(cls, target: LogsScreen) -> None:
         """Ask what for."""
         target.pane.search()

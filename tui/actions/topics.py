@@ -26,6 +26,11 @@ class Filter(TopicsAction):
     priority = True
 
     @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """Not in the filter itself: there a slash is a slash."""
+        return not target.filter.has_focus
+
+    @classmethod
     async def run(cls, target: TopicsScreen) -> None:
         """Put the cursor into the filter."""
         target.focus_filter()
