@@ -230,3 +230,15 @@ async def test_where_there_is_none_everything_is_still_there(width: int) -> None
             assert app.lines()[1] == "   12 ms ✓ /llm_result: accepted: 2"
         strips = [app.query_one(Outcome).render_line(y) for y in range(60)]
         assert {strip.cell_length for strip in strips} == {app.query_one(Outcome).size.width}
+
+
+async def test_its_colours_are_those_of_the_theme_that_was_switched_to() -> None:
+    app = OutcomeApp()
+    async with app.run_test() as pilot:
+        outcome = app.query_one(Outcome)
+        outcome.show("Sent", ENTRIES[:1])
+        app.theme = "textual-light"
+        await pilot.pause()
+        text = [part for part in outcome.render_line(1) if "accepted" in part.text]
+        wanted = outcome.get_component_rich_style("outcome--good", partial=True)
+        assert [part.style.color for part in text if part.style] == [wanted.color]

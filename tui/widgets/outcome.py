@@ -47,6 +47,8 @@ class Outcome(ScrollView, can_focus=True):
         self._headline = ""
         self._entries: tuple[Entry, ...] = ()
         self._strips: list[Strip] = []
+        self._off_colour = False
+        """Whether the strips have the colours of another theme."""
 
     def show(self, headline: str, entries: Sequence[Entry]) -> None:
         """Show these entries; drawn only if something is new."""
@@ -67,6 +69,8 @@ class Outcome(ScrollView, can_focus=True):
 
     def render_line(self, y: int) -> Strip:
         """One line of the trail."""
+        if self._off_colour:
+            self._lay()
         index, width = y + self.scroll_offset.y, self.size.width
         if index >= len(self._strips):
             return Strip.blank(width, self.rich_style)
@@ -77,23 +81,28 @@ class Outcome(ScrollView, can_focus=True):
         self._draw()
 
     def notify_style_update(self) -> None:
-        """Draw in the colours of another theme."""
+        """Draw in the colours of another theme: those of the parts come after this call."""
         super().notify_style_update()
-        self._draw()
+        self._off_colour = True
+        self.refresh()
 
     def watch_show_vertical_scrollbar(self) -> None:
         """Wrap anew at the width that the scroll bar leaves."""
         self._draw()
 
     def _draw(self) -> None:
+        self._lay()
+        self.virtual_size = Size(0, len(self._strips))
+        self.refresh()
+
+    def _lay(self) -> None:
+        self._off_colour = False
         base, width = self.rich_style, max(1, self.scrollable_size.width)
         self._strips = []
         if self._headline:
             self._wrap([], 0, self._headline, base + Style(bold=True), width)
         for entry in self._entries:
             self._entry(entry, width)
-        self.virtual_size = Size(0, len(self._strips))
-        self.refresh()
 
     def _entry(self, entry: Entry, width: int) -> None:
         base = self.rich_style

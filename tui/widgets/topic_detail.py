@@ -8,6 +8,7 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widget import Widget
 
+from graph.data import Trouble
 from tui.i18n import _
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.image_view import ImageView
@@ -139,7 +140,9 @@ class TopicDetail(Vertical):
             state = f"{_('PAUSED')} · {state}"
         types = " | ".join(row.type_names)
         if self._sample is not None:
-            trouble = " ".join(filter(None, (headline, way_out)))
+            # That it is quiet is said by the figures, and most topics may be.
+            quiet = row.trouble is Trouble.QUIET
+            trouble = "" if quiet else " ".join(filter(None, (headline, way_out)))
             head.show(row.name, types, state, trouble or ends(row))
             return
         head.show(row.name, types, state, ends(row))
