@@ -120,7 +120,7 @@ class Feed:
             self.history.add(event.lines)
             self.tell(lambda: LogArrived(event.lines, event.skipped))
         elif isinstance(event, StraysEvent):
-            self._app.ask_about(event.strays)
+            self._app.sessions.ask_about(event.strays)
         elif isinstance(event, ClosedEvent):
             await self.disconnect(event.reason)
 

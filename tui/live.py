@@ -16,7 +16,7 @@ from launcher.rundir import log_dir
 from tui import clock
 from tui.app import DeckApp, every_action
 from tui.i18n import _, detect, set_language
-from tui.session import LivePad
+from tui.launchpad import LivePad
 from tui.settings import Settings, SettingsError, load, save, settings_path
 from tui.stray_output import StrayOutput
 from tui.terminal import DeckDriver
@@ -60,11 +60,11 @@ class LiveApp(DeckApp):
     def desert(self, code: int) -> None:
         """Leave because nobody is there any more, or because the system says so."""
         if self._deserted:
-            self.stop_now()
+            self.sessions.stop_now()
             return
         self._deserted = True
-        self.leave(code)
-        self.set_timer(PATIENCE_S, self.stop_now)
+        self.sessions.leave(code)
+        self.set_timer(PATIENCE_S, self.sessions.stop_now)
 
     def on_resize(self) -> None:
         """Draw everything anew: a window made small and large again has lost its cells."""
@@ -132,8 +132,8 @@ def run_live(order: Order, lang: str | None) -> int:
     with stray:
         app = LiveApp(order, stray, settings)
         app.run()
-    if app.parting_words:
-        return _refused(app.parting_words, app.return_code or 0)
+    if app.sessions.parting_words:
+        return _refused(app.sessions.parting_words, app.return_code or 0)
     if app.crashed:
         return _refused(_("Deck has failed; what is known is in {path}").format(path=stray.path), 1)
     return app.return_code or 0

@@ -24,6 +24,7 @@ from tests.tui.recorded import (
     line,
 )
 from tests.tui.snapshots import settle
+from tui import title
 from tui.app import DeckApp
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
@@ -169,7 +170,7 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         pad.link.say(ClosedEvent(say("the supervisor is gone")))
         await pilot.pause()
         await pilot.pause()
-        assert app.state_words()[0] == "the supervisor is gone"
+        assert title.states(app)[0] == "the supervisor is gone"
         assert pad.graph.stopped
         await pilot.press("4")
         await pilot.pause()
@@ -195,7 +196,7 @@ async def test_what_was_named_and_cannot_be_opened_ends_the_program_with_words(
         await pilot.pause()
         await pilot.pause()
     assert app.return_code == code
-    assert app.parting_words == str(error)
+    assert app.sessions.parting_words == str(error)
 
 
 async def test_what_an_earlier_run_left_behind_is_offered_for_stopping() -> None:

@@ -29,6 +29,7 @@ from tests.tui.recorded import (
     topic,
 )
 from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
+from tui import title
 from tui.app import DeckApp
 from tui.panels.camera import CameraFeed
 from tui.panels.head import HeadFeed
@@ -232,7 +233,7 @@ async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
         row = table.render_line(2).text
         assert "↻ restarts" in row
         assert "ended by SIGKILL" in row
-        assert "◔ 7/8" in app.state_words()[0]
+        assert "◔ 7/8" in title.states(app)[0]
 
 
 async def test_hostile_log_lines_and_names_are_shown_harmlessly() -> None:

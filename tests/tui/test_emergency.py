@@ -9,6 +9,7 @@ from textual.widgets import Input
 from graph.data import GraphUpdate, Sample
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from tui import title
 from tui.emergency import SAFETY_TOPIC, TOPIC, TOPIC_TYPE, Emergency, listeners
 from tui.widgets.command_line import CommandLine
 from tui.widgets.title_bar import TitleBar
@@ -149,7 +150,7 @@ async def test_the_safety_nodes_words_stand_in_the_title() -> None:
         pad.graph.show(held(b"\x01", "front 0.38 m"))
         await pilot.pause()
         await pilot.pause()
-        assert "⚠ Motion is held: front 0.38 m" in app.state_words()[0]
+        assert "⚠ Motion is held: front 0.38 m" in title.states(app)[0]
 
 
 async def test_another_session_begins_without_the_stop_of_the_one_before() -> None:
@@ -157,7 +158,7 @@ async def test_another_session_begins_without_the_stop_of_the_one_before() -> No
     async with opened(pad) as (app, pilot):
         await pilot.press("space", "f8")
         await pilot.pause()
-        app.open(app.defaults)
+        app.sessions.open(app.sessions.order)
         await pilot.pause()
         await pilot.pause()
         assert not app.brake.state.engaged

@@ -194,7 +194,7 @@ class CloseSession(OpenedAction):
     @classmethod
     async def run(cls, target: DeckApp) -> None:
         """Stop, or let go of, the session and show the picker."""
-        target.close_session()
+        target.sessions.close()
 
 
 class Redraw(AppAction):
@@ -225,7 +225,7 @@ class Quit(AppAction):
     @classmethod
     async def run(cls, target: DeckApp) -> None:
         """Stop orderly; asked again, stop at once."""
-        target.leave()
+        target.sessions.leave()
 
 
 APP_ACTIONS = (

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual.screen import Screen
 
+from tui import title
 from tui.actions import Acting
 from tui.messages import EmergencyChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.key_bar import KeyBar
@@ -120,4 +121,4 @@ class DeckScreen(Screen[None], Acting):
         """Show title, session and emergency stop as they are."""
         deck = self.deck
         for bar in self.query(TitleBar):
-            bar.show(deck.tabs(self.tab), deck.state_words(), deck.state_look)
+            bar.show(title.tabs(deck, self.tab), title.states(deck), title.look(deck))

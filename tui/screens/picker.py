@@ -117,9 +117,9 @@ class PickerScreen(Screen[None], Acting):
     @work(exclusive=True)
     async def look(self) -> None:
         """Ask for the lessons and for what runs."""
-        self._lessons = await self.deck.pad.lessons()
+        self._lessons = await self.deck.sessions.pad.lessons()
         self._offer()
-        self._sessions = await self.deck.pad.running()
+        self._sessions = await self.deck.sessions.pad.running()
         self._offer()
 
     def _offer(self) -> None:
@@ -156,16 +156,16 @@ class PickerScreen(Screen[None], Acting):
         """Return what Enter would open; None where that is nothing."""
         session, lesson = self._chosen_session(), self._chosen_lesson()
         if session is not None:
-            return self.deck.defaults._replace(attach=session.name)
+            return self.deck.sessions.order._replace(attach=session.name)
         if lesson is not None and not lesson.error:
-            return self.deck.defaults._replace(profile=lesson.path)
+            return self.deck.sessions.order._replace(profile=lesson.path)
         return None
 
     def open_chosen(self) -> None:
         """Open what is chosen."""
         order = self.order()
         if order is not None:
-            self.deck.open(order)
+            self.deck.sessions.open(order)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Draw anew."""

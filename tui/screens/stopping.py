@@ -30,7 +30,7 @@ class StopNow(Action["StoppingScreen"]):
     @classmethod
     async def run(cls, target: StoppingScreen) -> None:
         """Kill the rest."""
-        target.deck.stop_now()
+        target.deck.sessions.stop_now()
 
 
 class StoppingScreen(Dialog[None]):

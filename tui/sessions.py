@@ -1,0 +1,169 @@
+"""The session on the screen: opened, refused, closed, left; never more than one."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from launcher.errors import LauncherError
+from tui.i18n import said
+
+if TYPE_CHECKING:
+    from launcher.status import Stray
+    from tui.app import DeckApp
+    from tui.orders import Order
+    from tui.seams import Launchpad
+
+
+class Sessions:
+    """The way into a session and out of it."""
+
+    def __init__(self, app: DeckApp, pad: Launchpad, order: Order) -> None:
+        """`pad` lists and opens; an `order` that names nothing is asked for by the picker."""
+        self._app = app
+        self.pad = pad
+        self.order = order
+        """What every order has: hardware, overrides, domain; and what was named to begin with."""
+        self.picking = order.profile is None and order.attach is None
+        """Whether the picker is where one comes from, and goes back to."""
+        self.opening = "" if self.picking else _name_of(order)
+        """What is being opened, empty if nothing is."""
+        self.parting_words = ""
+        """Said on the terminal after the screen has gone."""
+        self._strays_asked: set[Stray] = set()
+        self._leaving = False
+        self._code = 0
+
+    def begin(self) -> None:
+        """Open what was named, if anything was."""
+        if not self.picking:
+            self.open(self.order)
+
+    def open(self, order: Order) -> None:
+        """Start or attach to a session and show it until it ends."""
+        self._app.run_worker(self._open(order), exclusive=True, group="session")
+
+    def close(self) -> None:
+        """Stop the nodes that this screen has started, or let go of the others; then pick anew."""
+        self._app.run_worker(self._close(), exclusive=True, group="leaving")
+
+    def leave(self, code: int = 0) -> None:
+        """Stop what this screen has started, and end with `code`; asked again, at once."""
+        if self._leaving:
+            self.stop_now()
+            return
+        self._leaving = True
+        self._code = code
+        self._app.run_worker(self._leave(), exclusive=True, group="leaving")
+
+    def stop_now(self) -> None:
+        """Skip the waiting for nodes that do not end by themselves."""
+        self._app.run_worker(self._stop_now(), group="leaving")
+
+    def ask_about(self, found: Sequence[Stray]) -> None:
+        """Offer to stop what an earlier run left behind, once."""
+        strays = tuple(stray for stray in found if stray not in self._strays_asked)
+        self._strays_asked.update(strays)
+        if strays:
+            self._app.run_worker(self._ask_about(strays), group="strays")
+
+    async def _open(self, order: Order) -> None:
+        app = self._app
+        self.opening = _name_of(order)
+        try:
+            if self.picking:
+                await app.show_screen("deck")
+            link = await self.pad.open(order)
+        except LauncherError as error:
+            await self._refuse(error)
+            return
+        finally:
+            self.opening = ""
+        app.brake.forget()
+        app.feed.connect(link, self.pad.observe(link.session))
+        app.brake.prepare()
+        app.refresh_bindings()
+        await app.feed.listen()
+        app.refresh_bindings()
+
+    async def _refuse(self, error: LauncherError) -> None:
+        """Say why nothing was opened: where it was picked, or by ending."""
+        reason = words_of(error)
+        if not self.picking or self._leaving:
+            self.parting_words = reason
+            self._app.exit(return_code=error.exit_code)
+            return
+        from tui.screens.refused import RefusedScreen
+
+        await self._back_to_picker()
+        self._app.push_screen(RefusedScreen(reason))
+
+    async def _ask_about(self, strays: tuple[Stray, ...]) -> None:
+        from tui.screens.strays import StraysScreen
+
+        wanted = await self._app.push_screen_wait(StraysScreen(strays))
+        link = self._app.feed.link
+        if wanted and link is not None:
+            with contextlib.suppress(LauncherError):
+                await link.stop_strays(strays)
+
+    async def _close(self) -> None:
+        await self._end()
+        await self._back_to_picker()
+
+    async def _leave(self) -> None:
+        await self._end()
+        self._app.exit(return_code=self._code)
+
+    async def _stop_now(self) -> None:
+        link = self._app.feed.link
+        if link is None:
+            self._app.exit(return_code=self._code)
+            return
+        with contextlib.suppress(LauncherError):
+            await link.shutdown(now=True)
+
+    async def _back_to_picker(self) -> None:
+        """Go back to the list; the screens of the session go with it."""
+        self.picking = True
+        self._app.feed.close()
+        await self._app.show_screen("picker")
+        await self._app.forget_screens()
+
+    async def _end(self) -> None:
+        """Stop or let go of the session, with a dialog that shows what is waited for."""
+        from tui.screens.stopping import StoppingScreen
+
+        app, link, graph = self._app, self._app.feed.link, self._app.feed.graph
+        if link is None or not link.session.foreground:
+            await app.feed.disconnect()
+            return
+        dialog = StoppingScreen()
+        await app.push_screen(dialog)
+        ending = [asyncio.ensure_future(link.shutdown())]
+        if graph is not None:
+            ending.append(asyncio.ensure_future(asyncio.to_thread(graph.stop)))
+        await asyncio.gather(*ending, return_exceptions=True)
+        await app.feed.disconnect()
+        if dialog.is_running and app.screen is dialog:
+            await dialog.dismiss()
+
+
+def words_of(error: LauncherError) -> str:
+    """Return an error in the language spoken now, every problem of a profile on its line."""
+    problems: Sequence[Any] = getattr(error, "problems", ())
+    if not problems:
+        return said(error.args[0]) if error.args else str(error)
+    lines = []
+    for problem in problems:
+        field = f"{problem.field}: " if problem.field else ""
+        hint = f" ({said(problem.hint)})" if problem.hint else ""
+        lines.append(f"{problem.where}: {field}{said(problem.message)}{hint}")
+    return "\n".join(lines)
+
+
+def _name_of(order: Order) -> str:
+    return order.attach or (order.profile or Path()).stem

@@ -1,0 +1,65 @@
+"""What the top line says: the screens there are, and what runs, is held or is stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from tui.actions.app import EmergencyRelease, ShowComposer, ShowDeck, ShowLogs, ShowTopics
+from tui.emergency import stop_words
+from tui.i18n import _, pick, said
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from launcher.status import SessionInfo
+    from tui.app import DeckApp
+
+TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs)
+WELL = frozenset({"ready", "running"})
+
+
+def tabs(app: DeckApp, front: str) -> Sequence[tuple[str, str, bool]]:
+    """Return (text, action, in front) of every screen of the session."""
+    return [
+        (f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front)
+        for tab in TABS
+    ]
+
+
+def look(app: DeckApp) -> str:
+    """Return how the title looks: `stop` while stopped, `alarm` while the safety node holds."""
+    if app.feed.link is None:
+        return "state"
+    if app.brake.state.engaged:
+        return "stop"
+    return "alarm" if app.brake.state.blocked else "state"
+
+
+def states(app: DeckApp) -> Sequence[str]:
+    """Return what is to be said, from long to short; the first that fits is shown."""
+    session = app.feed.session
+    if session is None:
+        if app.feed.ended:
+            return (said(app.feed.ended), _("ended"))
+        opening = app.sessions.opening
+        return (_("opening {name}…").format(name=opening),) if opening else ()
+    if app.brake.state.engaged:
+        return stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0])
+    if app.brake.state.blocked:
+        reason = plain(app.brake.state.blocked, 400)
+        return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
+    return _running(app, session)
+
+
+def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+    nodes = app.feed.nodes.values()
+    well = sum(node.state.value in WELL for node in nodes)
+    count = f"{'●' if well == len(nodes) else '◔'} {well}/{len(nodes)}"
+    title = f"{session.lesson} {pick(session.title)}".strip() or session.name
+    domain = _("domain {domain}").format(domain=session.domain)
+    return (
+        f"{title} · {session.hardware} · {domain} · {count}",
+        f"{title} · {count}",
+        f"{session.name} · {count}",
+        count,
+    )
