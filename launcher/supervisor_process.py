@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from launcher.logs_reader import PipeReader, node_pipe
 from launcher.process_members import Members
+from launcher.process_shm import held_segments, sweep
 from launcher.process_spawner import SpawnRequest
 from launcher.process_stop import send
 from launcher.process_table import read_process
@@ -75,6 +76,7 @@ class NodeProcess:
         """Read what it has still written, and forget it."""
         for reader in self._readers:
             reader.close()
+        self._launcher.sweep_segments(self.name)
         self._launcher.scan.members.remove(self.pid)
         await self._launcher.spawner.forget(self.pid)
 
@@ -95,6 +97,18 @@ class ProcessLauncher:
         self.scan = scan
         self._plan = plan
         self._book = book
+        self._segments: dict[str, set[str]] = {}
+
+    def note_segments(self, members: Mapping[str, Sequence[Process]]) -> None:
+        """Note which shared memory the nodes hold: of a killed one nobody could tell."""
+        for name, processes in members.items():
+            held = self._segments.setdefault(name, set())
+            for process in processes:
+                held |= held_segments(process.pid)
+
+    def sweep_segments(self, name: str) -> None:
+        """Remove the shared memory that a node has left behind."""
+        sweep(self._segments.pop(name, ()))
 
     async def launch(self, node: NodePlan) -> NodeProcess:
         """Start a node; raises `SpawnError`."""

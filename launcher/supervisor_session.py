@@ -95,7 +95,9 @@ class Session:
             await asyncio.sleep(USAGE_EVERY_S)
             if not any(node.state.alive for node in self.nodes.values()):
                 continue
-            usages = self._meter.measure(self._launcher.scan.look(0.0), self.clock.now())
+            members = self._launcher.scan.look(0.0)
+            self._launcher.note_segments(members)
+            usages = self._meter.measure(members, self.clock.now())
             for name, node in self.nodes.items():
                 if node.state.alive:
                     node.usage = usages.get(name)

@@ -9,6 +9,7 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from launcher.process_shm import SHARED_MEMORY, held_segments
 from launcher.process_table import NODE_MARK, command_line, processes, read_marks, read_process
 from launcher.process_usage import proportional_memory
 from launcher.status import NodeState, Severity
@@ -245,3 +246,15 @@ async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
 def _python_path() -> list[str]:
     before = os.environ.get("PYTHONPATH")
     return [before] if before else []
+
+
+async def test_a_killed_nodes_shared_memory_is_given_back(start: Launch, tmp_path: Path) -> None:
+    client = await start({"node": module(tmp_path, "talker_module", TALKER)})
+    status = await until_state(client, "node", NodeState.READY)
+    assert status.pid is not None
+    (segment,) = held_segments(status.pid)
+    await until(lambda: client.nodes["node"].cpu_percent is not None, "two measurements")
+    kill(status.pid, signal.SIGKILL)
+    await until_state(client, "node", NodeState.FAILED)
+    assert not (SHARED_MEMORY / segment).exists()
+    assert not (SHARED_MEMORY / f"{segment}_el").exists()

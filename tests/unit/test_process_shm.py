@@ -1,0 +1,31 @@
+"""Shared memory of killed nodes goes, that of living ones stays."""
+
+from __future__ import annotations
+
+import fcntl
+from typing import TYPE_CHECKING
+
+from launcher.process_shm import sweep
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+DEAD, ALIVE, GONE = "fastrtps_00000000000000d0", "fastrtps_00000000000000a1", "fastrtps_0"
+
+
+def test_only_what_nobody_holds_is_removed(tmp_path: Path) -> None:
+    for name in (DEAD, ALIVE):
+        (tmp_path / name).write_bytes(b"segment")
+        (tmp_path / f"{name}_el").touch()
+    with (tmp_path / f"{ALIVE}_el").open() as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        assert sweep([DEAD, ALIVE, GONE], tmp_path) == [DEAD]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [ALIVE, f"{ALIVE}_el"]
+
+
+def test_a_link_is_not_followed(tmp_path: Path) -> None:
+    precious = tmp_path / "precious"
+    precious.touch()
+    (tmp_path / f"{DEAD}_el").symlink_to(precious)
+    assert sweep([DEAD], tmp_path) == []
+    assert precious.exists()
