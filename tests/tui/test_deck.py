@@ -3,32 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import pytest
 from textual.events import Key
-from textual.pilot import Pilot
 from textual.widgets import Input
 
-from graph.data import Trouble
 from launcher.events import LogEvent
 from launcher.status import NodeState, Severity
 from tests.tui.app_runs import opened
+from tests.tui.deck_days import llm
 from tests.tui.recorded import (
-    NODES,
-    NOW_S,
-    SESSION,
     TOPICS,
     RecordedGraph,
     RecordedPad,
-    RecordedSession,
-    lesson_samples,
     lesson_update,
     line,
-    sample,
     topic,
 )
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
 from tui import title
 from tui.app import DeckApp
 from tui.panels.camera import CameraFeed
@@ -43,132 +34,8 @@ from tui.widgets.command_line import CommandLine
 from tui.widgets.image_view import ImageView
 from tui.widgets.nodes_table import NodesTable, duration
 from tui.widgets.outcome import Outcome
-from tui.widgets.outcome_story import SENT_TO
 from tui.widgets.sonar import SonarPanel
 from tui.widgets.wheels import WheelsPanel
-
-HELLO = replace(SESSION, name="01-hello", lesson="1", title={"en": "The first node"}, panels=())
-
-
-def hello() -> RecordedPad:
-    """Lesson 1: one node, no panels."""
-    node = replace(NODES["camera"], name="hello_node", command="nodes.hello")
-    lines = [line("hello_node", n, f"I have worked for {n} s", at_s=n) for n in range(1, 12)]
-    session = RecordedSession(HELLO, {"hello_node": node}, lines)
-    return RecordedPad(session, RecordedGraph(lesson_update(topics=(), samples={})))
-
-
-def troubled() -> RecordedPad:
-    """Lesson 9 on a bad day: nodes waiting, restarting, failed; every panel without data."""
-    session = RecordedSession()
-    session.nodes["camera"] = replace(
-        NODES["camera"],
-        state=NodeState.FAILED,
-        pid=None,
-        uptime_s=None,
-        cpu_percent=None,
-        memory_bytes=None,
-        exit_code=1,
-        restarts=5,
-        detail="given up after 5 ends in 12 s",
-    )
-    session.nodes["audio"] = replace(
-        NODES["audio"],
-        state=NodeState.BACKOFF,
-        pid=None,
-        uptime_s=None,
-        restarts=2,
-        cpu_percent=None,
-        memory_bytes=None,
-        signal="SIGKILL",
-    )
-    session.nodes["ai_brain"] = replace(
-        NODES["ai_brain"],
-        state=NodeState.WAITING,
-        pid=None,
-        uptime_s=None,
-        cpu_percent=None,
-        memory_bytes=None,
-        detail="waits for camera, audio",
-    )
-    troubles = {
-        "/sensor/sonar_front": (Trouble.QUIET, ""),
-        "/wheel_commands": (Trouble.QOS_MISMATCH, "reliable here, best effort there"),
-        "/camera/color/image_raw": (Trouble.NO_PUBLISHER, ""),
-        "/head_state": (Trouble.UNKNOWN_TYPE, "head_msgs/msg/Head"),
-    }
-    rows = tuple(
-        replace(row, trouble=troubles[row.name][0], detail=troubles[row.name][1], age_s=None)
-        if row.name in troubles
-        else row
-        for row in TOPICS
-    )
-    return RecordedPad(session, RecordedGraph(lesson_update(topics=rows, samples={})))
-
-
-@every_look
-def test_deck_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Eight nodes ready, sonar 1.84 m free, left turn, colour bars, head 45° left, the log."""
-    assert snap_compare(look.app(), terminal_size=look.size, run_before=look.settle)
-
-
-@each_size
-def test_deck_of_the_first_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """One node above, its log below over the whole width, no panels and no empty frames."""
-    assert snap_compare(look.app(pad=hello()), terminal_size=look.size, run_before=look.settle)
-
-
-LLM_JSON = (
-    '{"thought": "Turn and look", "commands": [{"action": "drive", "speed": 0.3, "steering": 0.5},'
-    ' {"action": "turn_head", "pan": 45, "tilt": 10}]}'
-)
-
-
-def llm() -> RecordedPad:
-    """Lesson 10: a message to the parser, and what came of it."""
-    panels = ("composer", "wheels", "head")
-    lesson = replace(SESSION, name="10-llm-json", lesson="10", panels=panels)
-    results = (
-        '{"event": "accepted", "commands": 2, "thought": "Turn and look"}',
-        '{"event": "head", "pan": 45, "tilt": 10, "sum": 1}',
-    )
-    samples = lesson_samples()
-    samples["/llm_raw_json"] = (sample("/llm_raw_json", "std_msgs/msg/String", {"data": LLM_JSON}),)
-    samples["/llm_result"] = tuple(
-        sample("/llm_result", "std_msgs/msg/String", {"data": text}) for text in results
-    )
-    just_now = {
-        topic: tuple(
-            replace(one, received_s=NOW_S + 16.0 + (0.004 * (n + 1) if topic != SENT_TO else 0.0))
-            for n, one in enumerate(each)
-        )
-        for topic, each in samples.items()
-    }
-    graph = RecordedGraph(lesson_update(samples=just_now))
-    return RecordedPad(RecordedSession(lesson), graph)
-
-
-@each_size
-def test_deck_of_the_llm_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Accepted, the drive, the head done: the trail of the newest JSON with its delays."""
-    assert snap_compare(look.app(pad=llm()), terminal_size=look.size, run_before=look.settle)
-
-
-@each_size
-def test_deck_in_trouble_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Failed, restarting and waiting nodes by sign and word; each empty panel says why."""
-    assert snap_compare(look.app(pad=troubled()), terminal_size=look.size, run_before=look.settle)
-
-
-@each_size
-def test_deck_stopped_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """The red line with the word and the key that releases stands under the title."""
-
-    async def stop(pilot: Pilot[Any]) -> None:
-        await look.settle(pilot)
-        await pilot.press("space")
-
-    assert snap_compare(look.app(), terminal_size=look.size, run_before=stop)
 
 
 def deck_of(app: DeckApp) -> LessonDeck:

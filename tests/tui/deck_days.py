@@ -1,0 +1,110 @@
+"""Days of the Deck that were written down: the first lesson, the LLM lesson, a bad day."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from graph.data import Trouble
+from launcher.status import NodeState
+from tests.tui.recorded import (
+    NODES,
+    NOW_S,
+    SESSION,
+    TOPICS,
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    lesson_samples,
+    lesson_update,
+    line,
+    sample,
+)
+from tui.widgets.outcome_story import SENT_TO
+
+HELLO = replace(SESSION, name="01-hello", lesson="1", title={"en": "The first node"}, panels=())
+
+
+def hello() -> RecordedPad:
+    """Lesson 1: one node, no panels."""
+    node = replace(NODES["camera"], name="hello_node", command="nodes.hello")
+    lines = [line("hello_node", n, f"I have worked for {n} s", at_s=n) for n in range(1, 12)]
+    session = RecordedSession(HELLO, {"hello_node": node}, lines)
+    return RecordedPad(session, RecordedGraph(lesson_update(topics=(), samples={})))
+
+
+LLM_JSON = (
+    '{"thought": "Turn and look", "commands": [{"action": "drive", "speed": 0.3, "steering": 0.5},'
+    ' {"action": "turn_head", "pan": 45, "tilt": 10}]}'
+)
+
+
+def llm() -> RecordedPad:
+    """Lesson 10: a message to the parser, and what came of it."""
+    panels = ("composer", "wheels", "head")
+    lesson = replace(SESSION, name="10-llm-json", lesson="10", panels=panels)
+    results = (
+        '{"event": "accepted", "commands": 2, "thought": "Turn and look"}',
+        '{"event": "head", "pan": 45, "tilt": 10, "sum": 1}',
+    )
+    samples = lesson_samples()
+    samples["/llm_raw_json"] = (sample("/llm_raw_json", "std_msgs/msg/String", {"data": LLM_JSON}),)
+    samples["/llm_result"] = tuple(
+        sample("/llm_result", "std_msgs/msg/String", {"data": text}) for text in results
+    )
+    just_now = {
+        topic: tuple(
+            replace(one, received_s=NOW_S + 16.0 + (0.004 * (n + 1) if topic != SENT_TO else 0.0))
+            for n, one in enumerate(each)
+        )
+        for topic, each in samples.items()
+    }
+    graph = RecordedGraph(lesson_update(samples=just_now))
+    return RecordedPad(RecordedSession(lesson), graph)
+
+
+def troubled() -> RecordedPad:
+    """Lesson 9 on a bad day: nodes waiting, restarting, failed; every panel without data."""
+    session = RecordedSession()
+    session.nodes["camera"] = replace(
+        NODES["camera"],
+        state=NodeState.FAILED,
+        pid=None,
+        uptime_s=None,
+        cpu_percent=None,
+        memory_bytes=None,
+        exit_code=1,
+        restarts=5,
+        detail="given up after 5 ends in 12 s",
+    )
+    session.nodes["audio"] = replace(
+        NODES["audio"],
+        state=NodeState.BACKOFF,
+        pid=None,
+        uptime_s=None,
+        restarts=2,
+        cpu_percent=None,
+        memory_bytes=None,
+        signal="SIGKILL",
+    )
+    session.nodes["ai_brain"] = replace(
+        NODES["ai_brain"],
+        state=NodeState.WAITING,
+        pid=None,
+        uptime_s=None,
+        cpu_percent=None,
+        memory_bytes=None,
+        detail="waits for camera, audio",
+    )
+    troubles = {
+        "/sensor/sonar_front": (Trouble.QUIET, ""),
+        "/wheel_commands": (Trouble.QOS_MISMATCH, "reliable here, best effort there"),
+        "/camera/color/image_raw": (Trouble.NO_PUBLISHER, ""),
+        "/head_state": (Trouble.UNKNOWN_TYPE, "head_msgs/msg/Head"),
+    }
+    rows = tuple(
+        replace(row, trouble=troubles[row.name][0], detail=troubles[row.name][1], age_s=None)
+        if row.name in troubles
+        else row
+        for row in TOPICS
+    )
+    return RecordedPad(session, RecordedGraph(lesson_update(topics=rows, samples={})))

@@ -1,0 +1,45 @@
+"""What the Deck looks like: at work, in trouble, stopped, in the first and in the LLM lesson."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from textual.pilot import Pilot
+
+from tests.tui.deck_days import hello, llm, troubled
+from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
+
+
+@every_look
+def test_deck_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Eight nodes ready, sonar 1.84 m free, left turn, colour bars, head 45° left, the log."""
+    assert snap_compare(look.app(), terminal_size=look.size, run_before=look.settle)
+
+
+@each_size
+def test_deck_of_the_first_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """One node above, its log below over the whole width, no panels and no empty frames."""
+    assert snap_compare(look.app(pad=hello()), terminal_size=look.size, run_before=look.settle)
+
+
+@each_size
+def test_deck_of_the_llm_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Accepted, the drive, the head done: the trail of the newest JSON with its delays."""
+    assert snap_compare(look.app(pad=llm()), terminal_size=look.size, run_before=look.settle)
+
+
+@each_size
+def test_deck_in_trouble_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Failed, restarting and waiting nodes by sign and word; each empty panel says why."""
+    assert snap_compare(look.app(pad=troubled()), terminal_size=look.size, run_before=look.settle)
+
+
+@each_size
+def test_deck_stopped_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """The red line with the word and the key that releases stands under the title."""
+
+    async def stop(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await pilot.press("space")
+
+    assert snap_compare(look.app(), terminal_size=look.size, run_before=stop)
