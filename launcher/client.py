@@ -53,6 +53,7 @@ async def launch(
     domain: int | None = None,
     foreground: bool = True,
     node_lang: str = "",
+    supervisor: StartingSupervisor | None = None,
 ) -> SupervisorClient:
     """Start a profile and connect to its supervisor.
 
@@ -63,6 +64,7 @@ async def launch(
         domain: the ROS domain, over what the profile and the environment say
         foreground: whether the nodes end with this process, or with `aclose`
         node_lang: `en` or `ru`, what the nodes log in; empty: as the environment says
+        supervisor: one that has been started ahead, for this call alone
 
     Raises:
         ProfileError, DomainError: if it cannot be used; nothing was started.
@@ -70,9 +72,9 @@ async def launch(
         RunDirError: if there is no place for sockets or logs.
         StartError: if the supervisor did not start.
     """
-    folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
-    supervisor = StartingSupervisor()
+    supervisor = supervisor or StartingSupervisor()
     try:
+        folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
         read = await asyncio.to_thread(_read, profile, hardware, tuple(overrides), domain)
         plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang)
     except BaseException:

@@ -9,8 +9,8 @@ import time
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile
+from launcher.client_start import StartingSupervisor
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
-from launcher.profile import load_profile
 from launcher.status import NodeState
 from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
@@ -33,18 +33,22 @@ INTERRUPTED = 130
 
 def run_command(options: Namespace) -> int:
     """Start a profile, tell what happens, stop it; 0 if every node stayed healthy."""
-    profile = load_profile(
-        find_profile(options.profile),
-        hardware=options.hardware,
-        overrides=options.overrides,
-        domain=options.domain,
-    )
-    return asyncio.run(_main(profile, options))
+    # It has enough to do while the profile is read, and pydantic imported for it.
+    with StartingSupervisor() as supervisor:
+        from launcher.profile import load_profile
+
+        profile = load_profile(
+            find_profile(options.profile),
+            hardware=options.hardware,
+            overrides=options.overrides,
+            domain=options.domain,
+        )
+        return asyncio.run(_main(profile, options, supervisor))
 
 
-async def _main(profile: Profile, options: Namespace) -> int:
+async def _main(profile: Profile, options: Namespace, supervisor: StartingSupervisor) -> int:
     loop = asyncio.get_running_loop()
-    run = Run(profile, options.seconds)
+    run = Run(profile, options.seconds, supervisor)
     writer = LineWriter(
         sys.stdout.fileno(),
         sys.stdout.encoding or "utf-8",
@@ -84,9 +88,12 @@ class Run:
 
     report: Report
 
-    def __init__(self, profile: Profile, seconds: float | None) -> None:
+    def __init__(
+        self, profile: Profile, seconds: float | None, supervisor: StartingSupervisor
+    ) -> None:
         """`seconds`: how long to go on once all nodes are up; None for ever."""
         self._profile = profile
+        self._supervisor = supervisor
         self._seconds = seconds
         self._client: SupervisorClient | None = None
         self._starting: asyncio.Task[SupervisorClient] | None = None
@@ -144,7 +151,12 @@ class Run:
         from launcher.client import launch
 
         self._starting = asyncio.ensure_future(
-            launch(self._profile, foreground=True, node_lang=language())
+            launch(
+                self._profile,
+                foreground=True,
+                node_lang=language(),
+                supervisor=self._supervisor,
+            )
         )
         self._client = await self._starting
         return self._client
