@@ -28,10 +28,9 @@ def main() -> None:
     node = rclpy.create_node(f"_watch_{os.getpid()}", enable_rosout=False)
     print("ready", flush=True)
     for line in sys.stdin:
-        for_all = line.strip() == "all"
-        while (wanted <= names_in(node)) if not for_all else not wanted <= names_in(node):
-            time.sleep(PERIOD_S)
-        if for_all:
+        if line == "all\n":
+            while not wanted <= names_in(node):
+                time.sleep(PERIOD_S)
             print(time.monotonic(), flush=True)
         else:
             while wanted & names_in(node):

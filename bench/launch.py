@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.processes import cpu_s, pss_mb
+from launcher.discovery import quick_discovery
 from launcher.process_table import processes
 from launcher.profile import load_profile
 
@@ -60,10 +61,10 @@ class Watch:
     """The observer, which sees the nodes of both."""
 
     def __init__(self, names: Sequence[str]) -> None:
-        """Start it and wait until it sees."""
+        """Start it and wait until it sees; it announces itself quickly, so as to see quickly."""
         self._process = subprocess.Popen(
             [sys.executable, "-m", "bench.graph_watch", *names],
-            env=environment(),
+            env={**environment(), **quick_discovery(environment(), "localhost")},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
