@@ -34,18 +34,6 @@ ROUNDS = int(os.environ.get("BENCH_ROUNDS", "7"))
 SETTLE_S = 5.0
 SHELL, DECK = "`&` in a shell", "Deck"
 
-CLIENT = """
-import asyncio, sys
-from launcher.client import launch
-
-async def main():
-    client = await launch(sys.argv[1], domain=int(sys.argv[2]))
-    await asyncio.get_running_loop().run_in_executor(None, sys.stdin.read)
-    await client.shutdown()
-
-asyncio.run(main())
-"""
-
 
 @dataclass(frozen=True)
 class Figures:
@@ -57,43 +45,6 @@ class Figures:
     nodes_pss_mb: float
 
 
-class Watch:
-    """The observer, which sees the nodes of both."""
-
-    def __init__(self, names: Sequence[str]) -> None:
-        """Start it and wait until it sees; it announces itself quickly, so as to see quickly."""
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "bench.graph_watch", *names],
-            env={**environment(), **quick_discovery(environment(), "localhost")},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        self._line()
-
-    def all_there(self) -> float:
-        """Return the monotonic time at which the last of the nodes was seen."""
-        return float(self._ask("all"))
-
-    def all_gone(self) -> None:
-        """Wait until none of them is seen."""
-        self._ask("none")
-
-    def close(self) -> None:
-        """End it."""
-        self._process.communicate(timeout=30)
-
-    def _ask(self, what: str) -> str:
-        assert self._process.stdin is not None
-        self._process.stdin.write(what + "\n")
-        self._process.stdin.flush()
-        return self._line()
-
-    def _line(self) -> str:
-        assert self._process.stdout is not None
-        return self._process.stdout.readline()
-
-
 def environment() -> dict[str, str]:
     """Return the environment of every process here."""
     return {
@@ -101,6 +52,27 @@ def environment() -> dict[str, str]:
         "ROS_DOMAIN_ID": str(DOMAIN),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
     }
+
+
+@contextmanager
+def watch(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+    """Run the observer, which announces itself quickly, so as to see quickly.
+
+    A new one each time: who has seen nodes of the turn before may still believe in them.
+    """
+    process = subprocess.Popen(
+        [sys.executable, "-m", "bench.graph_watch", *names],
+        env={**environment(), **quick_discovery(environment(), "localhost")},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        process.stdout.readline()
+        yield process
+    finally:
+        process.communicate(timeout=30)
 
 
 @contextmanager
@@ -124,16 +96,17 @@ def by_shell(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
 
 @contextmanager
 def by_deck(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
-    """Start the profile through the launcher, in a new process as `deck` is."""
+    """Start the profile by `deck run`."""
     process = subprocess.Popen(
-        [sys.executable, "-c", CLIENT, str(profile.path), str(DOMAIN)],
+        [sys.executable, "-m", "tui", "run", str(profile.path), "--domain", str(DOMAIN)],
         env=environment(),
-        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
     )
     try:
         yield process
     finally:
-        process.communicate(timeout=30)
+        process.send_signal(signal.SIGINT)
+        process.wait(30)
 
 
 def descendants(pid: int) -> list[int]:
@@ -151,31 +124,30 @@ def is_node(pid: int) -> bool:
     return b"nodes." in words and not words.startswith(b"bash")
 
 
-def measure(kind: str, profile: Profile, watch: Watch) -> Figures:
+def measure(kind: str, profile: Profile) -> Figures:
     """Start once."""
-    watch.all_gone()
     starter = by_deck if kind == DECK else by_shell
-    began = time.monotonic()
-    with starter(profile) as process:
-        ready_s = watch.all_there() - began
-        used_s = cpu_s(descendants(process.pid))
-        time.sleep(SETTLE_S)
-        everything = descendants(process.pid)
-        nodes = [pid for pid in everything if is_node(pid)]
-        return Figures(ready_s, used_s, pss_mb(everything), pss_mb(nodes))
+    with watch(list(profile.nodes)) as watcher:
+        assert watcher.stdout is not None
+        began = time.monotonic()
+        with starter(profile) as process:
+            ready_s = float(watcher.stdout.readline()) - began
+            used_s = cpu_s(descendants(process.pid))
+            time.sleep(SETTLE_S)
+            everything = descendants(process.pid)
+            nodes = [pid for pid in everything if is_node(pid)]
+            return Figures(ready_s, used_s, pss_mb(everything), pss_mb(nodes))
 
 
 def main() -> None:
     """Take turns, and print medians and their ratios."""
     path = sys.argv[1] if len(sys.argv) > 1 else "profiles/09-brain.yaml"
     profile = load_profile(path, domain=DOMAIN)
-    watch = Watch(list(profile.nodes))
     taken: dict[str, list[Figures]] = {SHELL: [], DECK: []}
     for _round in range(ROUNDS):
         for kind, figures in taken.items():
-            figures.append(measure(kind, profile, watch))
+            figures.append(measure(kind, profile))
             print(kind, figures[-1], file=sys.stderr, flush=True)
-    watch.close()
     print(f"{'':18}{'ready s':>10}{'CPU s':>10}{'PSS MB':>10}{'nodes MB':>10}")
     rows = {kind: medians(figures) for kind, figures in taken.items()}
     for kind, row in rows.items():
