@@ -7,6 +7,7 @@ rclpy take their time.
 from __future__ import annotations
 
 import asyncio
+import os
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -55,7 +56,9 @@ class LivePad:
     def observe(self, session: SessionInfo) -> GraphLink:
         """Return the graph of the session's domain."""
         from graph.observer import Observer
+        from launcher.discovery import hurry_discovery
 
+        hurry_discovery(os.environ, session.discovery)
         return Observer(session.domain, session.discovery)
 
 
