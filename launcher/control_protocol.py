@@ -25,6 +25,8 @@ MAX_REQUEST_BYTES = 1 << 20
 MAX_MESSAGE_BYTES = 64 << 20
 """A longer line from the supervisor cannot be."""
 MAX_HISTORY_LINES = 20_000
+MAX_HISTORY_CHARS = 8 << 20
+"""Of a longer history the newest lines are given."""
 
 
 def encode(message: Mapping[str, Any]) -> bytes:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from launcher.control_feed import ClientFeed
 from launcher.control_protocol import (
+    MAX_HISTORY_CHARS,
     MAX_HISTORY_LINES,
     MAX_REQUEST_BYTES,
     VERSION,
@@ -241,7 +242,7 @@ class ControlServer:
         if not isinstance(limit, int) or limit < 0:
             raise BadRequestError(say("limit: expected a whole number, found {x!r}", x=limit))
         lines = self._controlled.history(node, min(limit, MAX_HISTORY_LINES))
-        return [pack_line(line) for line in lines]
+        return [pack_line(line) for line in _newest(lines, MAX_HISTORY_CHARS)]
 
 
 class _Client:
@@ -308,6 +309,14 @@ def _check_version(request: dict[str, Any]) -> None:
         raise BadRequestError(
             say("this supervisor speaks version {ours}, not {theirs}", ours=VERSION, theirs=version)
         )
+
+
+def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:
+    for position in range(len(lines) - 1, -1, -1):
+        max_chars -= len(lines[position].text)
+        if max_chars < 0:
+            return lines[position + 1 :]
+    return lines
 
 
 def _names(request: dict[str, Any]) -> list[str]:

@@ -16,11 +16,14 @@ from launcher.spawn_server_start import SpawnServerHandle, start_spawn_server
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+MAX_ATTEMPTS = 4
+"""So many spawn servers may die over one request."""
 MAX_QUICK_DEATHS = 3
 """After so many spawn servers that answered nothing, the next one is cold: it imports nothing."""
 
 
 _QUEUE_FULL_S = 0.01
+_ENDING = "the session is ending"
 
 
 class SpawnError(Exception):
@@ -52,7 +55,7 @@ class Spawner:
         self._server = server
         self._on_death = on_death
         self._warm = server.warm
-        self._pending: dict[int, asyncio.Future[int]] = {}
+        self._pending: dict[int, asyncio.Future[int | None]] = {}
         self._next_id = 1
         self._quick_deaths = 0
         self._groups: set[int] = set()
@@ -78,21 +81,34 @@ class Spawner:
         Raises:
             SpawnError: if there is no such process now.
         """
-        request_id, self._next_id = self._next_id, self._next_id + 1
-        future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        self._pending[request_id] = future
-        packet = json.dumps({"id": request_id, **vars(request)}).encode()
-        try:
-            await self._send(packet, fds)
-            pid = await future
-        except OSError as problem:
-            raise SpawnError(problem.strerror or str(problem)) from problem
-        finally:
-            self._pending.pop(request_id, None)
+        for _attempt in range(MAX_ATTEMPTS):
+            pid = await self._ask(request, fds)
+            if pid is not None:
+                break
+        else:
+            raise SpawnError("the spawn server ends again and again")
         self._groups.add(pid)
         with contextlib.suppress(OSError):  # A new server is told which groups there are.
             await self._send(json.dumps({"kind": "adopt", "groups": [pid]}).encode(), ())
         return pid
+
+    async def _ask(self, request: SpawnRequest, fds: Sequence[int]) -> int | None:
+        """Return the number of the new process, None if the server has died over it.
+
+        What it had forked has answered before: the end of the socket comes after all answers.
+        """
+        if self._closed:
+            raise SpawnError(_ENDING)
+        request_id, self._next_id = self._next_id, self._next_id + 1
+        future: asyncio.Future[int | None] = asyncio.get_running_loop().create_future()
+        self._pending[request_id] = future
+        packet = json.dumps({"id": request_id, **vars(request)}).encode()
+        try:
+            with contextlib.suppress(OSError):
+                await self._send(packet, fds)
+            return await future
+        finally:
+            self._pending.pop(request_id, None)
 
     async def forget(self, pid: int) -> None:
         """Say that a started process and its group are no more."""
@@ -123,6 +139,9 @@ class Spawner:
         """Let go of the server; nothing of the run is left that it would have to end."""
         self._closed = True
         self._dismiss()
+        for future in self._pending.values():
+            if not future.done():
+                future.set_exception(SpawnError(_ENDING))
 
     async def _send(self, packet: bytes, fds: Sequence[int]) -> None:
         while not self._try_send(packet, fds):  # noqa: ASYNC110 - writable is not empty enough
@@ -164,7 +183,7 @@ class Spawner:
         self._drop()
         for future in self._pending.values():
             if not future.done():
-                future.set_exception(SpawnError("the spawn server ended"))
+                future.set_result(None)
         if self._closed:
             return
         self._quick_deaths += 1

@@ -132,6 +132,7 @@ class Node:
             self._down = self._again = self._forced = self._hurried = False
             self._policy.reset()
             self._task = asyncio.create_task(self._live())
+            self._task.add_done_callback(self._tell_fault)
         elif self._down:
             self._again = True
         elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
@@ -165,6 +166,16 @@ class Node:
 
     def _asked_before(self) -> bool:
         return self._down and self._around.clock.now() - self._asked_at > ASKED_TWICE_S
+
+    def _tell_fault(self, task: asyncio.Task[None]) -> None:
+        """Nothing of ours should raise here; if it does, the node must not seem to be well."""
+        if not task.cancelled() and task.exception() is not None:
+            self._become(
+                NodeState.FAILED, say("fault of Deck's own: {error!r}", error=task.exception())
+            )
+            asyncio.get_running_loop().call_exception_handler(
+                {"message": f"life of {self.plan.name}", "exception": task.exception()}
+            )
 
     def _go_down(self, *, now: bool) -> None:
         if not self._down:

@@ -52,6 +52,9 @@ class Session:
         )
         self.processes: dict[str, tuple[int, int]] = {}
         """Node to the number and the start, in ticks, of its newest process."""
+        self._to_return: set[str] = set()
+        """Nodes that are being stopped only to be started again."""
+        self._restarting: asyncio.Task[None] | None = None
         self._hurry = asyncio.Event()
 
     # What is asked of it.
@@ -68,6 +71,10 @@ class Session:
     async def stop(self, names: Iterable[str] = (), *, now: bool = False) -> None:
         """Stop these nodes, dependants first; all if none is named."""
         chosen = self._chosen(names)
+        self._to_return.difference_update(chosen)
+        await self._stop(chosen, now=now)
+
+    async def _stop(self, chosen: list[str], *, now: bool = False) -> None:
         if now:
             self._hurry.set()
             await asyncio.gather(*(self.nodes[name].stop(now=True) for name in chosen))
@@ -78,9 +85,26 @@ class Session:
             await asyncio.gather(*(self.nodes[name].stop(now=in_a_hurry) for name in wave))
 
     def restart(self, names: Iterable[str] = ()) -> None:
-        """Stop and start these nodes; all if none is named."""
-        for name in self._chosen(names):
-            self.nodes[name].restart()
+        """Begin to stop and start these nodes, dependants first; all if none is named."""
+        chosen = self._chosen(names)
+        if len(chosen) == 1:
+            self.nodes[chosen[0]].restart()
+            return
+        self._to_return.update(chosen)
+        if self._restarting is None or self._restarting.done():
+            self._restarting = asyncio.create_task(self._restart())
+
+    async def _restart(self) -> None:
+        stopped: set[str] = set()
+        while self._to_return - stopped:
+            wave = self._to_return - stopped
+            await self._stop(sorted(wave))
+            stopped |= wave
+        # Without those that somebody has stopped meanwhile.
+        returning = [name for name in self.nodes if name in self._to_return]
+        self._to_return.clear()
+        if returning:
+            self.start(returning)
 
     def _chosen(self, names: Iterable[str]) -> list[str]:
         names = list(names)

@@ -182,6 +182,18 @@ async def test_the_death_of_the_spawn_server_harms_nobody(start: Launch) -> None
     await running_pid(client, "other")
 
 
+async def test_a_start_that_a_spawn_server_dies_over_is_not_lost(
+    start: Launch, tmp_path: Path
+) -> None:
+    (tmp_path / "plain_module.py").write_text("print('running'); import time; time.sleep(1000)")
+    client = await start({"node": {"run": "plain_module", "ready": {"topic": "/never"}}})
+    # It is still importing what warm nodes need; the request waits.
+    kill(await spawn_server_of(client.session.run_id), signal.SIGKILL)
+    await said(client, "node", "running")
+    starts = [line for line in await client.history("node", 99) if "started" in line.text]
+    assert len(starts) == 1
+
+
 async def test_a_new_spawn_server_is_an_undertaker_too(start: Launch) -> None:
     client = await start({"deaf": {"exec": script(DEAF_FAMILY)}})
     run_id = client.session.run_id

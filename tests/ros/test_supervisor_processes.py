@@ -29,6 +29,8 @@ from tests.ros.supervised import (
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from launcher.client import SupervisorClient
+
 FORK_OFF = """
 import os, sys, time
 middle = os.fork()
@@ -213,7 +215,9 @@ async def test_what_a_crashed_node_leaves_is_ended_before_it_returns(
     assert not alive(grandchild)
 
 
-async def test_dependants_are_started_last_and_stopped_first(start: Launch, tmp_path: Path) -> None:
+@pytest.fixture
+async def robot(start: Launch, tmp_path: Path) -> tuple[SupervisorClient, Path]:
+    """Three nodes that need each other, and the file in which they note what happens to them."""
     notes = tmp_path / "notes"
     text = f"""
         import sys, time
@@ -229,12 +233,36 @@ async def test_dependants_are_started_last_and_stopped_first(start: Launch, tmp_
             "sonar": {"exec": script(text, "sonar")},
         }
     )
-    for name in client.nodes:
-        await running_pid(client, name)
-    await until(lambda: notes.exists() and len(notes.read_text().split()) == 6, "all are up")
+    await until(lambda: notes.exists() and notes.read_text().count("up") == 3, "all are up")
+    return client, notes
+
+
+async def test_dependants_are_stopped_first(robot: tuple[SupervisorClient, Path]) -> None:
+    client, notes = robot
     await client.stop()
-    order = notes.read_text().splitlines()
-    assert order[3:] == ["down brain", "down safety", "down sonar"]
+    assert notes.read_text().splitlines()[3:] == ["down brain", "down safety", "down sonar"]
+
+
+async def test_a_restart_of_all_stops_dependants_first_and_starts_them_again(
+    robot: tuple[SupervisorClient, Path],
+) -> None:
+    client, notes = robot
+    await client.restart()
+    await client.restart()
+    await until(lambda: notes.read_text().count("up") == 6, "all are up again")
+    order = notes.read_text().splitlines()[3:]
+    assert order[:3] == ["down brain", "down safety", "down sonar"]
+    assert len(order) == 6
+
+
+async def test_who_is_stopped_during_a_restart_of_all_stays_stopped(
+    robot: tuple[SupervisorClient, Path],
+) -> None:
+    client, notes = robot
+    await client.restart()
+    await client.stop("brain")
+    await until(lambda: notes.read_text().count("up") == 5, "the others are up again")
+    assert client.nodes["brain"].state is NodeState.EXITED
 
 
 async def test_starting_a_node_starts_what_it_needs(start: Launch) -> None:
