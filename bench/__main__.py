@@ -1,6 +1,7 @@
-"""Run every measurement, one after the other, and write bench/RESULTS.md: `python -m bench`.
+"""Run measurements one after the other and write bench/RESULTS.md: `python -m bench [NAME...]`.
 
 On a machine that does nothing else. Where two things are compared they take turns in one run.
+Named ones are measured anew, the others' results stay.
 """
 
 from __future__ import annotations
@@ -25,28 +26,46 @@ MEASUREMENTS = {
 
 
 def main() -> int:
-    """Measure, tell, and write; return 1 if a measurement broke off."""
-    sections, broken = [], 0
-    for module, title in MEASUREMENTS.items():
+    """Measure, tell, and write; return 1 if a measurement broke off, 2 for an unknown name."""
+    wanted = sys.argv[1:] or list(MEASUREMENTS)
+    if unknown := set(wanted) - set(MEASUREMENTS):
+        print(f"no such measurement: {', '.join(unknown)}", file=sys.stderr)
+        return 2
+    sections = known_sections()
+    broken = False
+    for module in wanted:
+        title = MEASUREMENTS[module]
         print(f"{module}: {title} ...", file=sys.stderr, flush=True)
-        ended = subprocess.run(
-            [sys.executable, "-m", f"bench.{module}"],
-            stdout=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
-        broken += ended.returncode != 0
+        argv = [sys.executable, "-m", f"bench.{module}"]
+        ended = subprocess.run(argv, stdout=subprocess.PIPE, text=True, check=False)
+        if ended.returncode:
+            broken = True
+            continue
         text = ended.stdout.strip()
-        if not text.startswith("|") and "\n| --- |" not in text:
+        if "| --- |" not in text:
             text = f"```\n{text}\n```"
-        sections.append(f"## {title}\n\n`python -m bench.{module}`\n\n{text}\n")
+        sections[title] = f"`python -m bench.{module}`\n\n{text}\n"
+    RESULTS.write_text(head() + "".join(f"\n## {t}\n\n{sections[t]}" for t in sections))
+    return int(broken)
+
+
+def head() -> str:
+    """What was measured, and what was not."""
     machine = f"{os.cpu_count()} cores, Python {platform.python_version()}, {platform.system()}"
-    head = (
-        "# What Deck costs\n\nWritten by `python -m bench`, in one run on a machine with "
-        f"{machine}, on mocks; nothing here was measured on a Raspberry Pi or with real hardware.\n"
+    return (
+        f"# What Deck costs\n\nWritten by `python -m bench` on a machine with {machine}, on mocks; "
+        "nothing here was measured on a Raspberry Pi or with real hardware.\n"
     )
-    RESULTS.write_text("\n".join([head, *sections]))
-    return 1 if broken else 0
+
+
+def known_sections() -> dict[str, str]:
+    """Title to text of what was measured before, in the order of `MEASUREMENTS`."""
+    known = {}
+    if RESULTS.exists():
+        for section in RESULTS.read_text().split("\n## ")[1:]:
+            title, _, text = section.partition("\n\n")
+            known[title] = text
+    return {title: known.get(title, "not measured yet\n") for title in MEASUREMENTS.values()}
 
 
 if __name__ == "__main__":

@@ -47,10 +47,10 @@ def open_topics(folder: Path) -> Terminal:
 
 def worst_error_percent(text: str) -> float:
     """Of the rates on the screen; 100 for one that is missing."""
-    shown = {}
+    shown: dict[str, float] = {}
     for line in text.splitlines():
         words = line.replace("▶", " ").split()
-        if words and words[0] in RATES_HZ and words[4].replace(".", "").isdigit():
+        if len(words) > 4 and words[0] in RATES_HZ and words[4].replace(".", "").isdigit():
             shown.setdefault(words[0], float(words[4]))
     return max(100 * abs(shown.get(topic, 0.0) / hz - 1) for topic, hz in RATES_HZ.items())
 
