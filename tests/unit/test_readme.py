@@ -1,0 +1,71 @@
+"""What the READMEs show is what Deck does: profiles, lessons, keys, commands, files."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from launcher.catalog import list_profiles
+from launcher.profile import load_profile
+from tui.actions import REGISTRY
+from tui.app import DeckApp
+from tui.cli.arguments import COMMANDS
+
+ROOT = Path(__file__).resolve().parents[2]
+READMES = ["README.md", "README.ru.md"]
+
+
+@pytest.fixture(params=READMES)
+def readme(request: pytest.FixtureRequest) -> str:
+    """The text of a README, in each language."""
+    return (ROOT / request.param).read_text()
+
+
+def test_the_profile_shown_is_valid_and_starts_what_it_says(readme: str, tmp_path: Path) -> None:
+    (text,) = re.findall(r"```yaml\n(.*?)```", readme, re.DOTALL)
+    path = tmp_path / "mine.yaml"
+    path.write_text(text)
+    profile = load_profile(path)
+    assert list(profile.nodes) == ["sonar_front", "safety_stop"]
+    assert profile.nodes["safety_stop"].needs == ("sonar_front",)
+
+
+def test_every_lesson_is_listed_and_no_other(readme: str) -> None:
+    listed = re.findall(r"^\| (\d\w*-[\w-]+) \|", readme, re.MULTILINE)
+    assert listed == [entry.name for entry in list_profiles() if entry.lesson]
+
+
+def test_every_command_shown_exists(readme: str) -> None:
+    shown = set(re.findall(r"^deck ([a-z]+) ", readme, re.MULTILINE))
+    assert shown == {"run", "list", "check", "up", "doctor"}
+    assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
+
+
+def test_every_file_linked_is_there(readme: str) -> None:
+    for link in re.findall(r"\]\(((?!https?:)[^)#]+)\)", readme):
+        assert (ROOT / link).exists(), link
+
+
+@pytest.mark.parametrize(
+    ("key", "action"),
+    [
+        ("space", "emergency.stop"),
+        ("ctrl+x", "emergency.stop"),
+        ("ctrl+r", "emergency.release"),
+        ("f2", "screen.deck"),
+        ("f3", "screen.topics"),
+        ("f4", "screen.composer"),
+        ("f5", "screen.logs"),
+        ("f1", "app.help"),
+        ("f8", "session.close"),
+        ("f9", "app.language"),
+        ("f10", "app.theme"),
+        ("q", "app.quit"),
+        ("ctrl+q", "app.quit"),
+    ],
+)
+def test_the_keys_shown_do_what_is_said(key: str, action: str) -> None:
+    assert DeckApp  # the app's module brings its actions
+    assert key in REGISTRY[action].key.split(",")
