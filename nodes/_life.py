@@ -8,6 +8,7 @@ come back is not waited for.
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import signal
 import sys
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 GRACE_S = 0.7
 """How long the callback of the moment, and the good-byes after it, may take."""
+DDS_GRACE_S = 3.0
+"""How long the middleware may take to close a node."""
 USAGE = 2
 """Exit code for arguments and parameters that make no sense."""
 
@@ -60,6 +63,7 @@ def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
         return USAGE
     finally:
         try_shutdown()
+        faulthandler.cancel_dump_traceback_later()
         ending.done()
 
 
@@ -85,9 +89,20 @@ def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> 
         node.before_end()
     except ExternalShutdownException:
         pass
+    _give_dds_time()
     executor.shutdown()
     node.destroy_node()  # type: ignore[no-untyped-call]
     return 0
+
+
+def _give_dds_time() -> None:
+    """End the process, with code 1, if closing the node takes longer than `DDS_GRACE_S`.
+
+    Fast DDS 2.14 has been seen to spin without end while it closes a participant, in C with the
+    interpreter's lock held: no Python thread gets to end the process then, faulthandler's does.
+    """
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    faulthandler.dump_traceback_later(DDS_GRACE_S, exit=True, file=nowhere)
 
 
 class Ending:

@@ -77,6 +77,13 @@ def test_a_callback_that_does_not_come_back_is_not_waited_for(
         assert_ended_well(process)
 
 
+def test_a_middleware_that_does_not_let_go_is_not_waited_for(module_domain: int) -> None:
+    with NodeProcess("tests.ros.stuck_node", module_domain) as process:
+        process.wait_for_words("up")
+        process.send(signal.SIGTERM)
+        assert process.wait() == 1
+
+
 @BOTH
 def test_the_head_ends_in_the_middle_of_a_movement(
     peer: Peer, module_domain: int, number: signal.Signals
