@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import launcher
+from launcher.process_marks import ROOM_ARGUMENT, room_for_marks
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -31,12 +32,13 @@ class StartingSupervisor:
         """Start it."""
         self._words = os.memfd_create("supervisor")
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "launcher.supervisor"],
+            [sys.executable, "-m", "launcher.supervisor", ROOM_ARGUMENT],
             # There `launcher` is this package, whatever the user's folder has of that name.
             cwd=Path(launcher.__file__).parent.parent,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._words,
+            env={**os.environ, **room_for_marks()},
             start_new_session=True,
         )
         # It is collected when it ends, however long that takes.

@@ -1,37 +1,52 @@
-"""What `ps` and /proc show of a forked node: a title of its own, and its marks.
+"""What `ps` and /proc show of a forked process: a title of its own, and its marks.
 
-A forked process keeps the argument and environment areas of the server that it was forked from.
-Here it overwrites them in place, so that people and the search for a run's processes see a node
-and not a copy of the server. (setproctitle would lay the title over the environment, and with it
-over the marks.) The server's command line and `NODE_MARK` leave room for it.
+A forked process keeps the argument and environment areas of the process it was forked from. Here
+it overwrites them in place, so that people and the search for a run's processes see a node and
+not a copy of the supervisor. (setproctitle would lay the title over the environment, and with it
+over the marks.) Whoever starts such a process leaves room, `ROOM_ARGUMENT` and `room_for_marks`.
 """
 
 from __future__ import annotations
 
 import ctypes
 
-from launcher.process_table import NODE_MARK
+from launcher.process_table import NODE_MARK, RUN_MARK
 from launcher.process_ties import set_short_name
 
-TITLE_ROOM = 160
-"""Bytes that the server's command line must have for titles."""
-NODE_ROOM = 255
-"""Bytes that the server's `NODE_MARK` must have for names of nodes."""
+ROOM_ARGUMENT = "-" * 160
+"""Last argument of a command line that has room for titles."""
+_ROOM = {RUN_MARK: "-" * 80, NODE_MARK: "-" * 255}
 
 _ARG_START, _ARG_END, _ENV_START, _ENV_END = range(48, 52)  # fields of /proc/self/stat, proc(5)
 
 
-def show_as(node: str, title: str) -> None:
-    """Make this process appear as `title`, and as belonging to `node`."""
+def room_for_marks() -> dict[str, str]:
+    """Return environment variables that have room for the marks."""
+    return dict(_ROOM)
+
+
+def show_title(title: str) -> None:
+    """Make this process appear as `title`."""
     areas = _areas()
     _write(areas[_ARG_START], areas[_ARG_END], title.encode())
+
+
+def show_name(name: str) -> None:
+    """Set the name of this process that `top` shows."""
+    set_short_name(name)
+
+
+def show_mark(mark: str, text: str) -> bool:
+    """Give this process a mark; return False if its environment has no room for it."""
+    areas = _areas()
     start, end = areas[_ENV_START], areas[_ENV_END]
-    slot = NODE_MARK.encode() + b"=" + b"-" * NODE_ROOM
-    at = ctypes.string_at(start, end - start).find(slot)
-    if at >= 0:
-        value = start + at + len(NODE_MARK) + 1
-        _write(value, value + NODE_ROOM + 1, node.encode())
-    set_short_name(node)
+    room = f"{mark}={_ROOM[mark]}".encode()
+    at = ctypes.string_at(start, end - start).find(room)
+    if at < 0:
+        return False
+    value = start + at + len(mark) + 1
+    _write(value, start + at + len(room) + 1, text.encode())
+    return True
 
 
 def _areas() -> dict[int, int]:

@@ -1,6 +1,7 @@
 """The spawn server: a child of the supervisor from which every node is forked.
 
-`python -m launcher.spawn_server FD PID MODE ROOM`: FD is its end of a seqpacket socket, PID the
+The first is forked from the supervisor before that has imported anything, later ones are started
+as `python -m launcher.spawn_server FD PID MODE ROOM`: FD is its end of a seqpacket socket, PID the
 supervisor, MODE `warm` or `cold`, and ROOM mere length for titles (`launcher.process_marks`).
 
 One request is one JSON packet with the file descriptors of the new process's stdin (optional),
@@ -136,20 +137,24 @@ def _answer(link: socket.socket, answer: dict[str, Any]) -> None:
         link.send(json.dumps(answer).encode())
 
 
-def main() -> None:
+def serve(link: socket.socket, supervisor: int, *, cold: bool) -> None:
     """Serve; at the end of the socket be the undertaker; in a forked node be the node."""
-    fd, supervisor, mode = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
-    link = socket.socket(fileno=fd)
-    link.set_inheritable(False)
-    # Whoever started the supervisor may have had these ignored.
+    # Whoever started the supervisor may have had these ignored, and a terminal is none of ours.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    server = SpawnServer(link, supervisor, Preload(cold=mode == "cold"))
+    server = SpawnServer(link, supervisor, Preload(cold=cold))
     task = server.serve()
     if task is not None:
         task()
     else:
         undertake(os.environ[RUN_MARK], server.groups)
+
+
+def main() -> None:
+    """Serve on the socket that the arguments tell of."""
+    link = socket.socket(fileno=int(sys.argv[1]))
+    link.set_inheritable(False)
+    serve(link, int(sys.argv[2]), cold=sys.argv[3] == "cold")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import traceback
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from launcher.process_marks import show_as
+from launcher.process_marks import show_mark, show_name, show_title
 from launcher.process_table import NODE_MARK
 from launcher.process_ties import die_with_parent
 
@@ -82,7 +82,9 @@ def become(birth: Birth) -> None:
         _give_up(f"cannot enter {birth.cwd}: {problem.strerror}", NOT_EXECUTABLE)
     if birth.kind == "exec":
         _execute(birth)
-    show_as(birth.name, birth.title)
+    show_title(birth.title)
+    show_name(birth.name)
+    show_mark(NODE_MARK, birth.name)
     _renew_streams()
     if birth.kind == "probe":
         from launcher.spawn_server_probe import probe
@@ -185,7 +187,7 @@ def _report(kind: type[BaseException], error: BaseException, trace: TracebackTyp
 
 
 def _is_ours(file: str) -> bool:
-    return file.startswith("<frozen runpy") or os.path.basename(file) in _OUR_FILES  # noqa: PTH119
+    return file.startswith("<frozen runpy") or os.path.dirname(file) in _OUR_FOLDERS  # noqa: PTH120
 
 
-_OUR_FILES = frozenset(("spawn_server.py", "spawn_server_node.py", "runpy.py"))
+_OUR_FOLDERS = frozenset(map(os.path.dirname, (__file__, runpy.__file__)))

@@ -8,8 +8,8 @@ import socket
 import sys
 from dataclasses import dataclass
 
-from launcher.process_marks import NODE_ROOM, TITLE_ROOM
-from launcher.process_table import NODE_MARK, RUN_MARK
+from launcher.process_marks import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
+from launcher.process_table import RUN_MARK
 
 
 @dataclass(frozen=True)
@@ -21,19 +21,47 @@ class SpawnServerHandle:
     warm: bool
 
 
+def fork_spawn_server(run_id: str) -> SpawnServerHandle:
+    """Fork a warm one from this process, whose parent of nodes it then is.
+
+    Quicker than to start another Python, and possible only while there is nothing else in this
+    one. In the server, and in all that is forked from it, this function does not return.
+    """
+    supervisor = os.getpid()
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    pid = os.fork()
+    if pid:
+        theirs.close()
+        ours.setblocking(False)
+        return SpawnServerHandle(ours, pid, warm=True)
+    ours.close()
+    os.setsid()
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(2, 1)
+    os.environ[RUN_MARK] = run_id
+    show_mark(RUN_MARK, run_id)
+    show_title("deck: spawn server")
+
+    from launcher.spawn_server import serve
+
+    serve(theirs, supervisor, cold=False)
+    sys.exit()
+
+
 def start_spawn_server(run_id: str, *, warm: bool) -> SpawnServerHandle:
-    """Start one in a session of its own; the calling process is the supervisor of its nodes."""
+    """Start one as a program, in a session of its own; this process is its nodes' supervisor."""
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     theirs.set_inheritable(True)
     mode = "warm" if warm else "cold"
     argv = [sys.executable, "-m", "launcher.spawn_server", str(theirs.fileno()), str(os.getpid())]
-    argv += [mode, "-" * TITLE_ROOM]
-    environ = {**os.environ, RUN_MARK: run_id, NODE_MARK: "-" * NODE_ROOM}
     pid = os.posix_spawn(
         sys.executable,
-        argv,
-        environ,
-        file_actions=[(os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0)],
+        [*argv, mode, ROOM_ARGUMENT],
+        {**os.environ, **room_for_marks(), RUN_MARK: run_id},
+        file_actions=[
+            (os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0),
+            (os.POSIX_SPAWN_DUP2, 2, 1),
+        ],
         setsid=True,
         setsigmask=(),
         setsigdef=(signal.SIGCHLD, signal.SIGPIPE),

@@ -8,7 +8,7 @@ end of the session. It answers with one line on stdout: where to connect, or why
 from __future__ import annotations
 
 from launcher.process_ties import become_subreaper
-from launcher.spawn_server_start import start_spawn_server
+from launcher.spawn_server_start import fork_spawn_server
 from launcher.supervisor_id import new_run_id
 
 
@@ -17,7 +17,7 @@ def main() -> None:
     become_subreaper()
     run_id = new_run_id()
     # First of all: what it imports takes longer than all that is done here meanwhile.
-    spawn_server = start_spawn_server(run_id, warm=True)
+    spawn_server = fork_spawn_server(run_id)
 
     import asyncio
 

@@ -21,7 +21,7 @@ ALLOWED = {
     "launcher.spawn_server": ["launcher.spawn_server_node", "launcher.spawn_server_warm"],
     "launcher.spawn_server_node": ["launcher.spawn_server_probe"],
     "launcher.spawn_server_probe": ["rclpy"],
-    "launcher.spawn_server_start": ["socket"],
+    "launcher.spawn_server_start": ["launcher.spawn_server", "socket"],
     "launcher.spawn_server_warm": ["ctypes"],
     "robot.commands": ["math", "numpy", "pydantic"],
 }

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from launcher import client
 from launcher.catalog import find_profile
-from launcher.client_start import StartingSupervisor
 from launcher.errors import ConnectionLostError, NotRunningError, SessionError, UnknownNodeError
 from launcher.events import LogEvent
 from tui.cli.health import settled, well
@@ -51,19 +50,18 @@ def down_command(options: Namespace) -> int:
 
 
 async def _up(options: Namespace) -> int:
-    # Validation takes pydantic along: time for the supervisor to get ready.
-    with StartingSupervisor() as supervisor:
-        from launcher.profile import load_profile
+    # Validation takes pydantic along, which the other commands do without.
+    from launcher.profile import load_profile
 
-        profile = load_profile(
-            find_profile(options.profile),
-            hardware=options.hardware,
-            overrides=options.overrides,
-            domain=options.domain,
-        )
-        link = await client.launch(
-            profile, foreground=False, node_lang=language(), supervisor=supervisor
-        )
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+    )
+    link = await client.launch(
+        profile, foreground=False, node_lang=language(), supervisor=options.supervisor
+    )
     try:
         try:
             await asyncio.wait_for(_settle(link), UP_WITHIN_S)

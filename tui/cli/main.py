@@ -31,6 +31,8 @@ HANDLERS = {
     "doctor": ("tui.cli.doctor", "doctor_command"),
 }
 """Command to module and function: only the module of the command in hand is imported."""
+STARTERS = ("run", "up")
+"""Commands that start a profile as soon as they have read it."""
 INTERRUPTED = 130
 READER_GONE = 141
 
@@ -70,6 +72,16 @@ def complain(error: LauncherError) -> int:
 
 
 def _run(command: str, options: Namespace) -> int:
+    if command not in STARTERS:
+        return _handle(command, options)
+    from launcher.client_start import StartingSupervisor
+
+    # It has more to import than this process has, and may begin at once.
+    with StartingSupervisor() as options.supervisor:
+        return _handle(command, options)
+
+
+def _handle(command: str, options: Namespace) -> int:
     module, function = HANDLERS[command]
     code: int = getattr(import_module(module), function)(options)
     sys.stdout.flush()

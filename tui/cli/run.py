@@ -9,8 +9,8 @@ import time
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile
-from launcher.client_start import StartingSupervisor
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.profile import load_profile
 from launcher.status import NodeState
 from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from argparse import Namespace
 
     from launcher.client import SupervisorClient
+    from launcher.client_start import StartingSupervisor
     from launcher.events import Event
     from launcher.profile import Profile
     from launcher.status import NodeStatus
@@ -33,22 +34,18 @@ INTERRUPTED = 130
 
 def run_command(options: Namespace) -> int:
     """Start a profile, tell what happens, stop it; 0 if every node stayed healthy."""
-    # It has enough to do while the profile is read, and pydantic imported for it.
-    with StartingSupervisor() as supervisor:
-        from launcher.profile import load_profile
-
-        profile = load_profile(
-            find_profile(options.profile),
-            hardware=options.hardware,
-            overrides=options.overrides,
-            domain=options.domain,
-        )
-        return asyncio.run(_main(profile, options, supervisor))
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+    )
+    return asyncio.run(_main(profile, options))
 
 
-async def _main(profile: Profile, options: Namespace, supervisor: StartingSupervisor) -> int:
+async def _main(profile: Profile, options: Namespace) -> int:
     loop = asyncio.get_running_loop()
-    run = Run(profile, options.seconds, supervisor)
+    run = Run(profile, options.seconds, options.supervisor)
     writer = LineWriter(
         sys.stdout.fileno(),
         sys.stdout.encoding or "utf-8",

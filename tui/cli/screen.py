@@ -75,7 +75,10 @@ def _without_screen(options: Namespace) -> int:
             _("there is no terminal to draw on; name a profile: deck run 09-brain (deck list)")
         )
         return 2
-    from tui.cli.run import run_command
+    from launcher.client_start import StartingSupervisor
 
-    options.seconds, options.json = None, False
-    return run_command(options)
+    with StartingSupervisor() as options.supervisor:
+        from tui.cli.run import run_command
+
+        options.seconds, options.json = None, False
+        return run_command(options)
