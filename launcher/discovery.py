@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping, MutableMapping
 
-PROFILES = Path(__file__).with_name("discovery_localhost.xml")
+PROFILES = Path(__file__).resolve().parents[1] / "graph" / "fastdds.xml"
 
 VARIABLES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
 """Today's name and the one before; whichever the user has set is left alone."""

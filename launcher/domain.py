@@ -8,7 +8,6 @@ at all (ROS 2 documentation, "The ROS_DOMAIN_ID").
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from launcher.errors import DomainError
@@ -20,9 +19,6 @@ if TYPE_CHECKING:
 Discovery: TypeAlias = Union[str, "tuple[str, ...]"]
 """`localhost`, `subnet`, or the addresses of static peers."""
 
-FAST_DDS = Path(__file__).resolve().parents[1] / "graph" / "fastdds.xml"
-"""Has processes find each other in tenths of a second where it was up to three."""
-FAST_DDS_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 LAST_DOMAIN = 232
 LAST_SAFE_DOMAIN = 101
 
@@ -80,6 +76,4 @@ def ros_environment(base: Mapping[str, str], domain: int, discovery: Discovery) 
     environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET" if discovery == "subnet" else "LOCALHOST"
     if not isinstance(discovery, str):
         environ["ROS_STATIC_PEERS"] = ";".join(discovery)
-    if not any(environ.get(name) for name in FAST_DDS_VARIABLES):
-        environ[FAST_DDS_VARIABLES[0]] = str(FAST_DDS)
     return environ

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.domain import FAST_DDS, default_domain, ros_environment
+from launcher.domain import default_domain, ros_environment
 from launcher.errors import RunDirError
 from launcher.rundir import log_dir, run_dir
 
@@ -29,15 +29,7 @@ def test_localhost_keeps_the_network_out() -> None:
         "HOME": "/h",
         "ROS_DOMAIN_ID": "42",
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "FASTRTPS_DEFAULT_PROFILES_FILE": str(FAST_DDS),
     }
-
-
-def test_settings_of_fast_dds_are_there_and_give_way_to_a_persons_own() -> None:
-    assert "leaseAnnouncement" in FAST_DDS.read_text()
-    own = {"FASTDDS_DEFAULT_PROFILES_FILE": "/home/ann/dds.xml"}
-    assert ros_environment(own, 1, "localhost").items() >= own.items()
-    assert "FASTRTPS_DEFAULT_PROFILES_FILE" not in ros_environment(own, 1, "localhost")
 
 
 def test_subnet_and_static_peers() -> None:
