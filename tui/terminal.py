@@ -7,15 +7,19 @@ has gone is told to the app.
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import select
+import signal
 import threading
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from textual.drivers.linux_driver import LinuxDriver
+from textual.events import Resize
+from textual.geometry import Size
 
 from tui.thrift import Thrift
 
@@ -161,6 +165,21 @@ class DeckDriver(LinuxDriver):
         """Read until the app ends or the terminal goes."""
         with contextlib.suppress(OSError):
             super().run_input_thread()
+
+    def start_application_mode(self) -> None:
+        """Take the terminal over, and tell the app of every size it gets, the last one last.
+
+        Textual does that in a Python signal handler. A second signal may interrupt it when it has
+        read a size and not yet told it; then the app is left with the size before the last.
+        """
+        super().start_application_mode()  # type: ignore[no-untyped-call]
+        asyncio.get_running_loop().add_signal_handler(signal.SIGWINCH, self._tell_size)
+
+    def _tell_size(self) -> None:
+        # A terminal that tells of its size itself, in its output, says it but once.
+        if not self._in_band_window_resize:
+            size = Size(*self._get_terminal_size())
+            self._app.post_message(Resize(size, size))
 
     def _get_terminal_size(self) -> tuple[int, int]:
         return self._terminal.size()
