@@ -50,6 +50,11 @@ class StartingSupervisor:
     def __exit__(self, *_: object) -> None:
         self.give_up()
 
+    @property
+    def waits(self) -> bool:
+        """Whether it runs and can be given a plan."""
+        return self._words >= 0 and self._process.poll() is None
+
     def give_up(self) -> None:
         """Let go of it: if it has not begun anything, it ends."""
         if self._words >= 0:

@@ -7,8 +7,8 @@ rclpy take their time.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
-from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -16,15 +16,23 @@ from tui.i18n import language
 from tui.orders import Lesson
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from launcher.catalog import ProfileEntry
+    from launcher.client import SupervisorClient
+    from launcher.client_start import StartingSupervisor
     from launcher.status import SessionInfo
     from tui.orders import Order
     from tui.seams import GraphLink, SessionLink
 
 
-@dataclass(frozen=True)
 class LivePad:
     """Opens what the launcher has."""
+
+    def __init__(self) -> None:
+        self._starting = asyncio.Lock()
+        self._ahead: StartingSupervisor | None = None
+        """Imports what nodes need while a person chooses; it ends with this process."""
 
     async def lessons(self) -> list[Lesson]:
         """Return every profile there is, broken ones with their error."""
@@ -37,20 +45,47 @@ class LivePad:
 
         return await asyncio.to_thread(running)
 
+    async def prepare(self) -> None:
+        """Import, here and in a supervisor, what is the same for every profile."""
+        await self._start_ahead()
+        await _imported("launcher.client", "graph.observer")
+        # Without ROS there is a word for it, later: the nodes' own and the observer's.
+        with contextlib.suppress(ImportError):
+            await _imported("rclpy.node")
+
+    async def _start_ahead(self) -> None:
+        async with self._starting:
+            if self._ahead is None or not self._ahead.waits:
+                from launcher.client_start import StartingSupervisor
+
+                self._ahead = await asyncio.to_thread(StartingSupervisor)
+
     async def open(self, order: Order) -> SessionLink:
         """Start the profile, or attach to the session."""
-        await _imported("launcher.client", "graph.observer")
+        if order.profile is not None:
+            await self._start_ahead()
+        await _imported("launcher.client")
         from launcher import client
 
         if order.profile is None:
-            return await client.attach(order.attach)
+            link = await client.attach(order.attach)
+        else:
+            link = await self._launch(order.profile, order)
+        await _imported("graph.observer")
+        return link
+
+    async def _launch(self, profile: Path, order: Order) -> SupervisorClient:
+        from launcher import client
+
+        ahead, self._ahead = self._ahead, None
         return await client.launch(
-            order.profile,
+            profile,
             hardware=order.hardware,
             overrides=order.overrides,
             domain=order.domain,
             foreground=True,
             node_lang=language(),
+            supervisor=ahead,
         )
 
     def observe(self, session: SessionInfo) -> GraphLink:

@@ -104,6 +104,9 @@ class Launchpad(Protocol):
     async def running(self) -> list[SessionInfo]:
         """Return the sessions that run in the background."""
 
+    async def prepare(self) -> None:
+        """Make ready what can be, so that `open` is quick; to be called while a person chooses."""
+
     async def open(self, order: Order) -> SessionLink:
         """Start the profile or attach to the session; raises a `LauncherError` with the reason."""
 

@@ -32,6 +32,27 @@ def test_enter_starts_lesson_nine_and_q_leaves_nothing_running(deck: Deck) -> No
     assert marked.alive(deck.mark) == {}
 
 
+def supervisors(mark: str) -> list[int]:
+    return [pid for pid, line in marked.alive(mark).items() if "launcher.supervisor" in line]
+
+
+def test_what_the_picker_makes_ready_goes_with_it(deck: Deck) -> None:
+    terminal = deck.open("--lang", "en")
+    wait_until(lambda: supervisors(deck.mark), "a supervisor ahead of any choice")
+    terminal.press("ctrl+q")
+    assert terminal.wait_exit() == 0
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
+
+
+def test_a_lesson_starts_though_what_was_made_ready_has_died(deck: Deck) -> None:
+    terminal = deck.open("--lang", "en")
+    (ahead,) = wait_until(lambda: supervisors(deck.mark), "a supervisor ahead of any choice")
+    os.kill(ahead, signal.SIGKILL)
+    wait_until(lambda: not supervisors(deck.mark), "the supervisor gone")
+    terminal.press("enter")
+    terminal.wait_for("8/8")
+
+
 def test_every_screen_answers_to_its_key_and_none_breaks_when_resized(deck: Deck) -> None:
     terminal = deck.open("02-sonar-safety", "--lang", "en")
     terminal.wait_for("2/2")
@@ -81,9 +102,7 @@ def test_a_terminated_screen_gives_the_terminal_back(deck: Deck) -> None:
 def test_a_killed_supervisor_is_said_and_leaves_no_node(deck: Deck) -> None:
     terminal = deck.open("02-sonar-safety", "--lang", "en")
     terminal.wait_for("2/2")
-    (supervisor,) = [
-        pid for pid, line in marked.alive(deck.mark).items() if "launcher.supervisor" in line
-    ]
+    (supervisor,) = supervisors(deck.mark)
     os.kill(supervisor, signal.SIGKILL)
     wait_until(lambda: not marked.nodes(deck.mark), "every node gone")
     assert terminal.process.poll() is None

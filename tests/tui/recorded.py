@@ -212,6 +212,9 @@ class RecordedPad:
     async def running(self) -> list[SessionInfo]:
         return self.sessions
 
+    async def prepare(self) -> None:
+        pass
+
     async def open(self, order: Order) -> SessionLink:
         self.orders.append(order)
         if self.refusal is not None:

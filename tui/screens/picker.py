@@ -121,6 +121,8 @@ class PickerScreen(Screen[None], Acting):
         self._offer()
         self._sessions = await self.deck.sessions.pad.running()
         self._offer()
+        if self.is_current:
+            await self.deck.sessions.pad.prepare()
 
     def _offer(self) -> None:
         """Draw what is known, the likeliest row chosen, unless a person has chosen another."""
