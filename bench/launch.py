@@ -1,8 +1,9 @@
 """Lesson 9 started by Deck against the same nodes started with `&` in a shell, turn by turn.
 
-`python -m bench.launch [PROFILE]` prints the time until all nodes are in the ROS graph, as an
+`python -m bench.launch` prints the time until all nodes are in the ROS graph, as an
 observer sees it that was there before, the CPU time used until then, and the memory 5 s later.
-All of Deck's own processes are counted, client included; memory is also given of the nodes alone.
+All of Deck's own processes are counted, client or screen included; memory is also given of the
+nodes alone. `deck run` starts from nothing; in the list of lessons Deck has had time to get ready.
 """
 
 from __future__ import annotations
@@ -23,16 +24,30 @@ from bench.processes import cpu_s, pss_mb
 from launcher.discovery import hurry_discovery
 from launcher.process_table import processes
 from launcher.profile import load_profile
+from tests.e2e.terminal import Terminal
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from launcher.profile import Profile
 
 DOMAIN = int(os.environ.get("BENCH_DOMAIN", "79"))
 ROUNDS = int(os.environ.get("BENCH_ROUNDS", "7"))
 SETTLE_S = 5.0
-SHELL, DECK = "`&` in a shell", "Deck"
+READING_S = 4.0
+"""What a person takes at least to read the list of lessons."""
+SHELL, DECK, PICKER = "`&` in a shell", "deck run", "Enter in the picker"
+
+
+@dataclass(frozen=True)
+class Started:
+    """A start that has begun."""
+
+    pid: int
+    began_s: float
+    """Monotonic."""
+    used_s: float = 0.0
+    """CPU time used before that."""
 
 
 @dataclass(frozen=True)
@@ -78,9 +93,10 @@ def watch(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
 
 
 @contextmanager
-def by_shell(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
+def by_shell(profile: Profile) -> Iterator[Started]:
     """Start the nodes as one would by hand, all at once."""
     lines = [f"{shlex.join(node.argv())} &" for node in profile.nodes.values()]
+    began = time.monotonic()
     process = subprocess.Popen(
         ["bash", "-c", "\n".join([*lines, "wait"])],
         env=environment(),
@@ -89,7 +105,7 @@ def by_shell(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
         start_new_session=True,
     )
     try:
-        yield process
+        yield Started(process.pid, began)
     finally:
         for pid in descendants(process.pid):
             os.kill(pid, signal.SIGTERM)
@@ -97,18 +113,40 @@ def by_shell(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
 
 
 @contextmanager
-def by_deck(profile: Profile) -> Iterator[subprocess.Popen[bytes]]:
+def by_deck(profile: Profile) -> Iterator[Started]:
     """Start the profile by `deck run`."""
+    began = time.monotonic()
     process = subprocess.Popen(
         [sys.executable, "-m", "tui", "run", str(profile.path), "--domain", str(DOMAIN)],
         env=environment(),
         stdout=subprocess.DEVNULL,
     )
     try:
-        yield process
+        yield Started(process.pid, began)
     finally:
         process.send_signal(signal.SIGINT)
         process.wait(30)
+
+
+@contextmanager
+def by_picker(profile: Profile) -> Iterator[Started]:
+    """Press Enter in the list of lessons, where lesson 9 is the one offered."""
+    argv = [sys.executable, "-m", "tui", "--domain", str(profile.domain), "--lang", "en"]
+    terminal = Terminal(argv, 120, 40, environment())
+    try:
+        terminal.wait_for(profile.title["en"])
+        time.sleep(READING_S)
+        pid = terminal.process.pid
+        started = Started(pid, time.monotonic(), cpu_s(descendants(pid)))
+        terminal.press("enter")
+        yield started
+    finally:
+        terminal.press("ctrl+q")
+        terminal.process.wait(30)
+        terminal.close()
+
+
+STARTERS = {SHELL: by_shell, DECK: by_deck, PICKER: by_picker}
 
 
 def descendants(pid: int) -> list[int]:
@@ -128,34 +166,39 @@ def is_node(pid: int) -> bool:
 
 def measure(kind: str, profile: Profile) -> Figures:
     """Start once."""
-    starter = by_deck if kind == DECK else by_shell
     with watch(list(profile.nodes)) as watcher:
         assert watcher.stdout is not None
-        began = time.monotonic()
-        with starter(profile) as process:
-            ready_s = float(watcher.stdout.readline()) - began
-            used_s = cpu_s(descendants(process.pid))
+        with STARTERS[kind](profile) as started:
+            ready_s = float(watcher.stdout.readline()) - started.began_s
+            used_s = cpu_s(descendants(started.pid)) - started.used_s
             time.sleep(SETTLE_S)
-            everything = descendants(process.pid)
+            everything = descendants(started.pid)
             nodes = [pid for pid in everything if is_node(pid)]
             return Figures(ready_s, used_s, pss_mb(everything), pss_mb(nodes))
 
 
 def main() -> None:
     """Take turns, and print medians and their ratios."""
-    path = sys.argv[1] if len(sys.argv) > 1 else "profiles/09-brain.yaml"
-    profile = load_profile(path, domain=DOMAIN)
-    taken: dict[str, list[Figures]] = {SHELL: [], DECK: []}
+    profile = load_profile("profiles/09-brain.yaml", domain=DOMAIN)
+    taken: dict[str, list[Figures]] = {kind: [] for kind in STARTERS}
     for _round in range(ROUNDS):
         for kind, figures in taken.items():
             figures.append(measure(kind, profile))
             print(kind, figures[-1], file=sys.stderr, flush=True)
-    print(f"{'':18}{'ready s':>10}{'CPU s':>10}{'PSS MB':>10}{'nodes MB':>10}")
+    print(f"{'':26}{'ready s':>10}{'CPU s':>10}{'PSS MB':>10}{'nodes MB':>10}")
     rows = {kind: medians(figures) for kind, figures in taken.items()}
     for kind, row in rows.items():
-        print(f"{kind:18}" + "".join(f"{value:10.2f}" for value in row))
-    ratios = [deck / shell for deck, shell in zip(rows[DECK], rows[SHELL], strict=True)]
-    print(f"{'ratio':18}" + "".join(f"{value:10.2f}" for value in ratios))
+        print_row(kind, row)
+    for kind in (DECK, PICKER):
+        print_row(
+            f"ratio, {kind}",
+            [deck / shell for deck, shell in zip(rows[kind], rows[SHELL], strict=True)],
+        )
+
+
+def print_row(name: str, values: Iterable[float]) -> None:
+    """Print one line of the table."""
+    print(f"{name:26}" + "".join(f"{value:10.2f}" for value in values))
 
 
 def medians(figures: list[Figures]) -> list[float]:

@@ -1,7 +1,8 @@
 """The load of the Topics screen: ten Float32 topics at 50 Hz and one 640x480 image at 30 Hz.
 
-`python -m bench.load DOMAIN` publishes until stdin ends. Messages are serialized once, and late
-ones are caught up: the mean rates are exact and the load itself is cheap.
+`python -m bench.load DOMAIN` publishes until stdin ends. No message is like the one before; few
+are serialized, in turn, and late ones are caught up: the mean rates are exact and the load itself
+is cheap.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ import heapq
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from itertools import cycle
 
 from rclpy.context import Context
 from rclpy.node import Node
@@ -23,14 +26,16 @@ IMAGE = "/load/image"
 RATES_HZ = {**dict.fromkeys(FLOATS, 50.0), IMAGE: 30.0}
 
 
-def image() -> Image:
+def image(grey: int) -> Image:
     """Return a bgr8 picture of 640x480."""
     picture = Image(width=640, height=480, encoding="bgr8", step=3 * 640)
-    picture.data.frombytes(bytes(3 * 640 * 480))
+    picture.data.frombytes(bytes([grey]) * (3 * 640 * 480))
     return picture
 
 
-def publish(publishers: dict[str, tuple[Publisher, bytes]], ended: threading.Event) -> None:
+def publish(
+    publishers: dict[str, tuple[Publisher, Iterator[bytes]]], ended: threading.Event
+) -> None:
     """Publish each at its rate until the end, the topics out of step with each other."""
     begun_s = time.monotonic()
     due = [(begun_s + 0.0017 * n, topic) for n, topic in enumerate(publishers)]
@@ -41,8 +46,8 @@ def publish(publishers: dict[str, tuple[Publisher, bytes]], ended: threading.Eve
         if wait_s > 0:
             time.sleep(wait_s)
             continue
-        publisher, raw = publishers[topic]
-        publisher.publish(raw)
+        publisher, messages = publishers[topic]
+        publisher.publish(next(messages))
         heapq.heapreplace(due, (at_s + 1 / RATES_HZ[topic], topic))
 
 
@@ -51,10 +56,11 @@ def main() -> None:
     context = Context()
     context.init(args=[], domain_id=int(sys.argv[1]))
     node = Node("load", context=context, enable_rosout=False, start_parameter_services=False)
-    messages = {**{topic: Float32(data=1.5) for topic in FLOATS}, IMAGE: image()}
+    numbers = [serialize_message(Float32(data=0.01 * n)) for n in range(997)]
+    pictures = [serialize_message(image(grey)) for grey in range(0, 250, 25)]
     publishers = {
-        topic: (node.create_publisher(type(message), topic, 10), serialize_message(message))
-        for topic, message in messages.items()
+        **{topic: (node.create_publisher(Float32, topic, 10), cycle(numbers)) for topic in FLOATS},
+        IMAGE: (node.create_publisher(Image, IMAGE, 10), cycle(pictures)),
     }
     ended = threading.Event()
     threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()

@@ -33,6 +33,8 @@ KEYS = {
     "down": "\x1b[B",
     "right": "\x1b[C",
     "left": "\x1b[D",
+    "home": "\x1b[H",
+    "end": "\x1b[F",
     "f1": "\x1bOP",
     "f2": "\x1bOQ",
     "f3": "\x1bOR",
@@ -85,7 +87,7 @@ class Terminal:
             if key.startswith("ctrl+"):
                 self.type(chr(ord(key[-1]) & 0x1F))
             else:
-                self.type(KEYS.get(key, key))
+                self.type(key if len(key) == 1 else KEYS[key])
 
     def type(self, text: str) -> None:
         """Send text as if typed."""
