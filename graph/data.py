@@ -46,6 +46,15 @@ class EndpointInfo:
     durability: str
     """`volatile` or `transient_local`."""
     depth: int = 0
+    """0 where the peer does not tell, or keeps everything."""
+    history: str = ""
+    """`keep_last`, `keep_all`; empty where the peer does not tell."""
+    deadline_s: float | None = None
+    """None: none was asked for or offered. So with the next two."""
+    lifespan_s: float | None = None
+    lease_s: float | None = None
+    liveliness: str = ""
+    """`automatic`, `manual_by_topic`; empty where the peer does not tell."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +72,13 @@ class TopicRow:
     bytes_per_s: float | None = None
     age_s: float | None = None
     """Since the newest message; None if none came yet."""
+    jitter_s: float | None = None
+    """Standard deviation of the time between messages; None while too few came."""
+    latency_s: float | None = None
+    """Mean of arrival less `header.stamp`; None without a header, or with a stamp of another
+    clock."""
+    lost: int | None = None
+    """Messages that were sent and never came, since `measured`; None where nobody numbers them."""
     count: int = 0
     """Messages taken since the subscription was made."""
     measured: bool = False
@@ -106,6 +122,10 @@ class NodeRow:
     publishes: tuple[str, ...] = ()
     subscribes: tuple[str, ...] = ()
     services: tuple[str, ...] = ()
+    clients: tuple[str, ...] = ()
+    """Services that it calls."""
+    action_servers: tuple[str, ...] = ()
+    action_clients: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -116,6 +136,114 @@ class ServiceRow:
     type_names: tuple[str, ...]
     nodes: tuple[str, ...] = ()
     """Full names of the nodes that serve it."""
+
+
+@dataclass(frozen=True)
+class ActionRow:
+    """One action of the graph."""
+
+    name: str
+    type_names: tuple[str, ...]
+    """`deck_interfaces/action/DriveToPoint`."""
+    servers: tuple[str, ...] = ()
+    """Full names of the nodes that serve it, and of those that call it."""
+    clients: tuple[str, ...] = ()
+
+
+class GoalStatus(str, Enum):
+    """Where a goal of Deck's own stands (source: action_msgs/GoalStatus, and before it)."""
+
+    SENDING = "sending"
+    REJECTED = "rejected"
+    ACCEPTED = "accepted"
+    EXECUTING = "executing"
+    CANCELING = "canceling"
+    SUCCEEDED = "succeeded"
+    CANCELED = "canceled"
+    ABORTED = "aborted"
+    FAILED = "failed"
+    """Nobody serves it, or its server has gone or does not answer."""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """One goal that Deck has sent."""
+
+    number: int
+    """Deck's own, from 1."""
+    action: str
+    type_name: str
+    status: GoalStatus
+    goal: Mapping[str, Value]
+    feedback: Mapping[str, Value] | None = None
+    """The newest."""
+    feedbacks: int = 0
+    """How many came."""
+    result: Mapping[str, Value] | None = None
+    error: str = ""
+    elapsed_s: float = 0.0
+    """Since it was sent, or until it ended."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing more is to come."""
+        over = {"rejected", "succeeded", "canceled", "aborted", "failed"}
+        return self.status.value in over
+
+
+@dataclass(frozen=True)
+class Publication:
+    """A message that Deck publishes again and again."""
+
+    number: int
+    """Deck's own, from 1."""
+    topic: str
+    type_name: str
+    hz: float
+    sent: int
+    subscribers: int
+    error: str = ""
+    """Why it has ended by itself."""
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    """One parameter of a node, with its descriptor."""
+
+    name: str
+    type_name: str
+    """`bool`, `integer`, `double`, `string`, `byte_array`, `bool_array`, `integer_array`,
+    `double_array`, `string_array`, `not_set`."""
+    value: Value | None
+    description: str = ""
+    constraints: str = ""
+    """In the node's own words."""
+    read_only: bool = False
+    least: float | None = None
+    greatest: float | None = None
+    step: float | None = None
+    """Of its range; None where there is none, or the step is free."""
+
+
+@dataclass(frozen=True)
+class ParametersResult:
+    """What a node says of its parameters, or why it says nothing."""
+
+    node: str
+    parameters: tuple[ParameterRow, ...] = ()
+    error: str = ""
+    elapsed_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class SetResult:
+    """What came of setting parameters: name to reason for those refused, empty if all was taken."""
+
+    node: str
+    refused: Mapping[str, str] = field(default_factory=dict)
+    error: str = ""
+    """Why nothing is known of it: no such node, no answer."""
+    elapsed_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -143,5 +271,9 @@ class GraphUpdate:
     """Topic to its new samples in order: one for a watched topic, all for a followed one."""
     nodes: tuple[NodeRow, ...] = ()
     services: tuple[ServiceRow, ...] = ()
+    actions: tuple[ActionRow, ...] = ()
+    goals: tuple[Goal, ...] = ()
+    """Deck's own, oldest first, those that have ended too until they are forgotten."""
+    publications: tuple[Publication, ...] = ()
     error: str = ""
     """Set when the observer cannot work at all: rclpy is missing, the domain is refused."""
