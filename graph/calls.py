@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from graph.data import ServiceRow, Value
 
 
+QUEUE = 10
+"""Requests that a service keeps while it is busy, by default (source: rmw, the services' QoS)."""
+
+
 @dataclass
 class _Call:
     service: str
@@ -91,7 +95,7 @@ class Calls:
 
     def _result(self, call: _Call, answers: dict[tuple[Client, int], Any]) -> CallResult | None:
         try:
-            if call.sequence is None and call.client.service_is_ready():
+            if call.sequence is None and self._has_its_turn(call):
                 with call.client.handle:
                     call.sequence = call.client.handle.send_request(call.request)
             answer = answers.get((call.client, call.sequence or 0))
@@ -106,6 +110,13 @@ class Calls:
         return _failed(
             call.service, f"{call.service}: {what} within {call.timeout_s:g} s", call.started_s
         )
+
+    def _has_its_turn(self, call: _Call) -> bool:
+        """Whether the service is there and has room: what overflows its queue gets no answer."""
+        sent = sum(
+            other.client is call.client and other.sequence is not None for other in self._calls
+        )
+        return sent < QUEUE and call.client.service_is_ready()
 
     def _take_answers(self) -> dict[tuple[Client, int], Any]:
         """Take all answers there are; those to calls that were given up are dropped here."""

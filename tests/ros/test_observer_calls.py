@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 
 import pytest
@@ -42,12 +43,18 @@ def test_an_answer_comes_as_plain_values(watcher: Watcher) -> None:
     assert 0 < result.elapsed_s < 30
 
 
-@pytest.mark.usefixtures("server")
-def test_many_calls_at_once_get_each_their_own_answer(watcher: Watcher) -> None:
+def test_many_calls_of_a_busy_service_get_each_their_own_answer(
+    server: Peer, watcher: Watcher
+) -> None:
+    assert call(watcher, "/add", {"a": 1, "b": 2}, timeout_s=30).ok
+    server.process.send_signal(signal.SIGSTOP)
     futures = [
         watcher.observer.call("/add", ADD, {"a": number, "b": 1000}, timeout_s=30)
         for number in range(20)
     ]
+    # Orders are carried out in turn: when this one is over, the calls are on their way.
+    assert not call(watcher, "/nobody", {}, timeout_s=0.1).ok
+    server.process.send_signal(signal.SIGCONT)
     sums = [future.result(40).response for future in futures]
     assert sums == [{"sum": 1000 + number} for number in range(20)]
 
