@@ -118,7 +118,7 @@ class Terminal:
     def _run(self) -> None:
         while not self.gone:
             with self._lock:
-                self._lock.wait_for(lambda: self._waiting)
+                self._lock.wait_for(lambda: self._waiting or self._stalled)
                 data = b"".join(self._waiting)
                 self._waiting.clear()
                 self._size = 0
@@ -134,10 +134,12 @@ class Terminal:
     def _put(self, data: bytes) -> None:
         view = memoryview(data)
         try:
-            while view:
+            while True:
                 # Another program may have left the terminal non-blocking.
                 select.select([], [self._fd], [])
                 view = view[os.write(self._fd, view[:4096]) :]
+                if not view:
+                    return
         except OSError:
             self.gone = True
 

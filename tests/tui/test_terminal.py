@@ -75,6 +75,16 @@ def test_a_stalled_terminal_never_makes_the_writer_wait(line: tuple[int, int]) -
         terminal.write("end")
 
 
+def test_more_than_may_wait_at_once_stalls_for_a_moment_only(line: tuple[int, int]) -> None:
+    own, program = line
+    caught_up = threading.Event()
+    terminal = Terminal(program, caught_up.set)
+    terminal.write("x" * (2 * MOST_WAITING))
+    assert caught_up.wait(20), "nobody was told that the terminal takes again"
+    terminal.write("on we go")
+    assert "on we go" in read_all(own, "on we go")
+
+
 def test_leaving_a_stalled_terminal_is_bounded(line: tuple[int, int]) -> None:
     _own, program = line
     terminal = Terminal(program, lambda: None)
