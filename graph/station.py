@@ -9,11 +9,12 @@ from graph.calls import Calls
 from graph.data import GraphUpdate
 from graph.interest import Interest
 from graph.outbox import Outbox
+from graph.parameters import Parameters
 from graph.scan import Scan, Signature, is_complete, scan, signature
 from graph.taps import Taps
 
 if TYPE_CHECKING:
-    from graph.data import Sample, ServiceRow
+    from graph.data import NodeRow, Sample, ServiceRow
     from graph.ros import Ros
     from graph.scan import TopicEnds
 
@@ -28,6 +29,7 @@ class Station:
     def __init__(self, ros: Ros) -> None:
         self.calls = Calls(ros.node)
         self.outbox = Outbox(ros.node)
+        self.parameters = Parameters(self.calls, self._known_node, self._known_service)
         self._ros = ros
         self._taps = Taps(ros.node)
         self._scan = Scan()
@@ -50,7 +52,7 @@ class Station:
     def service(self, name: str) -> ServiceRow | None:
         """Return what is known of a service now."""
         self._look_at_graph()
-        return next((row for row in self._scan.services if row.name == name), None)
+        return self._known_service(name)
 
     def look(self, interest: Interest) -> GraphUpdate | None:
         """Look at the graph and at the queues; return what is new, None if nothing is."""
@@ -65,15 +67,24 @@ class Station:
     def step(self) -> bool:
         """Go on with calls and messages under way; tell whether there are any."""
         calling = self.calls.step()
+        # What has just been answered leads to the next question.
+        talking = self.parameters.step()
         publishing = self.outbox.step()
-        return calling or publishing
+        return calling or talking or publishing
 
     def close(self, error: Exception) -> None:
         """Let everything under way fail, and leave the graph."""
+        self.parameters.fail(error)
         self.calls.fail(error)
         self.outbox.fail(error)
         self._taps.close()
         self._ros.close()
+
+    def _known_service(self, name: str) -> ServiceRow | None:
+        return next((row for row in self._scan.services if row.name == name), None)
+
+    def _known_node(self, name: str) -> NodeRow | None:
+        return next((row for row in self._scan.nodes if row.name == name), None)
 
     def _look_at_graph(self) -> None:
         now_s = time.monotonic()
@@ -89,8 +100,9 @@ class Station:
 
     def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
         rows = self._taps.rows()
-        told = (rows, self._scan.nodes, self._scan.services)
+        seen = self._scan
+        told = (rows, seen.nodes, seen.services, seen.actions)
         if not samples and told == self._told:
             return None
         self._told = told
-        return GraphUpdate(time.time(), rows, samples, self._scan.nodes, self._scan.services)
+        return GraphUpdate(time.time(), rows, samples, seen.nodes, seen.services, seen.actions)

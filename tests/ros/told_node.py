@@ -15,9 +15,12 @@ import time
 from typing import Any
 
 import rclpy
+from deck_interfaces.action import DriveToPoint
+from rclpy.action import ActionClient, ActionServer
+from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 
 from graph.making import to_message
@@ -31,11 +34,20 @@ def tell(**words: object) -> None:
     sys.stdout.flush()
 
 
-def qos(reliability: str = "reliable", durability: str = "volatile", depth: int = 10) -> QoSProfile:
+def qos(
+    reliability: str = "reliable",
+    durability: str = "volatile",
+    depth: int = 10,
+    liveliness: str = "automatic",
+    **seconds: float,
+) -> QoSProfile:
+    """A profile; `seconds` are deadline, lifespan and liveliness_lease_duration."""
     return QoSProfile(
         depth=depth,
         reliability=ReliabilityPolicy[reliability.upper()],
         durability=DurabilityPolicy[durability.upper()],
+        liveliness=LivelinessPolicy[liveliness.upper()],
+        **{name: Duration(seconds=duration) for name, duration in seconds.items()},
     )
 
 
@@ -61,6 +73,8 @@ class Orders:
         self.publishers: dict[str, Any] = {}
         self.subscriptions: dict[str, Any] = {}
         self.services: dict[str, Any] = {}
+        self.clients: dict[str, Any] = {}
+        self.actions: list[Any] = []
         self.timed: dict[str, Timed] = {}
 
     def advertise(self, topic: str, type_name: str, **policies: Any) -> None:
@@ -115,6 +129,27 @@ class Orders:
         self.services[topic] = self.node.create_service(
             load_service("example_interfaces/srv/AddTwoInts"), topic, answer
         )
+
+    def use(self, topic: str) -> None:
+        """Have a client of AddTwoInts under this name."""
+        add_two_ints = load_service("example_interfaces/srv/AddTwoInts")
+        self.clients[topic] = self.node.create_client(add_two_ints, topic)
+
+    def stop_using(self, topic: str) -> None:
+        self.node.destroy_client(self.clients.pop(topic))
+
+    def serve_drive(self, topic: str) -> None:
+        """Serve DriveToPoint under this name; every goal is reached at once."""
+
+        def drive(goal: Any) -> Any:
+            goal.succeed()
+            return DriveToPoint.Result()
+
+        self.actions.append(ActionServer(self.node, DriveToPoint, topic, drive))
+
+    def use_drive(self, topic: str) -> None:
+        """Have a client of DriveToPoint under this name."""
+        self.actions.append(ActionClient(self.node, DriveToPoint, topic))
 
     def names(self) -> list[str]:
         return [
