@@ -1,0 +1,89 @@
+"""What is wrong with a YAML text, in words that help whoever typed it."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+import yaml
+
+_NOT_CLOSED = {
+    "did not find expected ',' or ']'": "this list is not closed: a ',' or a ']' is missing",
+    "expected ',' or ']'": "this list is not closed: a ',' or a ']' is missing",
+    "did not find expected ',' or '}'": "these braces are not closed: a ',' or a '}' is missing",
+    "expected ',' or '}'": "these braces are not closed: a ',' or a '}' is missing",
+    "found unexpected end of stream": "the text in quotes is not closed",
+}
+"""How PyYAML's own words begin (of both its parsers), and what is meant; told of where it began."""
+_WORDS = {
+    "could not find expected ':'": "a ':' is missing after the name of the field",
+    "found character that cannot start any token": "nothing can begin with this character: "
+    "put the text into quotes",
+    "did not find expected key": "the indentation does not fit the lines above",
+    "did not find expected '-' indicator": "the indentation does not fit the list above",
+    "expected <block end>": "the indentation does not fit the lines above",
+    "block sequence entries are not allowed": "a list cannot begin here: put it on a line of its "
+    "own, or the '-' into quotes",
+}
+_COLON = "mapping values are not allowed"
+_SECOND_COLON = "a second ':' in one line: put the text that holds it into quotes"
+_NO_COLON = (
+    "this line does not fit the one above: a ':' is missing there, or the indentation differs"
+)
+
+
+class YamlError(ValueError):
+    """A text is no YAML that could be a message; str() is `line:column: what is wrong`."""
+
+    def __init__(self, line: int, column: int, words: str, /, **facts: str | int) -> None:
+        """Say what is wrong at a place, counted from 1; `words` name the facts in braces."""
+        self.line = line
+        self.column = column
+        self.words = words
+        """As they are to be translated."""
+        self.facts = facts
+        self.message = words.format(**facts) if facts else words
+        super().__init__(f"{line}:{column}: {self.message}")
+
+
+def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
+    """Raise a YamlError for what PyYAML refuses."""
+    if not isinstance(error, yaml.MarkedYAMLError) or error.problem_mark is None:
+        _tell_unprintable(error, text)
+    mark = error.problem_mark
+    lines = text.split("\n")
+    content = lines[mark.line] if mark.line < len(lines) else ""
+    indent = content[: len(content) - len(content.lstrip())]
+    if "\t" in indent:
+        words = "a tab indents this line: YAML wants blanks"
+        raise YamlError(mark.line + 1, indent.index("\t") + 1, words) from error
+    words = getattr(error, "problem", None) or str(error)
+    meant = _meant(words, _NOT_CLOSED)
+    if meant and error.context_mark:
+        mark = error.context_mark
+    place = (mark.line + 1, mark.column + 1)
+    if words.startswith(_COLON):
+        meant = _SECOND_COLON if ":" in content[: mark.column] else _NO_COLON
+    meant = meant or _meant(words, _WORDS)
+    if meant is None:
+        raise YamlError(*place, "not YAML: {reason}", reason=words) from error
+    raise YamlError(*place, meant) from error
+
+
+def _meant(words: str, known: dict[str, str]) -> str | None:
+    return next((said for begin, said in known.items() if words.startswith(begin)), None)
+
+
+def tell_character(text: str, offset: int) -> NoReturn:
+    """Raise a YamlError for a character that YAML does not allow."""
+    before = text[:offset]
+    line = before.count("\n") + 1
+    column = offset - (before.rfind("\n") + 1) + 1
+    code = f"{ord(text[offset]):04X}"
+    raise YamlError(line, column, "the character U+{code} is not allowed", code=code)
+
+
+def _tell_unprintable(error: yaml.YAMLError, text: str) -> NoReturn:
+    for offset, character in enumerate(text):
+        if yaml.reader.Reader.NON_PRINTABLE.match(character):
+            tell_character(text, offset)
+    raise YamlError(1, 1, "not YAML: {reason}", reason=str(error)) from error
