@@ -25,6 +25,7 @@ STRINGS = frozenset({"string", "wstring"})
 BYTES = frozenset({"octet", "uint8", "char"})
 """Elements whose arrays are shown as bytes."""
 
+_ROS_NAMES = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 _SEQUENCE = re.compile(r"^sequence<(?P<element>.+?)(?:, (?P<limit>\d+))?>$")
 _ARRAY = re.compile(r"^(?P<element>.+)\[(?P<size>\d+)\]$")
 _STRING = re.compile(r"^(?P<kind>w?string)(?:<(?P<limit>\d+)>)?$")
@@ -67,6 +68,17 @@ def parse(text: str) -> FieldType:
         return FieldType(element, is_many=True, limit=most, text_limit=limit)
     element, limit = _text(text)
     return FieldType(element, text_limit=limit)
+
+
+def ros_name(text: str) -> str:
+    """Return a field's type as .msg files write it: `float64[9]`, `uint8[<=16]`, `string<=10`."""
+    kind = parse(text)
+    name = _ROS_NAMES.get(kind.element, kind.element)
+    if kind.text_limit is not None:
+        name += f"<={kind.text_limit}"
+    if not kind.is_many:
+        return name
+    return f"{name}[{'' if kind.limit is None else f'<={kind.limit}'}{kind.size or ''}]"
 
 
 def _text(element: str) -> tuple[str, int | None]:

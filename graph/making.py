@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
 from graph.types import load_message
-from graph.values import DUMMY
+from graph.values import fields_of
 
 if TYPE_CHECKING:
     from graph.data import Value
@@ -27,6 +27,13 @@ class FieldError(ValueError):
         super().__init__(f"{field}: {message}" if field else message)
         self.field = field
         self.message = message
+        self.line: int | None = None
+        """Where it stands in a text, counted from 1, as far as there is one. So with the next."""
+        self.column: int | None = None
+
+
+class NoSuchFieldError(FieldError):
+    """There is no field of this name."""
 
 
 def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> Any:  # noqa: ANN401
@@ -37,12 +44,12 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
     """
     if not isinstance(tree, Mapping):
         raise FieldError(field, f"expected fields by name, got {_shown(tree)}")
-    fields = {k: v for k, v in cls.get_fields_and_field_types().items() if k != DUMMY}
+    fields = dict(fields_of(cls))
     message = cls()
     for name, value in tree.items():
         path = f"{field}.{name}" if field else str(name)
         if name not in fields:
-            raise FieldError(path, _unknown(str(name), list(fields)))
+            raise NoSuchFieldError(path, _unknown(str(name), list(fields)))
         setattr(message, name, _made(parse(fields[name]), value, path))
     return message
 

@@ -40,6 +40,15 @@ def load_service(type_name: str) -> type[Any]:
     return _load(type_name, "srv")
 
 
+@lru_cache(maxsize=128)
+def load_action(type_name: str) -> type[Any]:
+    """Return the class of an action such as `deck_interfaces/action/DriveToPoint`.
+
+    It has the classes Goal, Result and Feedback. Raises UnknownTypeError.
+    """
+    return _load(type_name, "action")
+
+
 def _load(type_name: str, kind: str) -> type[Any]:
     parts = type_name.split("/")
     if len(parts) != NAME_PARTS or parts[1] != kind or not all(p.isidentifier() for p in parts):
@@ -80,7 +89,7 @@ def _missing(error: ModuleNotFoundError, package: str, kind: str) -> str:
             f"'pip install ros-jazzy-{dashed}', or build it and source its workspace"
         )
     if error.name == f"{package}.{kind}":
-        what = {"msg": "messages", "srv": "services"}[kind]
+        what = {"msg": "messages", "srv": "services", "action": "actions"}[kind]
         return f"package {package} is installed and has no {what}"
     return f"package {package} is installed and cannot be used: {error}"
 

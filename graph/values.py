@@ -24,10 +24,15 @@ def to_tree(message: Any) -> dict[str, Value]:  # noqa: ANN401 - generated, with
     return {name: read(getattr(message, name)) for name, read in _readers(type(message))}  # type: ignore[arg-type]
 
 
+def fields_of(cls: type[Any]) -> tuple[tuple[str, str], ...]:
+    """Return names and types of a message's fields, as the class has them, in their order."""
+    fields: dict[str, str] = cls.get_fields_and_field_types()
+    return tuple((name, kind) for name, kind in fields.items() if name != DUMMY)
+
+
 @lru_cache(maxsize=512)
 def _readers(cls: type[Any]) -> tuple[tuple[str, Callable[[Any], Value]], ...]:
-    fields: dict[str, str] = cls.get_fields_and_field_types()
-    return tuple((name, _reader(parse(kind))) for name, kind in fields.items() if name != DUMMY)
+    return tuple((name, _reader(parse(kind))) for name, kind in fields_of(cls))
 
 
 def _reader(kind: FieldType) -> Callable[[Any], Value]:

@@ -1,0 +1,88 @@
+"""A message to be filled in as YAML: every field at its default, its type in a comment."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from graph.fields import parse, ros_name
+from graph.making import FieldError, NoSuchFieldError, to_message
+from graph.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
+from graph.values import fields_of, to_tree
+from graph.yaml_reading import read
+from graph.yaml_text import to_yaml
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from graph.data import Value
+
+
+def form_class(type_name: str) -> type[Any]:
+    """Return the class of a message, of a service's request or of an action's goal.
+
+    Raises UnknownTypeError.
+    """
+    parts = type_name.split("/")
+    if len(parts) != NAME_PARTS or parts[1] not in {"msg", "srv", "action"}:
+        reason = f"'{type_name}' is not the name of a type; write it as package/msg/Name"
+        raise UnknownTypeError(type_name, parts[0], reason)
+    found: type[Any]
+    if parts[1] == "srv":
+        found = load_service(type_name).Request
+    elif parts[1] == "action":
+        found = load_action(type_name).Goal
+    else:
+        found = load_message(type_name)
+    return found
+
+
+@lru_cache(maxsize=128)
+def prefilled(type_name: str) -> str:
+    """Return YAML with every field at its default, and its type in a comment; `{}` for none.
+
+    For `pkg/msg/X`, for the request of `pkg/srv/X`, for the goal of `pkg/action/X`. Raises
+    UnknownTypeError.
+    """
+    cls = form_class(type_name)
+    tree = to_tree(cls())
+    remarks = dict(_remarks(cls, tree, ""))
+    return to_yaml(tree, remark=lambda path: remarks.get(path, ""))
+
+
+def check(type_name: str, text: str) -> Mapping[str, Value]:
+    """Return the fields that were filled in; those left out are at their defaults.
+
+    Raises YamlError, FieldError with the field's line and column, or UnknownTypeError.
+    """
+    cls = form_class(type_name)
+    root = read(text)
+    tree: Mapping[str, Value] = root.plain()
+    try:
+        to_message(cls, tree)
+    except FieldError as error:
+        node = root.find(error.field)
+        at_key = isinstance(error, NoSuchFieldError) or isinstance(node.value, (dict, list))
+        is_named = at_key and node.key_line > 0
+        error.line = node.key_line if is_named else node.line
+        error.column = node.key_column if is_named else node.column
+        raise
+    return tree
+
+
+def _remarks(cls: type[Any], tree: Any, prefix: str) -> Iterator[tuple[str, str]]:  # noqa: ANN401 - a message's tree
+    """Yield paths and types of all that is no message in a message itself."""
+    for name, text in fields_of(cls):
+        kind = parse(text)
+        path = f"{prefix}{name}"
+        value = tree[name]
+        if kind.is_message and len(value):
+            nested = load_message(ros_name(text).partition("[")[0].replace("/", "/msg/"))
+            parts = [("", value)]
+            if kind.is_many:
+                parts = [(f"[{index}]", each) for index, each in enumerate(value)]
+                yield path, ros_name(text)
+            for index, each in parts:
+                yield from _remarks(nested, each, f"{path}{index}.")
+        else:
+            yield path, ros_name(text)
