@@ -37,6 +37,8 @@ SCREENS = {
     "topics": ("tui.screens.topics", "TopicsScreen"),
     "composer": ("tui.screens.composer", "ComposerScreen"),
     "logs": ("tui.screens.logs", "LogsScreen"),
+    "graph": ("tui.screens.graph", "GraphScreen"),
+    "flow": ("tui.screens.flow", "FlowScreen"),
 }
 """Imported when first shown: the first frame needs only one of them."""
 

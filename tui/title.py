@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tui.actions.app import EmergencyRelease, ShowComposer, ShowDeck, ShowLogs, ShowTopics
+from tui.actions.app import (
+    EmergencyRelease,
+    ShowComposer,
+    ShowDeck,
+    ShowFlow,
+    ShowGraph,
+    ShowLogs,
+    ShowTopics,
+)
 from tui.emergency import stop_words
 from tui.i18n import _, pick, said
 from tui.widgets.plain import plain
@@ -14,7 +22,7 @@ if TYPE_CHECKING:
     from launcher.status import SessionInfo
     from tui.app import DeckApp
 
-TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs)
+TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow)
 WELL = frozenset({"ready", "running"})
 
 

@@ -8,14 +8,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterable, Mapping
-from concurrent.futures import Future
+from collections.abc import AsyncIterator, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from graph.data import CallResult, GraphUpdate
 from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Stray
+from tests.tui.recorded_graph import PARAMETERS, RecordedGraph
 from tests.tui.recorded_lesson import (
     LESSONS,
     LINES,
@@ -38,6 +37,7 @@ __all__ = [
     "LINES",
     "NODES",
     "NOW_S",
+    "PARAMETERS",
     "SESSION",
     "TOPICS",
     "RecordedGraph",
@@ -121,77 +121,6 @@ class RecordedSession:
 
     async def aclose(self) -> None:
         self.asked.append(("aclose",))
-
-
-@dataclass
-class RecordedGraph:
-    """A graph that shows what it is told to, and notes what is asked of it."""
-
-    update: GraphUpdate | None = field(default_factory=lesson_update)
-    """Shown at the start; None: nothing yet."""
-    period_s: float = 0.25
-    watched: set[str] = field(default_factory=set)
-    followed: set[str] = field(default_factory=set)
-    measured: bool = False
-    stopped: bool = False
-    published: list[tuple[str, str, Mapping[str, Any], bool]] = field(default_factory=list)
-    """(topic, type, value, latched)."""
-    prepared: list[tuple[str, str, bool]] = field(default_factory=list)
-    called: list[tuple[str, str, Mapping[str, Any]]] = field(default_factory=list)
-    publish_error: Exception | None = None
-    """Set: every publishing fails by this."""
-    _on_update: Callable[[GraphUpdate], None] | None = None
-
-    def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
-        self._on_update = on_update
-        if self.update is not None:
-            on_update(self.update)
-
-    def show(self, update: GraphUpdate) -> None:
-        """Let the graph be this from now on."""
-        self.update = update
-        if self._on_update is not None:
-            self._on_update(update)
-
-    def stop(self) -> None:
-        self.stopped = True
-
-    def watch(self, topics: Iterable[str]) -> None:
-        self.watched = set(topics)
-
-    def follow(self, topics: Iterable[str]) -> None:
-        self.followed = set(topics)
-
-    def measure(self, all_topics: bool) -> None:
-        self.measured = all_topics
-
-    def prepare_publisher(
-        self, topic: str, type_name: str, *, latched: bool = False
-    ) -> Future[None]:
-        self.prepared.append((topic, type_name, latched))
-        future: Future[None] = Future()
-        future.set_result(None)
-        return future
-
-    def publish(
-        self, topic: str, type_name: str, value: Mapping[str, Any], *, latched: bool = False
-    ) -> Future[int]:
-        self.published.append((topic, type_name, value, latched))
-        future: Future[int] = Future()
-        if self.publish_error is None:
-            future.set_result(1)
-        else:
-            future.set_exception(self.publish_error)
-        return future
-
-    def call(
-        self, service: str, type_name: str, request: Mapping[str, Any], timeout_s: float = 5.0
-    ) -> Future[CallResult]:
-        del timeout_s
-        self.called.append((service, type_name, request))
-        future: Future[CallResult] = Future()
-        future.set_result(CallResult(service, True, {"sum": 1}, "", 0.012))
-        return future
 
 
 @dataclass

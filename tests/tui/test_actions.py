@@ -202,7 +202,7 @@ async def test_language_is_switched_by_a_key_and_everything_visible_changes() ->
         await pilot.pause()
         await pilot.pause()
         screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-        for words in ("Пульт", "Узел", "✗ отказал", "Сонар", "Колёса", "домен 42", "пробел СТОП"):
+        for words in ("Пульт", "Узел", "✗ отказал", "Сонар", "Колёса", "5 Граф", "пробел СТОП"):
             assert words in screen
         for words in ("failed", "Sonar", "domain", "STOP"):
             assert words not in screen

@@ -121,6 +121,26 @@ class ShowLogs(ShowScreen):
     screen = "logs"
 
 
+class ShowGraph(ShowScreen):
+    """Nodes, services, actions and types."""
+
+    id = "screen.graph"
+    key = "5"
+    title = N_("Graph")
+    tooltip = N_("Who talks to whom; call services, send goals, set parameters.")
+    screen = "graph"
+
+
+class ShowFlow(ShowScreen):
+    """What happened when, across nodes."""
+
+    id = "screen.flow"
+    key = "6"
+    title = N_("Flow")
+    tooltip = N_("One timeline of all nodes: what followed from a word that was said.")
+    screen = "flow"
+
+
 class ShowHelp(AppAction):
     """The keys and what the screen shows."""
 
@@ -236,6 +256,8 @@ APP_ACTIONS = (
     ShowTopics,
     ShowComposer,
     ShowLogs,
+    ShowGraph,
+    ShowFlow,
     ShowPalette,
     CloseSession,
     SwitchLanguage,

@@ -11,6 +11,8 @@ from textual.style import Style
 from textual.widget import Widget
 
 NAME = " Deck "
+SHORT = 3
+"""Letters of a tab's word where there is little room."""
 
 
 class TitleBar(Widget):
@@ -64,7 +66,8 @@ class TitleBar(Widget):
         """Show tabs of (text, action, in front), and of `states` the first that fits, right.
 
         `look`: `state`, `alarm` or `stop`; with the last the whole line is red, and where the
-        words do not fit beside the tabs these give way.
+        words do not fit beside the tabs these give way. Tabs that are not in front are
+        shortened, to a few letters and then to their keys, before the state is.
         """
         shown = (tuple(tabs), tuple(states), look)
         if shown != (self._tabs, self._states, self._look):
@@ -86,15 +89,25 @@ class TitleBar(Widget):
         return left.append(gap).append(Content.styled(f" {state} ", style))
 
     def _fitting(self) -> tuple[Sequence[tuple[str, str, bool]], str]:
-        """Return the tabs that are shown, and the state as long as there is room for it."""
+        """Return the tabs that are shown, and the state as long as there is room for it.
+
+        The shortest state says too little to spare the tabs for it: they are shortened first.
+        While stopped the words come first, and all tabs may give way.
+        """
         alone = self.size.width - cell_len(NAME) - 3
-        room = alone - sum(cell_len(text) + 2 for text, _action, _front in self._tabs)
-        for state in self._states:
-            if cell_len(state) <= room:
-                return self._tabs, state
-            if cell_len(state) <= alone and self._look == "stop":
-                return (), state
-        return self._tabs, _cut(self._states[-1], room) if self._states else ""
+        levels = [_shortened(self._tabs, letters) for letters in (None, SHORT, 0)]
+        rooms = [alone - sum(cell_len(text) + 2 for text, *_more in tabs) for tabs in levels]
+        states = self._states or ("",)
+        for state in states if self._look == "stop" else ():
+            for tabs, room in (*zip(levels, rooms, strict=True), ((), alone)):
+                if cell_len(state) <= room:
+                    return tabs, state
+        for tabs, room in zip(levels, rooms, strict=True):
+            spared = states[-1:] if len(states) > 1 and tabs is not levels[-1] else ()
+            for state in states:
+                if state not in spared and cell_len(state) <= room:
+                    return tabs, state
+        return levels[-1], _cut(states[-1], rooms[-1])
 
     def _left(self, tabs: Sequence[tuple[str, str, bool]]) -> Content:
         parts = [Content.styled(NAME, self.get_visual_style("title-bar--name"))]
@@ -103,6 +116,24 @@ class TitleBar(Widget):
             click = Style.from_meta({"@click": action})
             parts.append(Content.styled(f" {text} ", style + click))
         return Content("").join(parts)
+
+
+def _shortened(
+    tabs: Sequence[tuple[str, str, bool]], letters: int | None
+) -> Sequence[tuple[str, str, bool]]:
+    """Cut the words of all tabs but the one in front; their keys stay. None cuts nothing."""
+    if letters is None:
+        return tabs
+    return [
+        (text if front else _initials(text, letters), action, front) for text, action, front in tabs
+    ]
+
+
+def _initials(text: str, letters: int) -> str:
+    key, _blank, word = text.partition(" ")
+    if letters and len(word) > letters + 1:
+        word = f"{word[:letters]}."
+    return f"{key} {word}" if letters else key
 
 
 def _cut(text: str, room: int) -> str:

@@ -1,0 +1,208 @@
+"""A graph that was written down: it shows what it is told to, and notes what is asked of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from graph.data import (
+    CallResult,
+    Goal,
+    GoalStatus,
+    GraphUpdate,
+    ParameterRow,
+    ParametersResult,
+    Publication,
+    SetResult,
+)
+from tests.tui.recorded_lesson import NOW_S, lesson_update
+
+PARAMETERS: tuple[ParameterRow, ...] = (
+    ParameterRow("frame_id", "string", "sonar_front", "Frame of the readings.", read_only=True),
+    ParameterRow("rate", "double", 1.0, "Readings a second.", "above 0", False, 0.1, 50.0),
+    ParameterRow("steps", "integer", 4, "", "", False, 0.0, 10.0, 2.0),
+    ParameterRow("topic", "string", "/sensor/sonar_front"),
+    ParameterRow("use_sim_time", "bool", False),
+)
+"""Of every node of which a test says nothing else."""
+
+
+@dataclass
+class RecordedGraph:
+    """A graph that shows what it is told to, and notes what is asked of it."""
+
+    update: GraphUpdate | None = field(default_factory=lesson_update)
+    """Shown at the start; None: nothing yet."""
+    period_s: float = 0.25
+    watched: set[str] = field(default_factory=set)
+    followed: set[str] = field(default_factory=set)
+    measured: bool = False
+    stopped: bool = False
+    published: list[tuple[str, str, Mapping[str, Any], bool]] = field(default_factory=list)
+    """(topic, type, value, latched)."""
+    prepared: list[tuple[str, str, bool]] = field(default_factory=list)
+    called: list[tuple[str, str, Mapping[str, Any]]] = field(default_factory=list)
+    publish_error: Exception | None = None
+    """Set: every publishing fails by this."""
+    answers: dict[str, CallResult] = field(default_factory=dict)
+    """Service to answer, in place of a sum of 1."""
+    hold_calls: bool = False
+    """Set: calls are not answered until the test sets the futures of `waiting`."""
+    waiting: list[Future[CallResult]] = field(default_factory=list)
+    repeated: list[tuple[str, str, Mapping[str, Any], float]] = field(default_factory=list)
+    """(topic, type, value, hz) that is published again and again."""
+    stopped_publications: list[int] = field(default_factory=list)
+    node_parameters: dict[str, ParametersResult] = field(default_factory=dict)
+    """Node to what it says of its parameters; others have `PARAMETERS`."""
+    refusals: dict[str, str] = field(default_factory=dict)
+    """Parameter to the reason why it is not set."""
+    asked_parameters: list[str] = field(default_factory=list)
+    """Nodes whose parameters were read."""
+    set_to: list[tuple[str, Mapping[str, Any]]] = field(default_factory=list)
+    """(node, values)."""
+    sent_goals: list[tuple[str, str, Mapping[str, Any]]] = field(default_factory=list)
+    """(action, type, goal)."""
+    canceled_goals: list[int] = field(default_factory=list)
+    forgotten_goals: list[int] = field(default_factory=list)
+    _on_update: Callable[[GraphUpdate], None] | None = None
+
+    def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
+        self._on_update = on_update
+        if self.update is not None:
+            on_update(self.update)
+
+    def show(self, update: GraphUpdate) -> None:
+        """Let the graph be this from now on."""
+        self.update = update
+        if self._on_update is not None:
+            self._on_update(update)
+
+    def stop(self) -> None:
+        self.stopped = True
+
+    def watch(self, topics: Iterable[str]) -> None:
+        self.watched = set(topics)
+
+    def follow(self, topics: Iterable[str]) -> None:
+        self.followed = set(topics)
+
+    def measure(self, all_topics: bool) -> None:
+        self.measured = all_topics
+
+    def prepare_publisher(
+        self, topic: str, type_name: str, *, latched: bool = False
+    ) -> Future[None]:
+        self.prepared.append((topic, type_name, latched))
+        future: Future[None] = Future()
+        future.set_result(None)
+        return future
+
+    def publish(
+        self, topic: str, type_name: str, value: Mapping[str, Any], *, latched: bool = False
+    ) -> Future[int]:
+        self.published.append((topic, type_name, value, latched))
+        future: Future[int] = Future()
+        if self.publish_error is None:
+            future.set_result(1)
+        else:
+            future.set_exception(self.publish_error)
+        return future
+
+    def call(
+        self, service: str, type_name: str, request: Mapping[str, Any], timeout_s: float = 5.0
+    ) -> Future[CallResult]:
+        del timeout_s
+        self.called.append((service, type_name, request))
+        future: Future[CallResult] = Future()
+        if self.hold_calls:
+            self.waiting.append(future)
+        else:
+            done = CallResult(service, True, {"sum": 1}, "", 0.012)
+            future.set_result(self.answers.get(service, done))
+        return future
+
+    def start_publishing(
+        self, topic: str, type_name: str, value: Mapping[str, Any], hz: float
+    ) -> Future[int]:
+        self.repeated.append((topic, type_name, value, hz))
+        number = len(self.repeated)
+        if self.publish_error is None:
+            one = Publication(number, topic, type_name, hz, 0, 1)
+            self._change(lambda now: replace(now, publications=(*now.publications, one)))
+        return self._numbered(number)
+
+    def stop_publishing(self, number: int) -> None:
+        self.stopped_publications.append(number)
+        self._change(
+            lambda now: replace(
+                now, publications=tuple(one for one in now.publications if one.number != number)
+            )
+        )
+
+    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+        del timeout_s
+        self.asked_parameters.append(node)
+        future: Future[ParametersResult] = Future()
+        future.set_result(
+            self.node_parameters.get(node, ParametersResult(node, PARAMETERS, "", 0.01))
+        )
+        return future
+
+    def set_parameters(
+        self, node: str, values: Mapping[str, Any], timeout_s: float = 5.0
+    ) -> Future[SetResult]:
+        del timeout_s
+        self.set_to.append((node, values))
+        refused = {name: why for name, why in self.refusals.items() if name in values}
+        known = self.node_parameters.get(node, ParametersResult(node, PARAMETERS, "", 0.01))
+        taken = tuple(
+            replace(row, value=values[row.name])
+            if row.name in values and row.name not in refused
+            else row
+            for row in known.parameters
+        )
+        self.node_parameters[node] = replace(known, parameters=taken)
+        future: Future[SetResult] = Future()
+        future.set_result(SetResult(node, refused, "", 0.01))
+        return future
+
+    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Any]) -> Future[int]:
+        self.sent_goals.append((action, type_name, goal))
+        number = len(self.sent_goals)
+        if self.publish_error is None:
+            one = Goal(number, action, type_name, GoalStatus.SENDING, goal)
+            self._change(lambda now: replace(now, goals=(*now.goals, one)))
+        return self._numbered(number)
+
+    def cancel_goal(self, number: int) -> None:
+        self.canceled_goals.append(number)
+
+    def forget_goal(self, number: int) -> None:
+        self.forgotten_goals.append(number)
+        self._change(
+            lambda now: replace(now, goals=tuple(one for one in now.goals if one.number != number))
+        )
+
+    def change_goal(self, number: int, **more: Any) -> None:
+        """Let a goal that was sent be otherwise: its status, feedback, result."""
+        self._change(
+            lambda now: replace(
+                now,
+                goals=tuple(
+                    replace(one, **more) if one.number == number else one for one in now.goals
+                ),
+            )
+        )
+
+    def _change(self, change: Callable[[GraphUpdate], GraphUpdate]) -> None:
+        self.show(change(self.update or GraphUpdate(NOW_S)))
+
+    def _numbered(self, number: int) -> Future[int]:
+        future: Future[int] = Future()
+        if self.publish_error is None:
+            future.set_result(number)
+        else:
+            future.set_exception(self.publish_error)
+        return future
