@@ -10,21 +10,18 @@ import atexit
 import logging
 import threading
 import time
-from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from graph.asking import Asking
 from graph.data import GraphUpdate
 from graph.interest import Interest
-from graph.orders import Call, ObserverError, Order, Prepare, Publish
+from graph.orders import ObserverError
 from graph.ros import open_ros
 from graph.station import LOOK_AT_GRAPH_S, Station
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-    from concurrent.futures import Future
-
-    from graph.data import CallResult, Value
+    from collections.abc import Callable, Iterable
 
 logger = logging.getLogger(__name__)
 
@@ -33,22 +30,19 @@ PENDING_S = 0.01
 STOP_WITHIN_S = 5.0
 
 
-class Observer:
+class Observer(Asking):
     """The ROS graph of one domain as plain data. All methods may be called from any thread."""
 
     def __init__(
         self, domain: int, discovery: str | tuple[str, ...] = "localhost", period_s: float = 0.1
     ) -> None:
         """Prepare for a domain; `discovery` is localhost, subnet, or the addresses of peers."""
+        super().__init__()
         self._domain = domain
         self._discovery = discovery
         self._period_s = period_s
         self._interest = Interest()
-        self._orders: deque[Order] = deque()
-        self._lock = threading.Lock()
-        self._wake = threading.Event()
         self._stopping = False
-        self._failure: ObserverError | None = None
         self._thread: threading.Thread | None = None
 
     @property
@@ -95,48 +89,9 @@ class Observer:
         """Measure the rates of all topics, or only of those watched and followed."""
         self._look_at(all_topics=all_topics)
 
-    def prepare_publisher(
-        self, topic: str, type_name: str, *, latched: bool = False
-    ) -> Future[None]:
-        """Make a publisher now, so that its first message goes out at once."""
-        order = Prepare(topic, type_name, latched)
-        self._order(order)
-        return order.future
-
-    def publish(
-        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
-    ) -> Future[int]:
-        """Publish one message; the future tells how many subscribers it went to.
-
-        A new publisher waits up to a second for its subscribers, in the first seconds up to four.
-        A latched message goes out at once and stays for those who come later; only the count
-        waits. The future raises PublishError, UnknownTypeError, FieldError or
-        ObserverError.
-        """
-        order = Publish(topic, type_name, value, latched)
-        self._order(order)
-        return order.future
-
-    def call(
-        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
-    ) -> Future[CallResult]:
-        """Call a service; the result tells of an answer or why there is none, it never raises."""
-        order = Call(service, type_name, request, timeout_s)
-        self._order(order)
-        return order.future
-
     def _look_at(self, **changes: frozenset[str] | bool) -> None:
         with self._lock:
             self._interest = replace(self._interest, **changes)  # type: ignore[arg-type]
-        self._wake.set()
-
-    def _order(self, order: Order) -> None:
-        with self._lock:
-            failure = self._failure
-            if failure is None:
-                self._orders.append(order)
-        if failure is not None:
-            order.fail(failure)
         self._wake.set()
 
     def _run(self, on_update: Callable[[GraphUpdate], None]) -> None:
@@ -191,17 +146,3 @@ class Observer:
         except Exception:
             # A screen that is being closed; the observer is stopped next.
             logger.exception("an update was not taken")
-
-    def _carry_out_orders(self, station: Station) -> None:
-        while self._orders:
-            order = self._orders.popleft()
-            try:
-                order.carry_out(station)
-            except Exception as error:  # noqa: BLE001 - told to whoever asked for it
-                order.fail(error)
-
-    def _refuse_orders(self, failure: ObserverError) -> None:
-        with self._lock:
-            self._failure = failure
-        while self._orders:
-            self._orders.popleft().fail(failure)

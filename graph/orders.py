@@ -5,15 +5,17 @@ from __future__ import annotations
 import time
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from graph.data import CallResult
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from graph.data import Value
     from graph.station import Station
+
+T = TypeVar("T")
 
 
 class ObserverError(Exception):
@@ -107,3 +109,28 @@ class Call:
         if not self.future.cancelled():
             elapsed_s = time.monotonic() - self.asked_s
             self.future.set_result(CallResult(self.service, False, None, str(error), elapsed_s))
+
+
+@dataclass(frozen=True)
+class Ask(Generic[T]):
+    """Have something begun that has a future for its end."""
+
+    begin: Callable[[Station, Future[T]], None]
+    """Called on the observer's thread; may raise anything."""
+    refusal: Callable[[Exception], T] | None = None
+    """Makes the result that says why not, where the future is never to raise."""
+    future: Future[T] = field(default_factory=Future)
+
+    def carry_out(self, station: Station) -> None:
+        """Begin it, unless it was cancelled meanwhile."""
+        if self.future.set_running_or_notify_cancel():
+            self.begin(station, self.future)
+
+    def fail(self, error: Exception) -> None:
+        """Say that it cannot be done."""
+        if self.future.cancelled():
+            return
+        if self.refusal is not None:
+            self.future.set_result(self.refusal(error))
+        else:
+            self.future.set_exception(error)

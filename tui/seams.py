@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from graph.data import CallResult, GraphUpdate, Value
+    from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
     from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
     from tui.orders import Lesson, Order
@@ -93,6 +93,31 @@ class GraphLink(Protocol):
         self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
     ) -> Future[CallResult]:
         """Call a service."""
+
+    def start_publishing(
+        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
+    ) -> Future[int]:
+        """Publish a message again and again; the future tells its number, or fails."""
+
+    def stop_publishing(self, number: int) -> None:
+        """Publish that one no more; updates do not tell of it any longer."""
+
+    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+        """Read all parameters of a node with their descriptors; the future never raises."""
+
+    def set_parameters(
+        self, node: str, values: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[SetResult]:
+        """Set parameters, each by the type that it has; the future never raises."""
+
+    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
+        """Send a goal; the future tells its number, or fails. Updates tell how it goes."""
+
+    def cancel_goal(self, number: int) -> None:
+        """Ask for a goal to be cancelled."""
+
+    def forget_goal(self, number: int) -> None:
+        """Tell no more of a goal; one that has not ended is cancelled."""
 
 
 class Launchpad(Protocol):

@@ -21,13 +21,13 @@ ROOT = Path(__file__).parents[2]
 class Peer:
     """A node in a process of its own; `peer.advertise(...)` has it do `Orders.advertise`."""
 
-    def __init__(self, name: str, domain: int) -> None:
+    def __init__(self, name: str, domain: int, *options: str) -> None:
         self.name = f"/{name}"
         self.heard: dict[str, list[str]] = {}
         self.served: list[str] = []
         self._answers: queue.Queue[Any] = queue.Queue()
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "tests.ros.told_node", name],
+            [sys.executable, "-m", "tests.ros.told_node", name, *options],
             cwd=ROOT,
             env={
                 **os.environ,

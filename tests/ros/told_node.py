@@ -170,7 +170,7 @@ def obey(orders: Orders, lines: queue.SimpleQueue[str]) -> bool:
 
 def main() -> None:
     rclpy.init()
-    node = Node(sys.argv[1], start_parameter_services=False)
+    node = Node(sys.argv[1], start_parameter_services="--parameters" in sys.argv)
     orders = Orders(node)
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
 

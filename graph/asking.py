@@ -1,0 +1,133 @@
+"""What can be asked of the observer from any thread, and the queue on which it goes to its own."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from typing import TYPE_CHECKING
+
+from graph.data import ParametersResult, SetResult
+from graph.orders import Ask, Call, ObserverError, Order, Prepare, Publish
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from concurrent.futures import Future
+
+    from graph.data import CallResult, Value
+    from graph.station import Station
+
+
+class Asking:
+    """Takes orders on any thread and gives out futures; its observer carries the orders out."""
+
+    def __init__(self) -> None:
+        self._orders: deque[Order] = deque()
+        self._lock = threading.Lock()
+        self._wake = threading.Event()
+        self._failure: ObserverError | None = None
+
+    def prepare_publisher(
+        self, topic: str, type_name: str, *, latched: bool = False
+    ) -> Future[None]:
+        """Make a publisher now, so that its first message goes out at once."""
+        order = Prepare(topic, type_name, latched)
+        self._order(order)
+        return order.future
+
+    def publish(
+        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
+    ) -> Future[int]:
+        """Publish one message; the future tells how many subscribers it went to.
+
+        A new publisher waits up to a second for its subscribers, in the first seconds up to four.
+        A latched message goes out at once and stays for those who come later; only the count
+        waits. The future raises PublishError, UnknownTypeError, FieldError or
+        ObserverError.
+        """
+        order = Publish(topic, type_name, value, latched)
+        self._order(order)
+        return order.future
+
+    def call(
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[CallResult]:
+        """Call a service; the result tells of an answer or why there is none, it never raises."""
+        order = Call(service, type_name, request, timeout_s)
+        self._order(order)
+        return order.future
+
+    def start_publishing(
+        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
+    ) -> Future[int]:
+        """Publish a message again and again; the future tells its number, or fails."""
+        raise NotImplementedError(topic, type_name, value, hz)
+
+    def stop_publishing(self, number: int) -> None:
+        """Publish that one no more; updates do not tell of it any longer."""
+        raise NotImplementedError(number)
+
+    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
+        """Send a goal; the future tells its number, or fails. Updates tell how it goes."""
+        raise NotImplementedError(action, type_name, goal)
+
+    def cancel_goal(self, number: int) -> None:
+        """Ask for a goal to be cancelled."""
+        raise NotImplementedError(number)
+
+    def forget_goal(self, number: int) -> None:
+        """Tell no more of a goal; one that has not ended is cancelled."""
+        raise NotImplementedError(number)
+
+    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+        """Read all parameters of a node, with descriptors; `timeout_s` is for each answer.
+
+        The result tells of them or why there are none, the future never raises.
+        """
+        asked_s = time.monotonic()
+        order = Ask[ParametersResult](
+            lambda station, future: station.parameters.read(node, timeout_s, asked_s, future),
+            lambda error: ParametersResult(node, (), str(error), time.monotonic() - asked_s),
+        )
+        self._order(order)
+        return order.future
+
+    def set_parameters(
+        self, node: str, values: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[SetResult]:
+        """Set parameters by the types that they have, each for itself.
+
+        The result tells of each that was refused, and why; the future never raises.
+        """
+        asked_s = time.monotonic()
+        order = Ask[SetResult](
+            lambda station, future: station.parameters.write(
+                node, values, timeout_s, asked_s, future
+            ),
+            lambda error: SetResult(node, {}, str(error), time.monotonic() - asked_s),
+        )
+        self._order(order)
+        return order.future
+
+    def _order(self, order: Order) -> None:
+        with self._lock:
+            failure = self._failure
+            if failure is None:
+                self._orders.append(order)
+        if failure is not None:
+            order.fail(failure)
+        self._wake.set()
+
+    def _carry_out_orders(self, station: Station) -> None:
+        while self._orders:
+            order = self._orders.popleft()
+            try:
+                order.carry_out(station)
+            except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+                order.fail(error)
+
+    def _refuse_orders(self, failure: ObserverError) -> None:
+        with self._lock:
+            self._failure = failure
+        while self._orders:
+            self._orders.popleft().fail(failure)

@@ -1,0 +1,211 @@
+"""Values of parameters: as ROS carries them, as plain values, and as a person types them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from graph.data import ParameterRow
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from graph.data import Value
+
+TYPES = (
+    "not_set",
+    "bool",
+    "integer",
+    "double",
+    "string",
+    "byte_array",
+    "bool_array",
+    "integer_array",
+    "double_array",
+    "string_array",
+)
+"""By their numbers (source: rcl_interfaces/msg/ParameterType)."""
+INTEGERS = range(-(2**63), 2**63)
+TRUE = frozenset({"true", "yes", "on"})
+FALSE = frozenset({"false", "no", "off"})
+SHOWN = 40
+"""Characters of a wrong value that a word repeats."""
+
+
+class WrongValueError(ValueError):
+    """A value does not fit the parameter's type; str() says what was expected, and what was got."""
+
+
+def row(
+    name: str, descriptor: Mapping[str, Any], carried: Mapping[str, Any] | None
+) -> ParameterRow:
+    """Return one parameter from the trees of its ParameterDescriptor and its ParameterValue.
+
+    A parameter that was declared and never given a value has its declared type and no value.
+    """
+    value = plain(carried) if carried is not None else None
+    type_name = TYPES[carried["type"]] if carried is not None and value is not None else ""
+    ranges = [*descriptor["floating_point_range"], *descriptor["integer_range"]]
+    least, greatest, step = (
+        (float(ranges[0]["from_value"]), float(ranges[0]["to_value"]), float(ranges[0]["step"]))
+        if ranges
+        else (None, None, None)
+    )
+    return ParameterRow(
+        name,
+        type_name or type_of(descriptor),
+        value,
+        descriptor["description"],
+        descriptor["additional_constraints"],
+        descriptor["read_only"],
+        least,
+        greatest,
+        step or None,
+    )
+
+
+def type_of(descriptor: Mapping[str, Any]) -> str:
+    """Return the type that a parameter was declared with; `not_set` where any will do."""
+    number = descriptor["type"]
+    return TYPES[number] if number in range(len(TYPES)) else TYPES[0]
+
+
+def plain(carried: Mapping[str, Any]) -> Value | None:
+    """Return the plain value that the tree of a ParameterValue carries; None if it has none."""
+    number = carried["type"]
+    if number not in range(1, len(TYPES)):
+        return None
+    value: Value = carried[f"{TYPES[number]}_value"]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def carried(type_name: str, value: Value) -> dict[str, Value]:
+    """Return the tree of the ParameterValue of this type for a value as a person gives it.
+
+    An integer will do for a double, and the text of a value for the value. For `not_set` the type
+    is that of the value. Raises WrongValueError if it does not fit.
+    """
+    if type_name == TYPES[0]:
+        type_name = _type_for(value)
+    made = _READERS[type_name](value)
+    return {"type": TYPES.index(type_name), f"{type_name}_value": made}
+
+
+def _type_for(value: Value) -> str:
+    if isinstance(value, (bytes, bytearray)):
+        return "byte_array"
+    for kind, name in ((bool, "bool"), (int, "integer"), (float, "double"), (str, "string")):
+        if isinstance(value, kind):
+            return name
+    elements = _elements(value)
+    if not elements:
+        raise WrongValueError("an empty list has no type, and the parameter has none either")
+    names = {_type_for(each) for each in elements}
+    if names == {"integer", "double"}:
+        return "double_array"
+    if len(names) > 1 or f"{min(names)}_array" not in TYPES:
+        raise WrongValueError(f"expected a list of values of one type, got {_shown(value)}")
+    return f"{names.pop()}_array"
+
+
+def _bool(value: Value) -> bool:
+    if isinstance(value, bool):
+        return value
+    word = value.strip().lower() if isinstance(value, str) else ""
+    if word not in TRUE | FALSE:
+        raise WrongValueError(f"expected true or false, got {_shown(value)}")
+    return word in TRUE
+
+
+def _integer(value: Value) -> int:
+    number: int | None = None
+    if isinstance(value, str):
+        try:
+            number = int(value.strip(), 0)
+        except ValueError:
+            number = None
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        number = int(value) if isinstance(value, int) or value.is_integer() else None
+    if number is None:
+        raise WrongValueError(f"expected a whole number, got {_shown(value)}")
+    if number not in INTEGERS:
+        raise WrongValueError(f"{_shown(value)} is too great for an integer of 64 bits")
+    return number
+
+
+def _double(value: Value) -> float:
+    if isinstance(value, str):
+        # `.inf` and `.nan` are how YAML writes them.
+        text = value.strip().lower().replace(".inf", "inf").replace(".nan", "nan")
+        try:
+            return float(text)
+        except ValueError:
+            raise WrongValueError(f"expected a number, got {_shown(value)}") from None
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise WrongValueError(f"expected a number, got {_shown(value)}")
+    try:
+        return float(value)
+    except OverflowError:
+        raise WrongValueError(f"{_shown(value)} is too great for a double") from None
+
+
+def _string(value: Value) -> str:
+    if not isinstance(value, str):
+        raise WrongValueError(f"expected a text, got {_shown(value)}")
+    if "\0" in value:
+        raise WrongValueError("a text of ROS cannot hold the character NUL")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise WrongValueError(f"{_shown(value)} is no valid Unicode") from None
+    return value
+
+
+def _bytes(value: Value) -> bytes:
+    if isinstance(value, (bytes, bytearray)):
+        return bytes(value)
+    numbers = [_integer(each) for each in _elements(value)]
+    if not all(0 <= number <= 255 for number in numbers):
+        raise WrongValueError(f"expected bytes, 0 to 255, got {_shown(value)}")
+    return bytes(numbers)
+
+
+def _list_of(one: Callable[[Value], Value]) -> Callable[[Value], Value]:
+    return lambda value: [one(each) for each in _elements(value)]
+
+
+def _elements(value: Value) -> list[Value]:
+    if isinstance(value, str):
+        value = _parsed(value)
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if not isinstance(value, (list, tuple)):
+        raise WrongValueError(f"expected a list, such as [1, 2], got {_shown(value)}")
+    return list(value)
+
+
+def _parsed(text: str) -> Value:
+    import yaml
+
+    try:
+        value: Value = yaml.safe_load(text)
+    except (yaml.YAMLError, ValueError):
+        return text
+    return value
+
+
+def _shown(value: object) -> str:
+    text = "nothing" if value is None else repr(value)
+    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
+
+
+_READERS: dict[str, Callable[[Value], Value]] = {
+    "bool": _bool,
+    "integer": _integer,
+    "double": _double,
+    "string": _string,
+    "byte_array": _bytes,
+    "bool_array": _list_of(_bool),
+    "integer_array": _list_of(_integer),
+    "double_array": _list_of(_double),
+    "string_array": _list_of(_string),
+}
