@@ -6,13 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-import yaml
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
 from tui.widgets.echo_lines import MAX_LINES, EchoLine, echo_lines
 from tui.widgets.echo_tree import EchoTree
-from tui.widgets.echo_yaml import yaml_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -134,25 +132,6 @@ def test_a_message_of_any_size_makes_a_bounded_tree() -> None:
 
 def test_a_message_without_fields_says_so() -> None:
     assert echo_lines({}, as_is)[0].text == "(a message without fields)"
-
-
-def test_yaml_is_what_ros2_topic_pub_takes() -> None:
-    text, cut = yaml_text({**JOINTS, "data": b"\x01\x02", "word": "вперёд"})
-    assert not cut
-    assert yaml.safe_load(text) == {
-        "header": {"stamp": STAMP, "frame_id": "base_link"},
-        "name": ["rear_left_wheel_joint", "rear_right_wheel_joint"],
-        "velocity": [7.5, -11.25],
-        "data": [1, 2],
-        "word": "вперёд",
-    }
-    assert "вперёд" in text
-
-
-def test_yaml_of_a_picture_is_cut_to_fit_a_clipboard() -> None:
-    text, cut = yaml_text({"data": bytes(921_600)})
-    assert cut
-    assert len(text) < 20_000
 
 
 async def test_a_fold_outlives_the_next_message_and_a_visit_to_another_topic() -> None:

@@ -10,12 +10,12 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
 from graph import images
+from graph.yaml_text import is_cut, to_yaml
 from tui.actions import bindings
 from tui.actions.topics import TOPICS_ACTIONS
 from tui.i18n import N_, _, ngettext
 from tui.screens.base import DeckScreen
 from tui.widgets.echo_tree import EchoTree
-from tui.widgets.echo_yaml import yaml_text
 from tui.widgets.topic_detail import TopicDetail
 from tui.widgets.topic_words import size_text
 from tui.widgets.topics_table import TopicsTable
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from tui.messages import GraphChanged, LanguageChanged, SessionChanged
 
 IMAGE = "sensor_msgs/msg/Image"
+LONGEST_ARRAY = 2000
+"""Elements of an array that are copied: a clipboard of a terminal (OSC 52) takes little."""
 SETTLED_S = 0.12
 """How long a choice must stand before its topic is subscribed: whoever walks down the list with
 the arrow keys asks for none of those passed by."""
@@ -195,10 +197,10 @@ class TopicsScreen(DeckScreen):
         if message is None:
             self.notify(_("There is no message to copy."), severity="warning", markup=False)
             return
-        text, cut = yaml_text(message)
+        text = to_yaml(message, most=LONGEST_ARRAY)
         self.app.copy_to_clipboard(text)
         words = _("Copied as YAML: {size}.").format(size=size_text(len(text.encode())))
-        if cut:
+        if is_cut(message, LONGEST_ARRAY):
             words += " " + _("Long arrays were cut.")
         self.notify(words, markup=False)
 
