@@ -102,7 +102,7 @@ async def test_only_the_chosen_topic_is_decoded(room: Room) -> None:
     await room.show(lesson_update())
     assert "data:    1.84" in room.echo()
     assert "std_msgs/msg/Float32" in room.head()
-    assert "1.0 Hz · 8 B/s · 8 B a message" in room.head()
+    assert "1.0 Hz · 8 B/s · age <1 s · jitter – · latency – · lost – · 8 B a message" in room.head()
 
 
 async def test_walking_past_topics_subscribes_none_of_them(

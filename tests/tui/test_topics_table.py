@@ -146,7 +146,18 @@ def test_a_narrow_table_gives_up_the_type_first_and_the_rate_last() -> None:
         "name", "publishers", "subscribers", "hz", "bandwidth", "age", "state",
     }  # fmt: skip
     assert [place.column.id for place in placed(30)] == ["name", "hz"]
-    assert len(placed(118)) == len(COLUMNS)
+    assert len(placed(118)) == len(COLUMNS) - 3
+
+
+def test_jitter_latency_and_losses_come_all_at_once_and_cut_no_name() -> None:
+    extra = {"jitter", "latency", "lost"}
+    for width in range(60, 220):
+        places = {place.column.id: place for place in placed(width, 23)}
+        assert extra.isdisjoint(places) or extra <= places.keys()
+        if "lost" in places:
+            assert places["name"].width >= 23
+            assert places["type"].width >= 26
+    assert extra <= {place.column.id for place in placed(130, 23)}
 
 
 def test_the_longest_name_is_whole_before_the_types_get_room() -> None:

@@ -91,6 +91,26 @@ class PictureOrTree(TopicsAction):
         target.toggle_picture()
 
 
+class Endpoints(TopicsAction):
+    """Who is on the topic."""
+
+    id = "topics.endpoints"
+    key = "e,у"
+    title = N_("Endpoints")
+    tooltip = N_("Show every publisher and subscriber with its QoS, and which of them do not fit.")
+    footer = True
+
+    @classmethod
+    def label(cls, target: TopicsScreen) -> str:
+        """By what it would show now."""
+        return N_("Message") if target.detail.as_endpoints else cls.title
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Show the other one."""
+        target.toggle_endpoints()
+
+
 class SortByNext(TopicsAction):
     """Another column to sort by."""
 
@@ -141,6 +161,7 @@ TOPICS_ACTIONS = (
     Pause,
     CopyMessage,
     PictureOrTree,
+    Endpoints,
     SortByNext,
     Reverse,
     Housekeeping,

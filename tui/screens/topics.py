@@ -60,8 +60,8 @@ class TopicsScreen(DeckScreen):
     }
     TopicsScreen.-wide {
         #topics-body { layout: horizontal; }
-        TopicsTable { width: 3fr; height: 1fr; max-height: 100%; }
-        TopicDetail { width: 2fr; border-top: none; border-left: solid $panel; }
+        TopicsTable { width: 2fr; height: 1fr; max-height: 100%; }
+        TopicDetail { width: 1fr; border-top: none; border-left: solid $panel; }
     }
     TopicsScreen.-low TopicHead, TopicsScreen.-flat TopicHead { max-height: 2; }
     TopicsScreen.-flat TopicDetail { border-top: none; }
@@ -143,7 +143,8 @@ class TopicsScreen(DeckScreen):
 
     @on(TopicsTable.Opened)
     def _opened(self) -> None:
-        self.detail.echo.focus()
+        front = self.detail.front
+        (front if front.can_focus else self.detail.echo).focus()
 
     @on(TopicsTable.Arranged)
     def _arranged(self) -> None:
@@ -189,7 +190,15 @@ class TopicsScreen(DeckScreen):
 
     def toggle_picture(self) -> None:
         """Show an image as a picture, or as a tree."""
+        if self.detail.as_endpoints:
+            self.toggle_endpoints()
+            return
         self.detail.show_as_picture(not self.detail.as_picture)
+
+    def toggle_endpoints(self) -> None:
+        """Show who is on the chosen topic and by which QoS, or its message."""
+        self.detail.show_as_endpoints(not self.detail.as_endpoints)
+        self.refresh_bindings()
 
     def copy_message(self) -> None:
         """Copy the message that is shown as YAML."""
@@ -215,7 +224,7 @@ class TopicsScreen(DeckScreen):
             return
         if first:
             self.detail.show_as_picture(True)
-        if self.detail.as_picture and not self.detail.echo.paused:
+        if self.detail.front is self.detail.picture and not self.detail.echo.paused:
             self._show_picture(sample.value)
 
     def _show_picture(self, value: Mapping[str, Value]) -> None:

@@ -1,4 +1,4 @@
-"""One topic: what it is, and its newest message as a tree or as a picture."""
+"""One topic: what it is, and below that its newest message, a picture, or who is on it."""
 
 from __future__ import annotations
 
@@ -13,43 +13,61 @@ from tui.i18n import _
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.image_view import ImageView
 from tui.widgets.plain import plain
-from tui.widgets.topic_words import advice, ends, figures
+from tui.widgets.topic_endpoints import TopicEndpoints
+from tui.widgets.topic_words import advice, ends, figures, packed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from textual.app import ComposeResult
+    from textual.geometry import Size
 
     from graph.data import Sample, TopicRow
     from tui.widgets.half_blocks import Pixels
 
 
 class TopicHead(Widget):
-    """Name and type, rates, and who is on the topic: three lines, or two."""
+    """Name and type, figures, and who is on the topic: as many lines as there is height for."""
 
     DEFAULT_CSS = """
     TopicHead {
-        height: auto; max-height: 3; width: 1fr; background: $panel; color: $foreground;
+        height: auto; max-height: 4; width: 1fr; background: $panel; color: $foreground;
         text-wrap: nowrap; text-overflow: ellipsis;
     }
     """
 
     def __init__(self) -> None:
         super().__init__()
-        self._lines: tuple[str, str, str, str] = ("", "", "", "")
+        self._texts: tuple[str, str, tuple[str, ...], str] = ("", "", (), "")
 
-    def show(self, name: str, type_name: str, state: str, below: str) -> None:
+    def show(self, name: str, type_name: str, figures: Sequence[str], below: str) -> None:
         """Show these texts, drawn only if one of them is new."""
-        lines = (plain(name), plain(type_name), state, below)
-        if lines != self._lines:
-            other_height = len(list(filter(None, lines))) != len(list(filter(None, self._lines)))
-            self._lines = lines
-            self.refresh(layout=other_height)
+        texts = (plain(name), plain(type_name), tuple(figures), below)
+        if texts != self._texts:
+            before = self._count()
+            self._texts = texts
+            self.refresh(layout=self._count() != before)
+
+    def on_resize(self) -> None:
+        """Fold the figures anew."""
+        self.refresh(layout=True)
+
+    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
+        """As many lines as the figures take at this width, with those above and below."""
+        del container, viewport
+        return self._count(width)
 
     def render(self) -> Content:
         """Draw the lines."""
-        name, type_name, state, below = self._lines
+        name, type_name, parts, below = self._texts
         lines = [Content.assemble((name, "bold"), "  ", (type_name, "dim"))]
-        lines += [Content(text) for text in (state, below) if text]
+        texts = [*packed(parts, max(1, self.size.width)), below]
+        lines += [Content(text) for text in texts if text]
         return Content("\n").join(lines)
+
+    def _count(self, width: int | None = None) -> int:
+        _name, _type, parts, below = self._texts
+        return 1 + len(packed(parts, max(1, width or self.size.width))) + bool(below)
 
 
 class TopicDetail(Vertical):
@@ -57,9 +75,11 @@ class TopicDetail(Vertical):
 
     DEFAULT_CSS = """
     TopicDetail { width: 1fr; height: 1fr; }
-    TopicDetail > ImageView { display: none; }
+    TopicDetail > ImageView, TopicDetail > TopicEndpoints { display: none; }
     TopicDetail.-picture > ImageView { display: block; }
     TopicDetail.-picture > EchoTree { display: none; }
+    TopicDetail.-endpoints > TopicEndpoints { display: block; }
+    TopicDetail.-endpoints > EchoTree, TopicDetail.-endpoints > ImageView { display: none; }
     """
 
     def __init__(self, *, id: str | None = None) -> None:
@@ -68,10 +88,11 @@ class TopicDetail(Vertical):
         self._sample: Sample | None = None
 
     def compose(self) -> ComposeResult:
-        """The head above tree and picture, of which one is shown."""
+        """The head above tree, picture and endpoints, of which one is shown."""
         yield TopicHead()
         yield EchoTree()
         yield ImageView()
+        yield TopicEndpoints()
 
     @property
     def echo(self) -> EchoTree:
@@ -82,6 +103,18 @@ class TopicDetail(Vertical):
     def picture(self) -> ImageView:
         """The message as a picture."""
         return self.query_one(ImageView)
+
+    @property
+    def endpoints(self) -> TopicEndpoints:
+        """Everyone on the topic."""
+        return self.query_one(TopicEndpoints)
+
+    @property
+    def front(self) -> Widget:
+        """What is shown below the head."""
+        if self.as_endpoints:
+            return self.endpoints
+        return self.picture if self.as_picture else self.echo
 
     @property
     def sample(self) -> Sample | None:
@@ -122,22 +155,41 @@ class TopicDetail(Vertical):
         if picture != self.as_picture:
             self.set_class(picture, "-picture")
 
+    @property
+    def as_endpoints(self) -> bool:
+        """Whether the endpoints are in front of message and picture."""
+        return self.has_class("-endpoints")
+
+    def show_as_endpoints(self, endpoints: bool) -> None:
+        """Bring the endpoints to the front, or the message."""
+        if endpoints == self.as_endpoints:
+            return
+        had_focus = self.front.has_focus
+        self.set_class(endpoints, "-endpoints")
+        if endpoints:
+            self.endpoints.show(self._row)
+        if had_focus and self.front.can_focus:
+            self.front.focus()
+
     def relabel(self) -> None:
         """Draw again, after the language changed."""
         self._say()
+        self.endpoints.relabel()
         self.echo.relabel()
 
     def _say(self) -> None:
         head, row = self.query_one(TopicHead), self._row
+        if self.as_endpoints:
+            self.endpoints.show(row)
         if row is None:
-            head.show(_("no topic is chosen"), "", "", "")
+            head.show(_("no topic is chosen"), "", (), "")
             self.echo.show_words("", "")
             return
         headline, way_out = advice(row)
         size = None if self._sample is None else self._sample.size_bytes
         state = figures(row, size)
         if self.echo.paused:
-            state = f"{_('PAUSED')} · {state}"
+            state = [_("PAUSED"), *state]
         types = " | ".join(row.type_names)
         if self._sample is not None:
             # That it is quiet is said by the figures, and most topics may be.

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
+
 from graph.data import Trouble
 from tui.i18n import _, ngettext
 from tui.widgets.plain import plain
-from tui.widgets.topics_table_columns import bandwidth_text, hz_text
+from tui.widgets.topic_figures import count_text, seconds_text
+from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text
 from tui.widgets.trouble import no_data_words, trouble_words
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from graph.data import EndpointInfo, TopicRow
 
 LONGEST = 400
 KILO = 1000
 SHOWN_NODES = 4
+BETWEEN = " · "
 
 
 def advice(row: TopicRow) -> tuple[str, str]:
@@ -41,12 +45,17 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
         words = _("{type}: install the package {package}, or source the workspace that has it.")
         return words.format(**facts)
     if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
-        words = _(
-            "{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} "
-            "is offered. Make the publisher {requested} or the subscriber {offered}."
-        )
-        return words.format(**facts)
+        return pair_words(facts)
     return row.detail
+
+
+def pair_words(facts: Mapping[str, str]) -> str:
+    """Who does not hear whom, and the two ways out, from the facts of a `Trouble.QOS_MISMATCH`."""
+    words = _(
+        "{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} "
+        "is offered. Make the publisher {requested} or the subscriber {offered}."
+    )
+    return plain(words.format(**facts), LONGEST)
 
 
 def _what_deck_sent(row: TopicRow) -> str:
@@ -60,8 +69,8 @@ def _remark(row: TopicRow) -> str:
     return plain(row.detail, LONGEST)
 
 
-def figures(row: TopicRow, size_bytes: int | None) -> str:
-    """Rate, bandwidth and size in one line; why there are none if so."""
+def figures(row: TopicRow, size_bytes: int | None) -> list[str]:
+    """Rate, bandwidth, age, jitter, latency, losses and size; why there are none if so."""
     if not row.measured:
         parts = [_("not measured: Deck is not subscribed")]
     elif row.trouble is Trouble.QUIET and row.age_s is not None:
@@ -69,10 +78,28 @@ def figures(row: TopicRow, size_bytes: int | None) -> str:
     elif row.hz is None:
         parts = [_("no rate yet: it takes two messages")] if row.trouble is None else []
     else:
-        parts = [f"{hz_text(row.hz)} {_('Hz')}", bandwidth_text(row.bytes_per_s)]
+        parts = [
+            f"{hz_text(row.hz)} {_('Hz')}",
+            bandwidth_text(row.bytes_per_s),
+            _("age {time}").format(time=age_text(row.age_s)),
+            _("jitter {time}").format(time=seconds_text(row.jitter_s)),
+            _("latency {time}").format(time=seconds_text(row.latency_s)),
+            _("lost {n}").format(n=count_text(row.lost)),
+        ]
     if size_bytes is not None:
         parts.append(_("{size} a message").format(size=size_text(size_bytes)))
-    return " · ".join(parts)
+    return parts
+
+
+def packed(parts: Sequence[str], width: int) -> list[str]:
+    """The parts in lines of at most so many cells, each line as full as can be."""
+    lines: list[str] = []
+    for part in parts:
+        if lines and cell_len(lines[-1]) + len(BETWEEN) + cell_len(part) <= width:
+            lines[-1] += BETWEEN + part
+        else:
+            lines.append(part)
+    return lines
 
 
 def size_text(size_bytes: int) -> str:

@@ -11,9 +11,8 @@ from rich.cells import cell_len, set_cell_size
 from graph.data import TopicRow, Trouble
 from tui.i18n import N_, _
 from tui.widgets.plain import plain
+from tui.widgets.topic_figures import UNKNOWN, count_text, seconds_text
 
-UNKNOWN = "–"
-"""Stands where there is no figure; the last column says why."""
 SortKey: TypeAlias = "tuple[float, str]"
 UNITS = (N_("B/s"), N_("kB/s"), N_("MB/s"), N_("GB/s"))
 STEP = 1000
@@ -163,6 +162,33 @@ COLUMNS = (
         right=True,
     ),
     Column(
+        "jitter",
+        N_("Jitter"),
+        8,
+        lambda row: seconds_text(row.jitter_s),
+        lambda row: (_figure(row.jitter_s), ""),
+        right=True,
+        falling=True,
+    ),
+    Column(
+        "latency",
+        N_("Latency"),
+        9,
+        lambda row: seconds_text(row.latency_s),
+        lambda row: (_figure(row.latency_s), ""),
+        right=True,
+        falling=True,
+    ),
+    Column(
+        "lost",
+        N_("Lost"),
+        7,
+        lambda row: count_text(row.lost),
+        lambda row: (-1.0 if row.lost is None else row.lost, ""),
+        right=True,
+        falling=True,
+    ),
+    Column(
         "state",
         N_("State"),
         15,
@@ -172,6 +198,10 @@ COLUMNS = (
 )
 """In the order of the screen."""
 
+_EXTRA = frozenset({"jitter", "latency", "lost"})
+"""All or none of them, where there is room to spare: they stand above the message too."""
+LONG_NAME, COMFORT = 30, 8
+"""Cells of a name, and beyond the least of a type, that come before the extra columns."""
 _GIVEN_UP = ("type", "subscribers", "publishers", "bandwidth", "age", "state", "hz")
 """What goes first when room is short."""
 
@@ -199,6 +229,9 @@ def placed(width: int, longest_name: int = 0) -> tuple[Place, ...]:
     then to the types; where these are left out, all of it goes to the names.
     """
     kept = list(COLUMNS)
+    names = max(0, min(longest_name, LONG_NAME) - COLUMNS[0].least)
+    if _least(kept) + names + COMFORT > width:
+        kept = [column for column in kept if column.id not in _EXTRA]
     for unneeded in _GIVEN_UP:
         if _least(kept) <= width:
             break
@@ -224,5 +257,5 @@ def _least(columns: list[Column]) -> int:
 
 
 def _gap(column: Column) -> int:
-    """Cells after a column: two where a figure on the right is followed by a word on the left."""
-    return 2 if column.id == "age" else 1
+    """Cells after a column: two where figures on the right may be followed by a word."""
+    return 2 if column.id in {"age", "lost"} else 1

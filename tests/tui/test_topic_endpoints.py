@@ -1,0 +1,156 @@
+"""Who is on a topic: every policy of every endpoint, what does not fit, and who disagrees."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from rich.cells import cell_len
+
+from graph.data import EndpointInfo, TopicRow
+from tests.tui.recorded import TOPICS, lesson_update
+from tests.tui.snapshots import Look, settle
+from tui.screens.topics import TopicsScreen
+from tui.widgets.topic_endpoint_lines import endpoint_lines
+from tui.widgets.topic_figures import count_text, seconds_text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FLOAT, DOUBLE = "std_msgs/msg/Float32", "std_msgs/msg/Float64"
+LIDAR = EndpointInfo(
+    "/lidar", FLOAT, "best_effort", "volatile", 5, "keep_last", 0.1, 0.5, 2.0, "manual_by_topic"
+)
+BRAIN = EndpointInfo("/brain", FLOAT, "reliable", "volatile", liveliness="automatic")
+
+
+def a_row(
+    published_by: Sequence[EndpointInfo] = (), subscribed_by: Sequence[EndpointInfo] = ()
+) -> TopicRow:
+    return TopicRow(
+        "/scan",
+        (FLOAT,),
+        len(published_by),
+        len(subscribed_by),
+        published_by=tuple(published_by),
+        subscribed_by=tuple(subscribed_by),
+    )
+
+
+def text(row: TopicRow, width: int = 120) -> str:
+    lines = ["".join(ink.text for ink in line) for line in endpoint_lines(row, width)]
+    assert all(cell_len(line) <= width for line in lines)
+    return "\n".join(" ".join(line.split()) for line in lines)
+
+
+def test_every_policy_is_shown() -> None:
+    shown = text(a_row([LIDAR], [replace(BRAIN, reliability="best_effort")]))
+    assert "✓ every subscriber hears every publisher" in shown
+    assert ("/lidar best_effort volatile keep_last 5 100 ms 500 ms manual_by_topic 2.0 s") in shown
+    assert "/brain best_effort volatile – none none automatic" in shown
+    assert "“–” is not told" in shown
+
+
+def test_what_has_no_column_stands_below() -> None:
+    shown = text(a_row([LIDAR], []), 60)
+    assert "/lidar best_effort volatile" in shown
+    assert (
+        "history keep_last 5 · deadline 100 ms · lifespan 500 ms · liveliness manual_by_topic"
+    ) in shown.replace("\n", " ")
+
+
+def test_a_pair_that_does_not_fit_is_marked_and_told_with_the_way_out() -> None:
+    shown = text(a_row([LIDAR], [BRAIN]))
+    words = (
+        "✗ /brain does not hear /lidar: reliability reliable is asked for, best_effort is "
+        "offered. Make the publisher reliable or the subscriber best_effort."
+    )
+    assert words in shown.replace("\n", " ")
+    assert "\n✗ /lidar best_effort" in shown
+    assert "\n✗ /brain reliable" in shown
+    assert "✓" not in shown
+
+
+def test_only_the_endpoints_that_do_not_fit_are_marked() -> None:
+    shown = text(a_row([LIDAR, replace(BRAIN, node="/other")], [BRAIN]))
+    assert "\n/other reliable" in shown
+
+
+def test_who_disagrees_about_the_type_is_named_and_no_qos_is_held_against_it() -> None:
+    shown = text(a_row([LIDAR], [replace(BRAIN, type_name=DOUBLE)]))
+    assert "✗ Peers disagree about the type" in shown
+    assert f"{FLOAT}: published by lidar" in shown
+    assert f"{DOUBLE}: expected by brain" in shown
+    assert "does not hear" not in shown
+
+
+def test_nobody_is_said_to_be_nobody() -> None:
+    shown = text(a_row())
+    assert "nobody publishes" in shown
+    assert "nobody listens" in shown
+
+
+def test_a_crowd_that_does_not_fit_is_cut() -> None:
+    crowd = [replace(BRAIN, node=f"/brain_{number}") for number in range(40)]
+    assert "… and 28 more pairs" in text(a_row([LIDAR], crowd))
+
+
+@pytest.mark.parametrize("width", [1, 9, 30, 64, 200])
+def test_hostile_names_fit_any_width(width: int) -> None:
+    evil = replace(LIDAR, node="/\x1b[2J[red]" + "x" * 500, type_name="\x1b]0;title\x07" * 50)
+    for line in endpoint_lines(a_row([evil], [BRAIN]), max(width, 12)):
+        assert "\x1b" not in "".join(ink.text for ink in line)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "shown"),
+    [
+        (None, "–"),
+        (0.0, "0 µs"),
+        (12e-6, "12 µs"),
+        (0.00012, "0.1 ms"),
+        (0.0123, "12.3 ms"),
+        (0.35, "350 ms"),
+        (0.9999, "1.0 s"),
+        (-0.002, "-2.0 ms"),
+        (250.0, "250 s"),
+    ],
+)
+def test_times_have_three_figures_and_a_unit(seconds: float | None, shown: str) -> None:
+    assert seconds_text(seconds) == shown
+
+
+@pytest.mark.parametrize(
+    ("count", "shown"),
+    [(None, "–"), (0, "0"), (99_999, "99999"), (123_456, "123k"), (12_345_678, "12M")],
+)
+def test_counts_stay_short(count: int | None, shown: str) -> None:
+    assert count_text(count) == shown
+
+
+async def test_a_key_brings_the_endpoints_to_the_front_and_back() -> None:
+    look = Look((120, 40), "en")
+    app = look.app("topics")
+    async with app.run_test(size=look.size) as pilot:
+        await settle(pilot)
+        screen: Any = app.screen
+        assert isinstance(screen, TopicsScreen)
+        screen.table.choose("/drive")
+        rows = [
+            replace(row, published_by=(LIDAR,), subscribed_by=(BRAIN,))
+            if row.name == "/drive"
+            else row
+            for row in TOPICS
+        ]
+        app.feed.graph.show(lesson_update(topics=tuple(rows)))  # type: ignore[union-attr]
+        await pilot.press("enter", "e")
+        await pilot.pause()
+        assert screen.detail.endpoints.has_focus
+        assert "/brain does not hear /lidar" in screen.detail.endpoints.text
+        rows = [replace(row, published_by=(), subscribed_by=()) for row in TOPICS]
+        app.feed.graph.show(lesson_update(topics=tuple(rows)))  # type: ignore[union-attr]
+        await pilot.pause()
+        assert "nobody publishes" in screen.detail.endpoints.text
+        await pilot.press("e")
+        assert screen.detail.echo.has_focus
