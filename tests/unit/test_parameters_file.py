@@ -1,0 +1,173 @@
+"""Parameters in files: what is written is read again, and what is wrong has its line."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from graph.data import ParameterRow
+from graph.parameters_file import dump, load, load_file, save_file
+from graph.parameters_values import TYPES, carried
+from graph.yaml_faults import YamlError
+
+TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"))
+INTEGERS = st.integers(-(2**63), 2**63 - 1)
+DOUBLES = st.floats(allow_nan=False)
+SINGLE: dict[str, st.SearchStrategy[Any]] = {
+    "bool": st.booleans(),
+    "integer": INTEGERS,
+    "double": DOUBLES,
+    "string": TEXTS,
+}
+VALUES = st.one_of(
+    *(st.tuples(st.just(name), one) for name, one in SINGLE.items()),
+    *(st.tuples(st.just(f"{name}_array"), st.lists(one)) for name, one in SINGLE.items()),
+)
+NAMES = st.lists(TEXTS.filter(lambda text: "." not in text), min_size=1).map(".".join) | TEXTS
+NODES = st.lists(st.from_regex(r"[a-z_][a-z0-9_]*", fullmatch=True), min_size=1, max_size=3).map(
+    lambda parts: "/" + "/".join(parts)
+)
+
+
+def rows(values: dict[str, tuple[str, Any]]) -> list[ParameterRow]:
+    return [ParameterRow(name, kind, value) for name, (kind, value) in values.items()]
+
+
+@given(NODES, st.dictionaries(NAMES, VALUES))
+def test_what_is_written_is_read_again(node: str, values: dict[str, tuple[str, Any]]) -> None:
+    found = load(dump(node, rows(values)), node)
+    assert found == {name: value for name, (_, value) in values.items()}
+    for name, (kind, value) in values.items():
+        if value != []:
+            assert carried("not_set", found[name])["type"] == TYPES.index(kind)
+        assert carried(kind, found[name])[f"{kind}_value"] == value
+
+
+@given(st.dictionaries(NAMES, VALUES, min_size=1))
+def test_pyyaml_reads_the_same_nested_by_dots(values: dict[str, tuple[str, Any]]) -> None:
+    def flat(tree: dict[str, Any], prefix: str) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for key, value in tree.items():
+            nested = isinstance(value, dict)
+            found |= flat(value, f"{prefix}{key}.") if nested else {f"{prefix}{key}": value}
+        return found
+
+    tree = yaml.safe_load(dump("/robot", rows(values)))
+    assert flat(tree["/robot"]["ros__parameters"], "") == {n: v for n, (_, v) in values.items()}
+
+
+def test_it_looks_as_ros2_param_dump_has_it() -> None:
+    values: dict[str, tuple[str, Any]] = {
+        "wheel.radius": ("double", 0.03),
+        "wheel.names": ("string_array", ["left", "y"]),
+        "rate": ("integer", 5),
+        "frame": ("string", "1e5"),
+        "on": ("bool", True),
+        "none": ("not_set", None),
+        "raw": ("byte_array", b"\x00"),
+    }
+    assert dump("/arm/robot", rows(values)) == (
+        "/arm/robot:\n"
+        "  ros__parameters:\n"
+        '    frame: "1e5"\n'
+        '    "on": true\n'
+        "    rate: 5\n"
+        "    # raw: bytes, which a file of parameters cannot hold\n"
+        "    wheel:\n"
+        '      names: ["left", "y"]\n'
+        "      radius: 0.03\n"
+    )
+
+
+def test_a_parameter_whose_name_begins_another_one_keeps_both() -> None:
+    values: dict[str, tuple[str, Any]] = {"a": ("integer", 1), "a.b": ("integer", 2)}
+    assert load(dump("/n", rows(values)), "/n") == {"a": 1, "a.b": 2}
+
+
+def test_a_node_without_parameters_is_written_and_read() -> None:
+    assert load(dump("/n", []), "/n") == {}
+
+
+@pytest.mark.parametrize(
+    ("node", "expected"),
+    [
+        ("/robot", {"a": 1, "b": 2}),
+        ("/arm/robot", {"a": 3, "c": 4}),
+        ("/arm/left/hand", {"a": 1, "d": 5}),
+    ],
+)
+def test_wildcards_and_nested_namespaces_are_those_of_ros(
+    node: str, expected: dict[str, int]
+) -> None:
+    text = """\
+/**:
+  ros__parameters: {a: 1}
+robot:
+  ros__parameters: {b: 2}
+arm:
+  robot:
+    ros__parameters: {a: 3, c: 4}
+  "*":
+    hand:
+      ros__parameters: {d: 5}
+"""
+    assert load(text, node) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("", 1, "empty"),
+        ("/robot:\n  ros__parameters:\n    a: 1\n    a: 2\n", 4, "second time"),
+        ("/robot:\n  ros__parameters:\n    a.b: 1\n    a: {b: 2}\n", 4, "'a.b' stands here a sec"),
+        ("/robot:\n  speed: 1\n", 2, "expected `ros__parameters:` under the name of a node"),
+        ("ros__parameters:\n  a: 1\n", 1, "stands under no node"),
+        ("/robot:\n  ros__parameters:\n    - a\n", 3, "expected parameters as `name: value`"),
+        ("/robot:\n  ros__parameters:\n    a:\n", 3, "'a' has no value"),
+        ("/robot:\n  ros__parameters:\n    a: [1, [2]]\n", 3, "expected a single value"),
+        ("/robot:\n  ros__parameters:\n    a:\n      - 1\n      - x: 2\n", 5, "a single value"),
+        ("/robot:\n  ros__parameters:\n    a: [1, two]\n", 3, "different types"),
+        ("/robot:\n  ros__parameters:\n    a: [1, 2\n", 3, "not closed"),
+        ("/robot:\n  ros__parameters:\n\t a: 1\n", 3, "tab"),
+        ("/robot:\n  ros__parameters:\n    a: &x 1\n    b: *x\n", 3, "anchors"),
+        ("/other:\n  ros__parameters:\n    a: 1\n", 1, "nothing for /robot; it is for /other"),
+        ("- a\n", 1, "found a list"),
+        ("a: 1\n", 1, "expected `ros__parameters:`"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_line(text: str, line: int, words: str) -> None:
+    with pytest.raises(YamlError) as caught:
+        load(text, "/robot")
+    assert words in caught.value.message
+    assert caught.value.line == line
+
+
+@given(st.text(max_size=200))
+def test_any_text_is_read_or_refused_in_words(text: str) -> None:
+    with contextlib.suppress(YamlError):
+        load(text, "/robot")
+
+
+def test_a_file_is_written_whole_and_read(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text("old")
+    save_file(path, "/robot", rows({"имя": ("string", "Ёж")}))
+    assert load_file(path, "/robot") == {"имя": "Ёж"}
+    assert [each.name for each in tmp_path.iterdir()] == ["robot.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("raw", "line"), [(b"a:\n \xff\xfe: 1\n", 2), (b"a:\n b:\n\0 c\n", 3), (b"\x89PNG\r\n", 1)]
+)
+def test_a_file_that_is_no_text_is_told(tmp_path: Path, raw: bytes, line: int) -> None:
+    path = tmp_path / "picture.yaml"
+    path.write_bytes(raw)
+    with pytest.raises(YamlError) as caught:
+        load_file(path, "/robot")
+    assert caught.value.line == line
