@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 SHOWN = 40
 """Characters of a wrong value that an error repeats."""
+ROUNDED = 1 + 2**-26
+"""The greatest float32 in its shortest form, 3.4028235e+38, is a little more than it is."""
 
 
 class FieldError(ValueError):
@@ -153,10 +155,11 @@ def _float(element: str, value: Value, path: str) -> float:
         number = math.inf
     greatest = FLOATS[element]
     if (isinstance(value, int) and math.isinf(number)) or (
-        math.isfinite(number) and 0 < greatest < abs(number)
+        math.isfinite(number) and 0 < greatest * ROUNDED < abs(number)
     ):
         raise FieldError(path, f"{_shown(value)} is too great for a {element}")
-    return number
+    is_rounded = math.isfinite(number) and 0 < greatest < abs(number)
+    return math.copysign(greatest, number) if is_rounded else number
 
 
 def _integer(element: str, value: Value, path: str) -> int:

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
-import math
-import sys
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -15,83 +11,18 @@ from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 
 from graph.decoding import read_image
-from graph.fields import BYTES, INTEGERS, FieldType, parse
 from graph.making import FieldError, to_message
 from graph.types import UnknownTypeError, load_message, load_service
-from graph.values import DUMMY, to_tree
+from graph.values import to_tree
+from tests.ros.any_message import TEXTS, TYPES, same, trees_of
 
-
-def installed_types() -> list[str]:
-    """Names of all message types on the path, those of services and actions left out."""
-    folders = {folder for path in sys.path for folder in Path(path).glob("*/msg/_*.py")}
-    packages = sorted({folder.parts[-3] for folder in folders})
-    modules = {name: importlib.import_module(f"{name}.msg") for name in packages}
-    return [
-        f"{package}/msg/{name}"
-        for package, module in modules.items()
-        for name in dir(module)
-        if _is_message(module, name)
-    ]
-
-
-def _is_message(module: Any, name: str) -> bool:
-    return name[0].isupper() and hasattr(getattr(module, name), "get_fields_and_field_types")
-
-
-TYPES = installed_types()
-TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=5)
-SINGLE: dict[str, st.SearchStrategy[Any]] = {
-    "boolean": st.booleans(),
-    "string": TEXTS,
-    "wstring": TEXTS,
-    "float": st.floats(width=32),
-    "double": st.floats(width=64),
-    **{name: st.integers(*limits) for name, limits in INTEGERS.items()},
-}
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def test_there_are_types_to_be_tried() -> None:
     assert len(TYPES) > 100
     assert "std_msgs/msg/ByteMultiArray" in TYPES
-
-
-def values_of(kind: FieldType) -> st.SearchStrategy[Any]:
-    if kind.is_many:
-        least, most = (kind.size, kind.size) if kind.size is not None else (0, 3)
-        if kind.limit is not None:
-            most = min(most, kind.limit)
-        if kind.element in BYTES:
-            return st.binary(min_size=least, max_size=most)
-        single = FieldType(kind.element, text_limit=kind.text_limit)
-        return st.lists(values_of(single), min_size=least, max_size=most)
-    if kind.is_message:
-        package, _, name = kind.element.partition("/")
-        return trees_of(f"{package}/msg/{name}")
-    if kind.text_limit is not None:
-        return st.text("abc", max_size=kind.text_limit)
-    return SINGLE[kind.element]
-
-
-def trees_of(type_name: str) -> st.SearchStrategy[dict[str, Any]]:
-    fields = load_message(type_name).get_fields_and_field_types()
-    return st.fixed_dictionaries(
-        {name: values_of(parse(kind)) for name, kind in fields.items() if name != DUMMY}
-    )
-
-
-def same(left: Any, right: Any) -> bool:
-    """Compare trees; nan is itself, and an array is its list."""
-    if isinstance(left, dict):
-        return left.keys() == right.keys() and all(same(left[k], right[k]) for k in left)
-    if isinstance(left, np.ndarray):
-        left = left.tolist()
-    if isinstance(right, np.ndarray):
-        right = right.tolist()
-    if isinstance(left, list):
-        return len(left) == len(right) and all(map(same, left, right))
-    if isinstance(left, float) and math.isnan(left):
-        return math.isnan(right)
-    return bool(left == right)
 
 
 @pytest.mark.parametrize("type_name", TYPES)
@@ -111,7 +42,7 @@ def test_an_empty_message_of_every_type_survives(type_name: str) -> None:
 def test_any_message_survives_the_way_there_and_back(data: st.DataObject) -> None:
     type_name = data.draw(st.sampled_from(TYPES))
     cls = load_message(type_name)
-    tree = data.draw(trees_of(type_name))
+    tree = data.draw(trees_of(cls))
     shown = to_tree(deserialize_message(serialize_message(to_message(cls, tree)), cls))
     assert same(tree, shown)
     again = to_tree(deserialize_message(serialize_message(to_message(cls, shown)), cls))
@@ -189,7 +120,7 @@ def test_what_people_write_is_understood() -> None:
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
-@given(tree=trees_of("sensor_msgs/msg/Image"), cut=st.integers(0, 40))
+@given(tree=trees_of(load_message("sensor_msgs/msg/Image")), cut=st.integers(0, 40))
 def test_pictures_are_read_the_short_way_as_by_rclpy(tree: dict[str, Any], cut: int) -> None:
     cls = load_message("sensor_msgs/msg/Image")
     raw = serialize_message(to_message(cls, tree))

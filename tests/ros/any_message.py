@@ -1,0 +1,93 @@
+"""Trees of any installed type, with values from the types of its fields."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from graph.browse import interfaces
+from graph.fields import BYTES, INTEGERS, FieldType, parse
+from graph.types import load_action, load_message, load_service
+from graph.values import fields_of
+
+TYPES = tuple(name for name in interfaces() if "/msg/" in name)
+"""All messages, those of services and actions left out."""
+
+TEXTS = st.text(
+    st.characters(codec="utf-8", exclude_characters="\0"), max_size=5
+) | st.sampled_from(
+    [
+        "on",
+        "~",
+        "1e3",
+        "12:30",
+        "nan",
+        "- a",
+        "a: b",
+        "# c",
+        "\t",
+        " x ",
+        "\x85",
+        "\ufeff",
+        "\x1b[1m",
+    ]
+)
+_SINGLE: dict[str, st.SearchStrategy[Any]] = {
+    "boolean": st.booleans(),
+    "string": TEXTS,
+    "wstring": TEXTS,
+    "float": st.floats(width=32),
+    "double": st.floats(width=64),
+    **{name: st.integers(*limits) for name, limits in INTEGERS.items()},
+}
+
+
+def parts_of(type_name: str) -> list[tuple[str, type[Any]]]:
+    """Return a message, the halves of a service or the thirds of an action, each with its name."""
+    kind = type_name.split("/")[1]
+    if kind == "msg":
+        return [(type_name, load_message(type_name))]
+    names = ("Request", "Response") if kind == "srv" else ("Goal", "Result", "Feedback")
+    whole = load_service(type_name) if kind == "srv" else load_action(type_name)
+    return [(f"{type_name}.{name}", getattr(whole, name)) for name in names]
+
+
+@lru_cache(maxsize=1024)
+def trees_of(cls: Any) -> st.SearchStrategy[dict[str, Any]]:
+    """Return trees with every field of this class."""
+    return st.fixed_dictionaries({name: _values(parse(kind)) for name, kind in fields_of(cls)})
+
+
+def _values(kind: FieldType) -> st.SearchStrategy[Any]:
+    if kind.is_many:
+        least, most = (kind.size, kind.size) if kind.size is not None else (0, 3)
+        if kind.limit is not None:
+            most = min(most, kind.limit)
+        if kind.element in BYTES:
+            return st.binary(min_size=least, max_size=most)
+        single = FieldType(kind.element, text_limit=kind.text_limit)
+        return st.lists(_values(single), min_size=least, max_size=most)
+    if kind.is_message:
+        return trees_of(load_message(kind.element.replace("/", "/msg/")))
+    if kind.text_limit is not None:
+        return st.text("abc", max_size=kind.text_limit)
+    return _SINGLE[kind.element]
+
+
+def same(left: Any, right: Any) -> bool:
+    """Compare trees; nan is itself, and an array is its list."""
+    if isinstance(left, dict):
+        return left.keys() == right.keys() and all(same(left[k], right[k]) for k in left)
+    if isinstance(left, (np.ndarray, bytes)):
+        left = list(left) if isinstance(left, bytes) else left.tolist()
+    if isinstance(right, (np.ndarray, bytes)):
+        right = list(right) if isinstance(right, bytes) else right.tolist()
+    if isinstance(left, list):
+        return len(left) == len(right) and all(map(same, left, right))
+    if isinstance(left, float) and math.isnan(left):
+        return math.isnan(right)
+    return bool(left == right)
