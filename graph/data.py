@@ -78,7 +78,8 @@ class TopicRow:
     """Mean of arrival less `header.stamp`; None without a header, or with a stamp of another
     clock."""
     lost: int | None = None
-    """Messages that were sent and never came, since `measured`; None where nobody numbers them."""
+    """Messages that were sent and never came, since `measured`; None where the middleware does not
+    tell."""
     count: int = 0
     """Messages taken since the subscription was made."""
     measured: bool = False

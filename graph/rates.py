@@ -1,10 +1,12 @@
-"""How fast a topic is, from messages that are looked at only a few times a second."""
+"""How fast a topic is and how evenly it comes, from messages looked at a few times a second."""
 
 from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from graph.timing import Intervals, Spread
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,6 +28,8 @@ class Arrival:
     size_bytes: int
     sequence: int | None = None
     """Its number at the publisher, where the middleware counts them."""
+    delay_s: float | None = None
+    """Between the stamp in its header and its arrival, where it has one."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,7 @@ class _Point:
 
 
 class RateMeter:
-    """Rate, bandwidth and age of one topic, from the stamps of the middleware.
+    """Rate, bandwidth, age, jitter and latency of one topic, from the stamps of the middleware.
 
     A batch is what lay in the queue at one look. Only its newest stamp is kept: between two such
     stamps the number of messages is exact, whenever the looks were.
@@ -47,19 +51,30 @@ class RateMeter:
     def __init__(self) -> None:
         self.count = 0
         self.mean_size_bytes = 0.0
+        self.lost: int | None = None
+        """Messages that the middleware knows to be lost; None while it tells nothing."""
         self._bytes = 0.0
         self._points: deque[_Point] = deque()
         self._sequence: int | None = None
+        self._intervals = Intervals()
+        self._delays = Spread()
 
-    def add(self, batch: list[Arrival], *, overflowed: bool = False) -> None:
+    def add(
+        self,
+        batch: list[Arrival],
+        *,
+        overflowed: bool = False,
+        one_publisher: bool = True,
+        lost: int = 0,
+    ) -> None:
         """Take a batch in order of arrival.
 
-        `overflowed` says that the queue was full and had one publisher only, so that a gap in the
-        sequence before the batch was ours and its messages did come.
+        `overflowed` says that the queue was full. With one publisher a gap in the sequence before
+        the batch was ours then, and its messages did come, save those `lost` on the way.
         """
         if not batch:
             return
-        skipped = self._skipped(batch) if overflowed else 0
+        skipped = self._skipped(batch, lost) if overflowed and one_publisher else 0
         size = sum(arrival.size_bytes for arrival in batch)
         self.count += len(batch) + skipped
         self._bytes += size * (1 + skipped / len(batch))
@@ -68,6 +83,10 @@ class RateMeter:
         stamp_s = batch[-1].stamp_s
         if self._is_another_story(stamp_s):
             self._points.clear()
+            self._intervals.clear()
+            self._delays.clear()
+        self._intervals.add(batch, overflowed=overflowed, numbered=one_publisher)
+        self._delays.add(stamp_s, [a.delay_s for a in batch if a.delay_s is not None])
         self._points.append(_Point(stamp_s, self.count, self._bytes))
         while len(self._points) > FEW and stamp_s - self._points[0].stamp_s > WINDOW_S:
             self._points.popleft()
@@ -80,13 +99,14 @@ class RateMeter:
             len(self._points) > 1 and self.is_quiet(stamp_s)
         )
 
-    def _skipped(self, batch: list[Arrival]) -> int:
+    def _skipped(self, batch: list[Arrival], lost: int) -> int:
         first, last = batch[0].sequence, batch[-1].sequence
         if self._sequence is None or first is None or last is None:
             return 0
         if first <= self._sequence or last <= self._sequence:
             return 0
-        return first - self._sequence - 1
+        missing = last - self._sequence - len(batch)
+        return max(0, min(first - self._sequence - 1, missing - lost))
 
     def hz(self, now_s: float) -> float | None:
         """Messages a second; 0 when it has gone quiet, None before the second message."""
@@ -99,6 +119,14 @@ class RateMeter:
     def age_s(self, now_s: float) -> float | None:
         """Seconds since the newest message came, None if none did."""
         return max(0.0, now_s - self._points[-1].stamp_s) if self._points else None
+
+    def jitter_s(self, now_s: float) -> float | None:
+        """Standard deviation of the time between messages; None while quiet or too few came."""
+        return None if self.is_quiet(now_s) else self._intervals.deviation_s
+
+    def latency_s(self, now_s: float) -> float | None:
+        """Mean of arrival less stamp; None while quiet, or without stamps of this clock."""
+        return None if self.is_quiet(now_s) else self._delays.mean_s
 
     def is_quiet(self, now_s: float) -> bool:
         """Tell whether nothing has come for longer than is usual for this topic."""

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import Sample
 from graph.decoding import decoder
+from graph.losses import Losses
 from graph.qos import Qos, profile
 from graph.rates import Arrival, RateMeter
+from graph.stamps import delay_reader
 from graph.types import load_message
 
 if TYPE_CHECKING:
@@ -61,9 +63,12 @@ class Tap:
         """Why the newest message could not be decoded."""
         self._cls = load_message(type_name)
         self._decode = decoder(type_name)
+        self._delay = delay_reader(self._cls)
         self._node = node
         self._last: tuple[bytes, float] | None = None
         self._numbered = True
+        self._hears = False
+        """Whether a message has come since this subscription was made."""
         self._subscription: Subscription = node.create_subscription(
             self._cls,
             topic,
@@ -72,6 +77,7 @@ class Tap:
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
             raw=True,
         )
+        self._losses = Losses(self._subscription)
 
     def drain(self, *, one_publisher: bool, decode: int) -> tuple[Sample, ...]:
         """Take all that lies in the queue, and return the newest `decode` messages as samples.
@@ -79,12 +85,14 @@ class Tap:
         `one_publisher` says that the sequence numbers are of one writer.
         """
         batch, kept = self._take_all(decode)
+        lost = self._take_losses()
         if not batch:
             return ()
+        self._hears = True
         # One less than the depth: see SHALLOW.
         full = len(batch) >= self.depth - 1
         self._numbered = batch[-1].sequence is not None
-        self.meter.add(batch, overflowed=full and one_publisher)
+        self.meter.add(batch, overflowed=full, one_publisher=one_publisher, lost=lost)
         now_s = time.time()
         return tuple(
             sample for raw, stamp_s in kept if (sample := self._sample(raw, stamp_s, now_s))
@@ -113,6 +121,7 @@ class Tap:
 
     def close(self) -> None:
         """End the subscription."""
+        self._losses.close()
         self._node.destroy_subscription(self._subscription)
 
     def _take_all(self, decode: int) -> tuple[list[Arrival], deque[tuple[bytes, float]]]:
@@ -127,10 +136,22 @@ class Tap:
                     break
                 raw, info = taken
                 stamp_s = info["received_timestamp"] * NANOSECONDS or time.time()
-                batch.append(Arrival(stamp_s, len(raw), info["publication_sequence_number"]))
+                delay_s = self._delay(raw, stamp_s) if self._delay else None
+                number = info["publication_sequence_number"]
+                batch.append(Arrival(stamp_s, len(raw), number, delay_s))
                 self._last = (raw, stamp_s)
                 kept.append(self._last)
         return batch, kept
+
+    def _take_losses(self) -> int:
+        """Return how many messages were lost since the look before, and add them up."""
+        lost = self._losses.take()
+        if lost is None:
+            return 0
+        # A late joiner may be told of what left a latched publisher's memory before it came.
+        lost = lost if self._hears else 0
+        self.meter.lost = (self.meter.lost or 0) + lost
+        return lost
 
     def _sample(self, raw: bytes, stamp_s: float, now_s: float) -> Sample | None:
         try:

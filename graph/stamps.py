@@ -1,0 +1,40 @@
+"""The stamp in a message's header, read from its bytes without decoding the rest."""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+HEADER = "std_msgs/Header"
+NANOSECONDS = 1e-9
+FARTHEST_S = 600.0
+"""A stamp that is farther off is of another clock: of a simulation, a bag, a board just booted."""
+ENCAPSULATION = 4
+"""Source: OMG DDS-XTypes 1.3, 7.6.3.1: two bytes tell the representation, odd ones are little
+endian; two are options. The body follows, and its first field is not padded."""
+LITTLE, BIG = struct.Struct("<iI"), struct.Struct(">iI")
+
+
+def delay_reader(cls: type[Any]) -> Callable[[bytes, float], float | None] | None:
+    """Return what tells how long a message of this class was on its way, None without a header.
+
+    It takes the serialized message and its arrival in unix time, and returns seconds; None for a
+    stamp of zero or of another clock. A sender whose clock is ahead gives less than nothing.
+    """
+    fields: dict[str, str] = cls.get_fields_and_field_types()
+    return delay_s if next(iter(fields.values()), "") == HEADER else None
+
+
+def delay_s(raw: bytes, arrived_s: float) -> float | None:
+    """Return arrival less stamp, for a message that begins with a header."""
+    if len(raw) < ENCAPSULATION + LITTLE.size:
+        return None
+    layout = LITTLE if raw[1] & 1 else BIG
+    seconds, nanoseconds = layout.unpack_from(raw, ENCAPSULATION)
+    if not seconds and not nanoseconds:
+        return None
+    passed_s: float = arrived_s - (seconds + nanoseconds * NANOSECONDS)
+    return passed_s if abs(passed_s) <= FARTHEST_S else None
