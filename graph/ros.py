@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rclpy.context import Context
     from rclpy.node import Node
 
-NAME_PREFIX = "_deck_observer_"
+NAME_PREFIX = "_deck_"
 """The underscore keeps it out of `ros2 node list`."""
 DOMAINS = range(233)
 """Fast DDS ends the whole process at a greater one: its ports would be no ports any more."""
@@ -46,10 +46,11 @@ class Ros:
         self.context.destroy()
 
 
-def open_ros(domain: int, discovery: str | tuple[str, ...]) -> Ros:
+def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observer") -> Ros:
     """Join the domain; takes a tenth of a second or more, most of it the import of rclpy.
 
-    `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found. Raises
+    `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found; `role` is
+    part of the node's name. Raises
     ImportError without ROS, ValueError for a domain that does not exist, and what rclpy raises.
     """
     if domain not in DOMAINS:
@@ -68,7 +69,7 @@ def open_ros(domain: int, discovery: str | tuple[str, ...]) -> Ros:
         context.init(args=[], initialize_logging=False, domain_id=domain)
         set_logger_level("", LoggingSeverity.FATAL)
         node = Node(
-            f"{NAME_PREFIX}{os.getpid()}",
+            f"{NAME_PREFIX}{role}_{os.getpid()}",
             context=context,
             use_global_arguments=False,
             enable_rosout=False,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from babel.messages import Catalog
 
 ROOT = Path(__file__).parent.parent
-SOURCES = ("launcher", "tui")
+SOURCES = ("graph", "launcher", "tui")
 KEYWORDS = {"_": None, "N_": None, "ngettext": (1, 2), "say": None}
 
 

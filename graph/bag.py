@@ -1,0 +1,174 @@
+"""A recorded bag to be read: a rosbag2 directory (MCAP, sqlite3) or a bare MCAP file.
+
+One that was cut short, by a crash or a full disk, is read as far as it goes, and says so.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from graph.bag_decoding import TypeText
+from graph.bag_errors import BagError, no_bag, unreadable
+from graph.words import Words, say
+
+if TYPE_CHECKING:
+    from rosbags.interfaces import Connection
+    from typing_extensions import Self
+
+    from graph.bag_files import BagReader
+
+METADATA = "metadata.yaml"
+STORAGES = ("mcap", "sqlite3")
+SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
+
+
+@dataclass(frozen=True)
+class TopicInBag:
+    """One topic of a bag, of one type."""
+
+    name: str
+    kind: TypeText
+    messages: int
+    reliability: str = ""
+    durability: str = ""
+    """Offered by its first publisher: `reliable`, `volatile`; empty if the bag does not say."""
+
+
+class Bag:
+    """An open bag; to be closed, or used in a `with`."""
+
+    def __init__(self, path: Path, reader: BagReader, cut: Words | None) -> None:
+        """Use `open_bag` to make one."""
+        self.path = path
+        self.cut = cut
+        """What is missing, None for a whole bag."""
+        self.start_ns = reader.start_ns
+        self.end_ns = reader.end_ns
+        """Unix time of the first and of the last message; equal in an empty bag."""
+        self.messages_count = reader.message_count
+        self._reader = reader
+        self._topics = {
+            (each.topic, each.msgtype): _topic(each, reader.distro) for each in reader.connections
+        }
+
+    @property
+    def name(self) -> str:
+        """The name of the folder or file."""
+        return self.path.stem if self.path.suffix in SUFFIXES else self.path.name
+
+    @property
+    def topics(self) -> tuple[TopicInBag, ...]:
+        """Every topic, sorted by name."""
+        return tuple(sorted(self._topics.values(), key=lambda topic: topic.name))
+
+    @property
+    def length_s(self) -> float:
+        """Seconds from the first message to the last."""
+        return (self.end_ns - self.start_ns) / 1e9
+
+    def messages(self, start_ns: int | None = None) -> Iterator[tuple[TopicInBag, int, bytes]]:
+        """Yield topic, unix time in nanoseconds and raw message in the order of their times.
+
+        Raises BagError where the bag turns out to be damaged.
+        """
+        try:
+            for connection, stamp_ns, raw in self._reader.messages(start_ns):
+                yield self._topics[connection.topic, connection.msgtype], stamp_ns, bytes(raw)
+        except GeneratorExit:
+            raise
+        except Exception as error:
+            raise unreadable(self.path, error) from error
+
+    def close(self) -> None:
+        """Let go of the files."""
+        self._reader.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def open_bag(path: Path) -> Bag:
+    """Open a bag. Raises BagError with a word that names the file and the mend."""
+    from graph.bag_files import CutFiles, WholeBag
+
+    path = path.parent if path.name == METADATA else path
+    files = _files(path)
+    try:
+        return Bag(path, WholeBag(path if (path / METADATA).exists() else files[0]), None)
+    except Exception as error:
+        mcaps = [file for file in files if file.suffix == ".mcap"]
+        if not mcaps or isinstance(error, PermissionError):
+            raise unreadable(path, error) from error
+        reason = error
+    try:
+        cut = CutFiles(mcaps)
+    except (OSError, ValueError, struct.error) as error:
+        raise unreadable(path, reason) from error
+    except Exception as error:
+        raise unreadable(path, error) from error
+    return Bag(path, cut, cut.missing(path))
+
+
+def _files(path: Path) -> list[Path]:
+    """Return the files with messages; a word if there are none, or none that can be read."""
+    if not path.exists():
+        raise no_bag(path, say("there is no such file or folder"))
+    if path.is_file():
+        if path.suffix not in SUFFIXES:
+            raise no_bag(path, say("the name ends neither in .mcap nor in .db3"))
+        return [path]
+    metadata = _metadata(path / METADATA)
+    storage = metadata.get("storage_identifier", "mcap")
+    if storage not in STORAGES:
+        raise unknown_storage(path, storage)
+    found = sorted(file for file in path.iterdir() if file.suffix in SUFFIXES)
+    if not found and not metadata.get("relative_file_paths"):
+        raise no_bag(path, say("it has neither metadata.yaml nor an .mcap file"))
+    return found
+
+
+def unknown_storage(path: Path, storage: object) -> BagError:
+    """Return that Deck does not read this kind of storage."""
+    return BagError(
+        say(
+            "{path}: storage {storage!r} is not known, only mcap and sqlite3; convert it: "
+            "`ros2 bag convert`",
+            path=path,
+            storage=str(storage),
+        )
+    )
+
+
+def _metadata(path: Path) -> Mapping[str, Any]:
+    """Return what metadata.yaml says; nothing if it is missing or broken: readers say more."""
+    import yaml
+
+    try:
+        found = yaml.safe_load(path.read_text(encoding="utf-8"))
+        inner = found["rosbag2_bagfile_information"]
+    except (OSError, yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
+        return {}
+    return inner if isinstance(inner, Mapping) else {}
+
+
+def _topic(connection: Connection, distro: str) -> TopicInBag:
+    from rosbags.interfaces import MessageDefinitionFormat
+
+    definition = connection.msgdef
+    kind = TypeText(
+        connection.msgtype,
+        definition.data,
+        definition.format is MessageDefinitionFormat.IDL,
+        "" if definition.data else distro,
+    )
+    offers = getattr(connection.ext, "offered_qos_profiles", ())
+    reliability = offers[0].reliability.name.lower() if offers else ""
+    durability = offers[0].durability.name.lower() if offers else ""
+    return TopicInBag(connection.topic, kind, connection.msgcount, reliability, durability)

@@ -1,0 +1,107 @@
+"""One subscription of a recording: its queue is emptied in turns, nothing is ever decoded."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from graph.qos import Qos, profile
+from graph.recording_writer import Message
+from graph.tap import LARGE_TYPES
+from graph.types import load_message
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.subscription import Subscription
+
+    from graph.bag_metadata import BagTopic
+
+DEEP = 2000
+"""Between two turns of emptying, at the rate of a fast driver, with a pause of a second."""
+DEEP_OF_LARGE = 60
+NANOSECONDS = 1_000_000_000
+
+
+class Sequences:
+    """Finds what is missing in the numbers that publishers give their messages.
+
+    The middleware does not say which publisher a number is of: each is taken to go on with the
+    publisher whose last number it follows, and where none does, with the nearest one below.
+    """
+
+    def __init__(self) -> None:
+        self._last: list[int] = []
+
+    def missing(self, number: int, publishers: int) -> int:
+        """Take the next number; return how many were left out before it."""
+        if number - 1 in self._last:
+            self._last[self._last.index(number - 1)] = number
+            return 0
+        below = [last for last in self._last if last < number]
+        if len(self._last) < publishers or not below:
+            self._last = [*self._last, number][-max(1, publishers) :]
+            return 0
+        nearest = max(below)
+        self._last[self._last.index(nearest)] = number
+        return number - nearest - 1
+
+
+class RecordingTap:
+    """A subscription; make it, drain it, close it."""
+
+    def __init__(self, node: Node, topic: BagTopic, qos: Qos) -> None:
+        """Subscribe. Raises UnknownTypeError, and what rclpy raises."""
+        self.topic = topic
+        self.qos = qos
+        self.publishers = 1
+        self.lost = 0
+        """Messages that were published and never came."""
+        self._sequences = Sequences()
+        self._node = node
+        self._cls = load_message(topic.type_name)
+        self._depth = DEEP_OF_LARGE if topic.type_name in LARGE_TYPES else DEEP
+        self._subscription = self._subscribe()
+
+    def reopen(self, qos: Qos) -> None:
+        """Ask for another quality of service, because publishers have changed."""
+        self.close()
+        self.qos = qos
+        self._subscription = self._subscribe()
+
+    def _subscribe(self) -> Subscription:
+        from rclpy.event_handler import SubscriptionEventCallbacks
+
+        return self._node.create_subscription(
+            self._cls,
+            self.topic.name,
+            _never_called,
+            profile(self.qos, self._depth),
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            raw=True,
+        )
+
+    def drain(self) -> list[Message]:
+        """Take all that lies in the queue."""
+        taken: list[Message] = []
+        handle = self._subscription.handle
+        with handle:
+            # A publisher faster than this loop must not hold it for ever.
+            for _ in range(2 * self._depth):
+                found = handle.take_message(self._cls, True)
+                if found is None:
+                    break
+                raw, info = found
+                stamp_ns = info["received_timestamp"] or int(time.time() * NANOSECONDS)
+                number = info["publication_sequence_number"]
+                if number is not None:
+                    self.lost += self._sequences.missing(number, self.publishers)
+                taken.append(Message(stamp_ns, self.topic, raw))
+        return taken
+
+    def close(self) -> None:
+        """End the subscription."""
+        self._node.destroy_subscription(self._subscription)
+
+
+def _never_called(message: object) -> None:
+    """Stand in for the callback that rclpy insists on; no executor ever spins the node."""

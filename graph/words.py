@@ -1,0 +1,33 @@
+"""Sentences of this room that can still be translated by whoever shows them.
+
+`str()` of one is English; it remembers the template and the values that it was made of, by which
+the screen looks it up in a catalogue.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+class Words(str):
+    """An English sentence that remembers what it was made of."""
+
+    __slots__ = ("template", "values")
+
+    template: str
+    values: dict[str, object]
+
+    def __new__(cls, template: str, values: dict[str, object]) -> Self:
+        """Fill `template`, in the manner of `str.format`, with `values`."""
+        words = super().__new__(cls, template.format(**values) if values else template)
+        words.template = template
+        words.values = values
+        return words
+
+
+def say(template: str, **values: object) -> Words:
+    """Make a sentence: `say("no such bag: {path}", path=path)`."""
+    return Words(template, values)
