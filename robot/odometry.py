@@ -1,0 +1,81 @@
+"""Where the robot is on the floor, and where a command takes it: the model of a bicycle.
+
+The frame is the one that odometry counts in (x forward at the start, y to the left, metres); the
+robot's own point is the middle of its rear axle.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robot.kinematics import WHEELBASE_M, turning_radius
+
+if TYPE_CHECKING:
+    from robot.words import DriveSetpoint
+
+
+@dataclass(frozen=True)
+class Point:
+    """A place on the floor, metres."""
+
+    x_m: float
+    y_m: float
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where the robot stands and which way it looks."""
+
+    x_m: float = 0.0
+    y_m: float = 0.0
+    heading_rad: float = 0.0
+    """From the x axis, + is left; between -pi and pi."""
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether all three are numbers."""
+        return all(map(math.isfinite, (self.x_m, self.y_m, self.heading_rad)))
+
+    def distance_to(self, point: Point | Pose) -> float:
+        """Metres as the crow flies."""
+        return math.hypot(point.x_m - self.x_m, point.y_m - self.y_m)
+
+    def sees(self, point: Point) -> tuple[float, float]:
+        """How far a point lies ahead and how far to the left of the robot, metres."""
+        east, north = point.x_m - self.x_m, point.y_m - self.y_m
+        cos, sin = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        return cos * east + sin * north, cos * north - sin * east
+
+
+def advance(
+    pose: Pose, command: DriveSetpoint, seconds: float, wheelbase_m: float = WHEELBASE_M
+) -> Pose:
+    """The pose after obeying a command for some seconds, along the exact arc.
+
+    Raises ValueError for a steering angle of no circle (see `turning_radius`).
+    """
+    travelled_m = command.speed_m_s * seconds
+    radius_m = turning_radius(command.steering_rad, wheelbase_m)
+    heading = pose.heading_rad
+    if math.isinf(radius_m):
+        return Pose(
+            pose.x_m + travelled_m * math.cos(heading),
+            pose.y_m + travelled_m * math.sin(heading),
+            heading,
+        )
+    turned = heading + travelled_m / radius_m
+    return Pose(
+        pose.x_m + radius_m * (math.sin(turned) - math.sin(heading)),
+        pose.y_m - radius_m * (math.cos(turned) - math.cos(heading)),
+        math.remainder(turned, math.tau),
+    )
+
+
+def yaw_from_quaternion(x: float, y: float, z: float, w: float) -> float:
+    """The turn about z in radians, of a rotation of any length; nan for one of length 0."""
+    length = x * x + y * y + z * z + w * w
+    if not 0.0 < length < math.inf:
+        return math.nan
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
