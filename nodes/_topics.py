@@ -8,15 +8,18 @@ AI_COMMAND = "/ai_command"
 CAMERA = "/camera/color/image_raw"
 DRIVE = "/drive"
 DRIVE_SAFE = "/drive_safe"
+DRIVE_TO_POINT = "drive_to_point"
 EMERGENCY_STOP = "/emergency_stop"
 HEAD_SERVICE = "set_head_position"
 HEAD_STATE = "/head_state"
 LLM_RAW_JSON = "/llm_raw_json"
 LLM_RESULT = "/llm_result"
 MICROPHONE = "/audio/mic_raw"
+ODOMETRY = "/odom"
 SAFETY_STATE = "/safety_state"
 SONAR_FRONT = "/sensor/sonar_front"
 SPEAKER = "/audio/speaker_raw"
+TF = "/tf"
 TF_STATIC = "/tf_static"
 WHEEL_COMMANDS = "/wheel_commands"
 
@@ -24,6 +27,8 @@ DEPTH = 10
 """Queue of an ordinary topic, as everywhere in the course."""
 NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 """For those who want the latest message only."""
+NEWEST_OF_ANY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""The latest of a topic that may be published reliably or not: both fit."""
 LATCHED = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,

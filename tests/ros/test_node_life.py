@@ -29,6 +29,7 @@ NODES = {
     "mock_audio": "audio_system",
     "ai_brain": "ai_brain",
     "llm_parser": "llm_parser",
+    "drive_to_point": "drive_to_point",
 }
 """Module to the name in the graph that the course gave it."""
 BOTH = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -1,0 +1,266 @@
+"""The action of lesson 3: drives to a point in the odom frame, tells how far it is, can be stopped.
+
+It reads /odom and publishes /drive `rate` times a second while it has a goal, and a stop when it
+has none any more. The way is found by `robot.approach`: forward, in reverse for a point close
+behind, and backing away first from a point inside of the turning circle. A drive is aborted, with
+the reason in the result's message, at an emergency stop, without odometry or with one that is too
+old, when the robot stands though it should drive, and when it drives and does not arrive. A new
+goal takes the place of the old one. A goal that is no number or too far away is refused; so is any
+while the emergency stop is held.
+
+With `simulate: auto` a simulated base tells /odom and /tf if nobody else does.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import TYPE_CHECKING
+
+from ackermann_msgs.msg import AckermannDriveStamped
+from deck_interfaces.action import DriveToPoint
+from rclpy.action.server import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.duration import Duration
+
+from nodes import _drive_to_point_words as words
+from nodes._drive import to_message
+from nodes._drive_goal import DriveGoal
+from nodes._emergency import EmergencyStop
+from nodes._life import run
+from nodes._node import LessonNode, change_period
+from nodes._odometry import OdometryListener
+from nodes._parameters import Choice, Number, Text
+from nodes._simulated_base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
+from nodes._topics import DEPTH, DRIVE, DRIVE_TO_POINT, ODOMETRY
+from robot.approach import Approach, Chassis
+from robot.kinematics import WHEELBASE_M
+from robot.limits import SPEED, STEERING
+from robot.odometry import Point, Pose
+from robot.words import STOP
+
+if TYPE_CHECKING:
+    from rclpy.action.server import ServerGoalHandle
+    from rclpy.task import Future
+
+    from nodes._speech import Phrase
+    from robot.words import DriveSetpoint
+
+_FINEST_M, _COARSEST_M = 0.02, 2.0
+_NO_ODOMETRY_S = WAIT_S + 1.0
+"""How long a goal waits for a first pose."""
+_LAST_STOP = Duration(seconds=0.2)
+"""How long the last stop may take to reach everybody."""
+
+
+class DriveToPointNode(LessonNode):
+    """Drives to one point at a time."""
+
+    NAME = "drive_to_point"
+    SETTINGS = (
+        Choice(
+            "simulate",
+            AUTO,
+            "A simulated base tells /odom; auto: if nobody else does",
+            fixed=True,
+            choices=(AUTO, ALWAYS, NEVER),
+        ),
+        Text("base_topic", DRIVE, "Commands that the simulated base obeys", fixed=True),
+        Number("max_speed", 0.3, "Drives no faster", low=0.05, high=SPEED.high, unit="m/s"),
+        Number("max_steering", 0.5, "Steers no further", low=0.1, high=STEERING.high, unit="rad"),
+        Number(
+            "wheelbase",
+            WHEELBASE_M,
+            "Between front and rear axle",
+            fixed=True,
+            low=0.02,
+            high=10.0,
+            unit="m",
+        ),
+        Number(
+            "tolerance",
+            0.1,
+            "Near enough, for a goal that names none (0)",
+            low=_FINEST_M,
+            high=_COARSEST_M,
+            unit="m",
+        ),
+        Number("max_distance", 20.0, "A farther goal is refused", low=0.1, high=1000.0, unit="m"),
+        Number("rate", 20.0, "Commands a second while driving", low=5.0, high=100.0, unit="Hz"),
+        Number(
+            "stale_after_s",
+            1.0,
+            "A longer silence of /odom ends a drive",
+            low=0.1,
+            high=60.0,
+            unit="s",
+        ),
+        Number(
+            "patience_s",
+            5.0,
+            "Standing longer than this ends a drive",
+            low=0.5,
+            high=600.0,
+            unit="s",
+        ),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._goal: DriveGoal | None = None
+        self._waiting: dict[bytes, Future] = {}
+        """Results to come, of goals whose clients have not been told yet."""
+        self._publisher = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
+        self._emergency = EmergencyStop(self, self._emergency_changed)
+        self._odometry = OdometryListener(self)
+        self._base = SimulatedBase(
+            self,
+            self.text("simulate"),
+            self.text("base_topic"),
+            self.number("wheelbase"),
+            held=lambda: self._emergency.active,
+        )
+        self._timer = self.every(1.0 / self.number("rate"), self._tick)
+        self._timer.cancel()
+        # A goal awaits its end: it must not keep the timer's callback group.
+        self._server = ActionServer(
+            self,
+            DriveToPoint,
+            DRIVE_TO_POINT,
+            self._execute,
+            callback_group=ReentrantCallbackGroup(),
+            goal_callback=self._judge,
+            handle_accepted_callback=self._begin,
+            cancel_callback=lambda _handle: CancelResponse.ACCEPT,
+        )
+        self.say.info(words.STARTED, action=DRIVE_TO_POINT)
+
+    def parameters_changed(self) -> None:
+        """Keep the new rate; the limits hold from the next goal on."""
+        if self._goal is not None:
+            change_period(self._timer, 1.0 / self.number("rate"))
+
+    def before_end(self) -> None:
+        """Leave the robot standing, and tell who waits."""
+        if self._goal is None:
+            return
+        self._finish(words.ENDING)
+        self._publisher.wait_for_all_acked(_LAST_STOP)
+        if self.executor is not None:
+            # The result is sent by a task of its own, once it has been asked to.
+            for _turn in range(5):
+                self.executor.spin_once(timeout_sec=0.01)
+
+    # ---------------------------------------------------------------- goals
+
+    def _judge(self, goal: DriveToPoint.Goal) -> GoalResponse:
+        """Refuse what cannot be driven to."""
+        refusal = self._refusal(goal)
+        if refusal is None:
+            return GoalResponse.ACCEPT
+        self.say.warn(
+            refusal,
+            x=goal.x,
+            y=goal.y,
+            tolerance=goal.tolerance,
+            finest=_FINEST_M,
+            coarsest=_COARSEST_M,
+            farthest=self.number("max_distance"),
+        )
+        return GoalResponse.REJECT
+
+    def _refusal(self, goal: DriveToPoint.Goal) -> Phrase | None:
+        if not all(map(math.isfinite, (goal.x, goal.y, goal.tolerance))):
+            return words.NO_NUMBERS
+        here = self._odometry.pose or Pose()
+        if here.distance_to(Point(goal.x, goal.y)) > self.number("max_distance"):
+            return words.TOO_FAR
+        if goal.tolerance != 0 and not _FINEST_M <= goal.tolerance <= _COARSEST_M:
+            return words.BAD_TOLERANCE
+        return words.HELD if self._emergency.active else None
+
+    def _begin(self, handle: ServerGoalHandle) -> None:
+        self._finish(words.REPLACED)
+        wanted = handle.request
+        chassis = Chassis(
+            self.number("max_speed"), self.number("max_steering"), self.number("wheelbase")
+        )
+        tolerance_m = wanted.tolerance or self.number("tolerance")
+        approach = Approach(Point(wanted.x, wanted.y), tolerance_m, chassis)
+        self._goal = DriveGoal(handle, approach, self.number("patience_s"))
+        self._waiting[bytes(handle.goal_id.uuid)] = self._goal.over
+        self.say.info(words.GOAL, x=wanted.x, y=wanted.y, tolerance=tolerance_m)
+        handle.execute()
+        change_period(self._timer, 1.0 / self.number("rate"))
+
+    async def _execute(self, handle: ServerGoalHandle) -> DriveToPoint.Result:
+        """Wait for the end that the timer brings about; the result comes back."""
+        return await self._waiting.pop(bytes(handle.goal_id.uuid))
+
+    # ---------------------------------------------------------------- driving
+
+    def _tick(self) -> None:
+        goal, pose = self._goal, self._odometry.pose
+        if goal is None:
+            return
+        if goal.handle.is_cancel_requested:
+            self._finish(words.CANCELLED)
+        elif pose is None:
+            if goal.age_s > _NO_ODOMETRY_S:
+                self._finish(words.NO_ODOMETRY)
+        elif self._odometry.age_s > self.number("stale_after_s"):
+            self._finish(words.STALE)
+        elif goal.approach.reached(pose):
+            self._finish(words.REACHED)
+        else:
+            self._go_on(goal, pose)
+
+    def _go_on(self, goal: DriveGoal, pose: Pose) -> None:
+        progress = goal.watch(pose)
+        if progress.stands:
+            self._finish(words.STANDS)
+        elif progress.wanders:
+            self._finish(words.WANDERS)
+        else:
+            self._ask_for(goal.approach.command(pose))
+            goal.tell(pose)
+
+    def _finish(self, phrase: Phrase) -> None:
+        """Stop, and end the goal of the moment as the phrase says; nothing if there is none."""
+        goal, self._goal = self._goal, None
+        if goal is None:
+            return
+        self._timer.cancel()
+        self._ask_for(STOP)
+        pose = self._odometry.pose
+        values = {
+            "distance": goal.distance_m(pose),
+            "topic": ODOMETRY,
+            "stale_s": self.number("stale_after_s"),
+            "patience_s": self.number("patience_s"),
+        }
+        if phrase is words.REACHED:
+            self.say.info(phrase, every_s=0.0, **values)
+        else:
+            self.say.warn(phrase, every_s=0.0, **values)
+        goal.finish(phrase is words.REACHED, pose, self.say.text(phrase, **values))
+
+    def _emergency_changed(self, active: bool) -> None:
+        if active:
+            self._base.stop()
+            self.say.error(words.EMERGENCY_HELD)
+            self._finish(words.EMERGENCY)
+        else:
+            self.say.warn(words.RELEASED)
+
+    def _ask_for(self, setpoint: DriveSetpoint) -> None:
+        self._publisher.publish(to_message(self, setpoint))
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(DriveToPointNode, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,270 @@
+"""The action of lesson 3, asked by a real action client: reached, cancelled, refused, given up."""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from ackermann_msgs.msg import AckermannDriveStamped
+from action_msgs.msg import GoalStatus
+from deck_interfaces.action import DriveToPoint
+from nav_msgs.msg import Odometry
+from rclpy.action import ActionClient
+from std_msgs.msg import Bool
+from tf2_msgs.msg import TFMessage
+
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import LATCHED, Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MODULE = "nodes.drive_to_point"
+SIMULATED: dict[str, object] = {"simulate": "always", "max_speed": 0.5}
+SUCCEEDED, CANCELED, ABORTED = (
+    GoalStatus.STATUS_SUCCEEDED,
+    GoalStatus.STATUS_CANCELED,
+    GoalStatus.STATUS_ABORTED,
+)
+
+
+class Asker:
+    """A client of the action."""
+
+    def __init__(self, peer: Peer) -> None:
+        self._client = ActionClient(peer.node, DriveToPoint, "drive_to_point")
+        wait_until(self._client.server_is_ready, "the action server")
+        self.feedback: list[float] = []
+        self.handle: Any = None
+
+    def ask(self, x: float, y: float, tolerance: float = 0.0) -> bool:
+        """Send a goal; whether it was accepted."""
+        goal = DriveToPoint.Goal(x=x, y=y, tolerance=tolerance)
+        self.feedback.clear()
+        sent = self._client.send_goal_async(
+            goal, feedback_callback=lambda told: self.feedback.append(told.feedback.distance)
+        )
+        wait_until(sent.done, "an answer to the goal")
+        self.handle = sent.result()
+        return bool(self.handle.accepted)
+
+    def end(self) -> tuple[int, DriveToPoint.Result]:
+        """Wait for the end; the status and the result."""
+        result = self.handle.get_result_async()
+        wait_until(result.done, "a result")
+        return result.result().status, result.result().result
+
+    def cancel(self) -> None:
+        """Ask to cancel, and wait until that is granted."""
+        asked = self.handle.cancel_goal_async()
+        wait_until(asked.done, "an answer to the cancellation")
+        assert asked.result().goals_canceling
+
+
+@pytest.fixture
+def peer(ros_domain: int) -> Iterator[Peer]:
+    with Peer(ros_domain) as peer:
+        yield peer
+
+
+def odometry(x: float = 0.0, y: float = 0.0) -> Odometry:
+    message = Odometry()
+    message.pose.pose.position.x, message.pose.pose.position.y = x, y
+    message.pose.pose.orientation.w = 1.0
+    return message
+
+
+def wait_for_motion(heard: list[AckermannDriveStamped]) -> None:
+    wait_until(lambda: any(message.drive.speed for message in heard), "motion on /drive")
+
+
+def wait_for_stop(heard: list[AckermannDriveStamped]) -> None:
+    wait_until(lambda: heard and heard[-1].drive.speed == 0.0, "a stop on /drive")
+
+
+# ---------------------------------------------------------------- it drives
+
+
+def test_it_reaches_the_point_while_the_distance_falls(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess(MODULE, ros_domain, params=SIMULATED) as node:
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        poses, transforms = peer.hear("/odom", Odometry), peer.hear("/tf", TFMessage)
+        asker = Asker(peer)
+        assert asker.ask(0.8, 0.2, 0.05)
+        status, result = asker.end()
+        assert (status, result.reached) == (SUCCEEDED, True)
+        assert result.distance <= 0.05
+        assert "There" in result.message
+        assert len(asker.feedback) >= 3
+        assert asker.feedback == sorted(asker.feedback, reverse=True)
+        wait_for_stop(drive)
+        assert max(message.drive.speed for message in drive) <= 0.5
+        last = poses[-1].pose.pose.position
+        assert math.hypot(last.x - 0.8, last.y - 0.2) <= 0.06
+        assert poses[-1].header.frame_id == "odom"
+        assert transforms[-1].transforms[0].child_frame_id == "base_link"
+        node.wait_for_words("Driving to x 0.80, y 0.20 m, to within 0.05 m", "There: ")
+
+
+def test_it_reverses_to_a_point_behind(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess(MODULE, ros_domain, params=SIMULATED, lang="ru"):
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        asker = Asker(peer)
+        assert asker.ask(-0.4, 0.0)
+        assert asker.end()[1].message.startswith("Приехал: до точки 0.")
+        assert min(message.drive.speed for message in drive) < 0
+        assert max(message.drive.speed for message in drive) == 0
+
+
+def test_without_other_odometry_the_simulated_base_comes_by_itself(
+    peer: Peer, ros_domain: int
+) -> None:
+    with NodeProcess(MODULE, ros_domain) as node:
+        asker = Asker(peer)
+        assert asker.ask(0.2, 0.0)
+        assert asker.end()[0] == SUCCEEDED
+        node.wait_for_words("Nobody publishes /odom: a simulated base obeys /drive")
+
+
+def test_a_newer_goal_takes_the_place_of_the_old_one(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess(MODULE, ros_domain, params=SIMULATED):
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        first, second = Asker(peer), Asker(peer)
+        assert first.ask(9.0, 0.0)
+        wait_for_motion(drive)
+        assert second.ask(0.2, 0.0)
+        status, result = first.end()
+        assert status == ABORTED
+        assert "newer goal" in result.message
+        assert second.end()[1].reached
+
+
+# ---------------------------------------------------------------- it gives up
+
+
+def test_a_cancelled_drive_stops(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess(MODULE, ros_domain, params=SIMULATED):
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        asker = Asker(peer)
+        assert asker.ask(9.0, 0.0)
+        wait_for_motion(drive)
+        asker.cancel()
+        status, result = asker.end()
+        assert (status, result.reached) == (CANCELED, False)
+        assert result.distance > 1
+        assert "Cancelled" in result.message
+        wait_for_stop(drive)
+
+
+@pytest.mark.parametrize("qos", [LATCHED, 10], ids=["latched", "volatile"])
+def test_the_emergency_stop_ends_a_drive_and_holds(peer: Peer, ros_domain: int, qos: Any) -> None:
+    with NodeProcess(MODULE, ros_domain, params=SIMULATED) as node:
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        poses = peer.hear("/odom", Odometry)
+        asker = Asker(peer)
+        assert asker.ask(9.0, 0.0)
+        wait_for_motion(drive)
+        peer.say("/emergency_stop", Bool(data=True), qos=qos)
+        status, result = asker.end()
+        assert (status, result.message[:14]) == (ABORTED, "Emergency stop")
+        wait_for_stop(drive)
+        assert not asker.ask(1.0, 0.0)
+        node.wait_for_words("Refused: the emergency stop is held")
+        wait_until(lambda: poses[-1].twist.twist.linear.x == 0.0, "a base that stands")
+        peer.say("/emergency_stop", Bool(data=False), qos=qos)
+        node.wait_for_words("waiting for a new goal")
+        assert asker.ask(poses[-1].pose.pose.position.x, 0.0)
+        assert asker.end()[0] == SUCCEEDED
+
+
+def test_without_odometry_it_says_so(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess(MODULE, ros_domain, params={"simulate": "never"}):
+        asker = Asker(peer)
+        assert asker.ask(1.0, 0.0)
+        status, result = asker.end()
+        assert status == ABORTED
+        assert "Nobody tells /odom" in result.message
+        assert math.isnan(result.distance)
+
+
+def test_odometry_that_falls_silent_or_is_no_number_ends_a_drive(
+    peer: Peer, ros_domain: int
+) -> None:
+    params: dict[str, object] = {"simulate": "never", "stale_after_s": 0.5}
+    with NodeProcess(MODULE, ros_domain, params=params) as node:
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        asker = Asker(peer)
+        assert asker.ask(1.0, 0.0)
+        peer.say("/odom", odometry())
+        wait_for_motion(drive)
+        peer.say("/odom", odometry(math.nan))
+        status, result = asker.end()
+        assert status == ABORTED
+        assert "No /odom for 0.5 s, 1.00 m from the point" in result.message
+        wait_for_stop(drive)
+        node.wait_for_words("/odom is no number")
+
+
+def test_a_robot_that_does_not_move_ends_a_drive(peer: Peer, ros_domain: int) -> None:
+    params: dict[str, object] = {"simulate": "never", "patience_s": 1.0, "stale_after_s": 30.0}
+    with NodeProcess(MODULE, ros_domain, params=params):
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        asker = Asker(peer)
+        assert asker.ask(1.0, 0.0)
+        peer.say("/odom", odometry())
+        status, result = asker.end()
+        assert status == ABORTED
+        assert "not moved for 1 s" in result.message
+        wait_for_stop(drive)
+
+
+def test_the_simulated_base_steps_back_for_a_real_one(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess(MODULE, ros_domain) as node:
+        node.wait_for_words("simulated base obeys")
+        peer.publisher("/odom", Odometry)
+        node.wait_for_words("the simulated base is off")
+        wait_until(lambda: peer.node.count_publishers("/odom") == 1, "one odometry")
+
+
+# ---------------------------------------------------------------- it refuses
+
+
+def test_goals_that_make_no_sense_are_refused_with_a_word(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess(MODULE, ros_domain, params=SIMULATED) as node:
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        asker = Asker(peer)
+        assert not asker.ask(math.nan, 0.0)
+        assert not asker.ask(0.0, math.inf)
+        assert not asker.ask(1.0, 0.0, math.nan)
+        node.wait_for_words("are not all numbers")
+        assert not asker.ask(1e6, 0.0)
+        node.wait_for_words("farther away than 20 m (max_distance)")
+        assert not asker.ask(1.0, 0.0, -1.0)
+        assert not asker.ask(1.0, 0.0, 0.001)
+        node.wait_for_words("tolerance 0.001 m, must be 0 or from 0.02 to 2 m")
+        assert not drive
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_ends_in_the_middle_of_a_drive_with_a_stop_and_a_result(
+    peer: Peer, ros_domain: int, number: signal.Signals
+) -> None:
+    with NodeProcess(MODULE, ros_domain, params=SIMULATED) as node:
+        drive = peer.hear("/drive", AckermannDriveStamped)
+        asker = Asker(peer)
+        assert asker.ask(9.0, 0.0)
+        wait_for_motion(drive)
+        result = asker.handle.get_result_async()
+        wait_until(lambda: asker.feedback, "feedback, by which time the result was asked for")
+        began_s = time.monotonic()
+        node.send(number)
+        assert node.wait() == 0
+        assert time.monotonic() - began_s < 3
+        assert "Traceback" not in node.output
+        wait_for_stop(drive)
+        wait_until(result.done, "a last word")
+        assert "ending" in result.result().result.message
