@@ -17,8 +17,15 @@ LESSONS = sorted(PROFILES.glob("*.yaml"))
 
 def test_every_lesson_is_there() -> None:
     assert [path.stem for path in LESSONS] == [
-        *("01-hello", "02-sonar-safety", "03-head-service", "04-ackermann"),
-        *("04b-electronic-differential", "05-tf2", "06-rviz", "07-vision", "08-audio"),
+        *("01-hello", "02-sonar-safety", "03-head-service", "03b-drive-to-point"),
+        *(
+            "04-ackermann",
+            "04b-electronic-differential",
+            "05-tf2",
+            "06-rviz",
+            "07-vision",
+            "08-audio",
+        ),
         *("09-brain", "10-llm-json"),
     ]
 
