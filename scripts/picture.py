@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import subprocess
 import sys
@@ -20,6 +21,15 @@ WIDTH_PX = 1320
 SPOKEN = {"en": "wheel slower", "ru": "колесо медленнее"}
 """What the deck says while the robot turns."""
 TURN_LEFT = "налево"
+
+
+def say_left(terminal: Terminal, field_keys: str) -> None:
+    """Type the command; `field_keys` is on the screen while the cursor is in the command line."""
+    terminal.press("c")
+    terminal.wait_for(field_keys)
+    terminal.type(TURN_LEFT)
+    terminal.press("enter", "escape")
+    terminal.wait_gone(field_keys)
 
 
 def picture(language: str) -> None:
@@ -37,11 +47,11 @@ def picture(language: str) -> None:
         try:
             terminal.wait_for("8/8")
             terminal.wait_for("◂", within_s=60)
-            terminal.press("c")
-            terminal.wait_for("^x STOP" if language == "en" else "^x СТОП")
-            terminal.type(TURN_LEFT)
-            terminal.press("enter", "escape")
-            terminal.wait_for(SPOKEN[language])
+            while SPOKEN[language] not in terminal.text():
+                # A wall may be near at the moment, or the brain may speak next and overrule it.
+                say_left(terminal, "^x STOP" if language == "en" else "^x СТОП")
+                with contextlib.suppress(AssertionError):
+                    terminal.wait_for(SPOKEN[language], within_s=3)
             svg = Path(folder) / "deck.svg"
             svg.write_text(terminal.svg("deck 09-brain"))
         finally:
