@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from graph.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
 from graph.types import load_message
 from graph.values import fields_of
+from graph.words import say
 
 if TYPE_CHECKING:
     from graph.data import Value
@@ -29,6 +30,7 @@ class FieldError(ValueError):
         super().__init__(f"{field}: {message}" if field else message)
         self.field = field
         self.message = message
+        """Made by `graph.words.say`, so that it can be translated."""
         self.line: int | None = None
         """Where it stands in a text, counted from 1, as far as there is one. So with the next."""
         self.column: int | None = None
@@ -45,7 +47,7 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
     floats. Raises FieldError.
     """
     if not isinstance(tree, Mapping):
-        raise FieldError(field, f"expected fields by name, got {_shown(tree)}")
+        raise FieldError(field, say("expected fields by name, got {value}", value=_shown(tree)))
     fields = dict(fields_of(cls))
     message = cls()
     for name, value in tree.items():
@@ -59,8 +61,10 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
 def _unknown(name: str, names: list[str]) -> str:
     near = get_close_matches(name, names, n=1)
     if near:
-        return f"no such field; did you mean {near[0]}?"
-    return f"no such field; there is {', '.join(names)}" if names else "it has no fields at all"
+        return say("no such field; did you mean {name}?", name=near[0])
+    if not names:
+        return say("it has no fields at all")
+    return say("no such field; there is {names}", names=", ".join(names))
 
 
 def _made(kind: FieldType, value: Value, path: str) -> object:
@@ -89,7 +93,7 @@ def _many(kind: FieldType, value: Value, path: str) -> object:
         _check_length(kind, len(value), path)
         return _packed(kind, value)
     if not hasattr(value, "__len__") or isinstance(value, (str, bytes, Mapping)):
-        raise FieldError(path, f"expected a list, got {_shown(value)}")
+        raise FieldError(path, say("expected a list, got {value}", value=_shown(value)))
     elements: Sequence[Value] = value  # type: ignore[assignment]
     _check_length(kind, len(elements), path)
     if kind.is_number and _fits_as_it_is(kind, elements):
@@ -121,34 +125,45 @@ def _packed(kind: FieldType, value: bytes | bytearray | memoryview) -> object:
 
 def _check_length(kind: FieldType, length: int, path: str) -> None:
     if kind.size is not None and length != kind.size:
-        raise FieldError(path, f"expected {kind.size} elements, got {length}")
+        raise FieldError(
+            path, say("expected {n} elements, got {length}", n=kind.size, length=length)
+        )
     if kind.limit is not None and length > kind.limit:
-        raise FieldError(path, f"expected at most {kind.limit} elements, got {length}")
+        raise FieldError(
+            path, say("expected at most {n} elements, got {length}", n=kind.limit, length=length)
+        )
 
 
 def _text(kind: FieldType, value: Value, path: str) -> str:
     if not isinstance(value, str):
-        raise FieldError(path, f"expected a text, got {_shown(value)}")
+        raise FieldError(path, say("expected a text, got {value}", value=_shown(value)))
     if kind.text_limit is not None and len(value) > kind.text_limit:
-        raise FieldError(path, f"expected at most {kind.text_limit} characters, got {len(value)}")
+        raise FieldError(
+            path,
+            say(
+                "expected at most {n} characters, got {length}",
+                n=kind.text_limit,
+                length=len(value),
+            ),
+        )
     if "\0" in value:
-        raise FieldError(path, "a text of ROS cannot hold the character NUL")
+        raise FieldError(path, say("a text of ROS cannot hold the character NUL"))
     try:
         value.encode()
     except UnicodeEncodeError as error:
-        raise FieldError(path, f"{_shown(value)} is no valid Unicode") from error
+        raise FieldError(path, say("{value} is no valid Unicode", value=_shown(value))) from error
     return value
 
 
 def _boolean(value: Value, path: str) -> bool:
     if not isinstance(value, bool):
-        raise FieldError(path, f"expected true or false, got {_shown(value)}")
+        raise FieldError(path, say("expected true or false, got {value}", value=_shown(value)))
     return value
 
 
 def _float(element: str, value: Value, path: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise FieldError(path, f"expected a number, got {_shown(value)}")
+        raise FieldError(path, say("expected a number, got {value}", value=_shown(value)))
     try:
         number = float(value)
     except OverflowError:
@@ -157,7 +172,9 @@ def _float(element: str, value: Value, path: str) -> float:
     if (isinstance(value, int) and math.isinf(number)) or (
         math.isfinite(number) and 0 < greatest * ROUNDED < abs(number)
     ):
-        raise FieldError(path, f"{_shown(value)} is too great for a {element}")
+        raise FieldError(
+            path, say("{value} is too great for a {type}", value=_shown(value), type=element)
+        )
     is_rounded = math.isfinite(number) and 0 < greatest < abs(number)
     return math.copysign(greatest, number) if is_rounded else number
 
@@ -166,10 +183,18 @@ def _integer(element: str, value: Value, path: str) -> int:
     least, greatest = INTEGERS[element]
     whole = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
     if isinstance(value, bool) or not whole:
-        raise FieldError(path, f"expected a whole number, got {_shown(value)}")
+        raise FieldError(path, say("expected a whole number, got {value}", value=_shown(value)))
     number = int(value)  # type: ignore[arg-type]
     if not least <= number <= greatest:
-        raise FieldError(path, f"expected {least} to {greatest}, got {_shown(value)}")
+        raise FieldError(
+            path,
+            say(
+                "expected {least} to {greatest}, got {value}",
+                least=least,
+                greatest=greatest,
+                value=_shown(value),
+            ),
+        )
     return number
 
 
@@ -180,5 +205,7 @@ def _octet(value: Value, path: str) -> int:
 
 
 def _shown(value: object) -> str:
-    text = "nothing" if value is None else repr(value)
+    if value is None:
+        return say("nothing")
+    text = repr(value)
     return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"

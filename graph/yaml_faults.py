@@ -6,27 +6,34 @@ from typing import NoReturn
 
 import yaml
 
+from graph.words import Words, say
+
+_LIST = say("this list is not closed: a ',' or a ']' is missing")
+_BRACES = say("these braces are not closed: a ',' or a '}' is missing")
+_INDENT = say("the indentation does not fit the lines above")
 _NOT_CLOSED = {
-    "did not find expected ',' or ']'": "this list is not closed: a ',' or a ']' is missing",
-    "expected ',' or ']'": "this list is not closed: a ',' or a ']' is missing",
-    "did not find expected ',' or '}'": "these braces are not closed: a ',' or a '}' is missing",
-    "expected ',' or '}'": "these braces are not closed: a ',' or a '}' is missing",
-    "found unexpected end of stream": "the text in quotes is not closed",
+    "did not find expected ',' or ']'": _LIST,
+    "expected ',' or ']'": _LIST,
+    "did not find expected ',' or '}'": _BRACES,
+    "expected ',' or '}'": _BRACES,
+    "found unexpected end of stream": say("the text in quotes is not closed"),
 }
 """How PyYAML's own words begin (of both its parsers), and what is meant; told of where it began."""
 _WORDS = {
-    "could not find expected ':'": "a ':' is missing after the name of the field",
-    "found character that cannot start any token": "nothing can begin with this character: "
-    "put the text into quotes",
-    "did not find expected key": "the indentation does not fit the lines above",
-    "did not find expected '-' indicator": "the indentation does not fit the list above",
-    "expected <block end>": "the indentation does not fit the lines above",
-    "block sequence entries are not allowed": "a list cannot begin here: put it on a line of its "
-    "own, or the '-' into quotes",
+    "could not find expected ':'": say("a ':' is missing after the name of the field"),
+    "found character that cannot start any token": say(
+        "nothing can begin with this character: put the text into quotes"
+    ),
+    "did not find expected key": _INDENT,
+    "expected <block end>": _INDENT,
+    "did not find expected '-' indicator": say("the indentation does not fit the list above"),
+    "block sequence entries are not allowed": say(
+        "a list cannot begin here: put it on a line of its own, or the '-' into quotes"
+    ),
 }
 _COLON = "mapping values are not allowed"
-_SECOND_COLON = "a second ':' in one line: put the text that holds it into quotes"
-_NO_COLON = (
+_SECOND_COLON = say("a second ':' in one line: put the text that holds it into quotes")
+_NO_COLON = say(
     "this line does not fit the one above: a ':' is missing there, or the indentation differs"
 )
 
@@ -34,15 +41,13 @@ _NO_COLON = (
 class YamlError(ValueError):
     """A text is no YAML that could be a message; str() is `line:column: what is wrong`."""
 
-    def __init__(self, line: int, column: int, words: str, /, **facts: str | int) -> None:
-        """Say what is wrong at a place, counted from 1; `words` name the facts in braces."""
+    def __init__(self, line: int, column: int, message: str) -> None:
+        """Say what is wrong at a place, counted from 1."""
+        super().__init__(f"{line}:{column}: {message}")
         self.line = line
         self.column = column
-        self.words = words
-        """As they are to be translated."""
-        self.facts = facts
-        self.message = words.format(**facts) if facts else words
-        super().__init__(f"{line}:{column}: {self.message}")
+        self.message = message
+        """Made by `graph.words.say`, so that it can be translated."""
 
 
 def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
@@ -54,8 +59,8 @@ def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
     content = lines[mark.line] if mark.line < len(lines) else ""
     indent = content[: len(content) - len(content.lstrip())]
     if "\t" in indent:
-        words = "a tab indents this line: YAML wants blanks"
-        raise YamlError(mark.line + 1, indent.index("\t") + 1, words) from error
+        tab = say("a tab indents this line: YAML wants blanks")
+        raise YamlError(mark.line + 1, indent.index("\t") + 1, tab) from error
     words = getattr(error, "problem", None) or str(error)
     meant = _meant(words, _NOT_CLOSED)
     if meant and error.context_mark:
@@ -65,11 +70,11 @@ def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
         meant = _SECOND_COLON if ":" in content[: mark.column] else _NO_COLON
     meant = meant or _meant(words, _WORDS)
     if meant is None:
-        raise YamlError(*place, "not YAML: {reason}", reason=words) from error
+        raise YamlError(*place, say("not YAML: {reason}", reason=words)) from error
     raise YamlError(*place, meant) from error
 
 
-def _meant(words: str, known: dict[str, str]) -> str | None:
+def _meant(words: str, known: dict[str, Words]) -> Words | None:
     return next((said for begin, said in known.items() if words.startswith(begin)), None)
 
 
@@ -79,11 +84,11 @@ def tell_character(text: str, offset: int) -> NoReturn:
     line = before.count("\n") + 1
     column = offset - (before.rfind("\n") + 1) + 1
     code = f"{ord(text[offset]):04X}"
-    raise YamlError(line, column, "the character U+{code} is not allowed", code=code)
+    raise YamlError(line, column, say("the character U+{code} is not allowed", code=code))
 
 
 def _tell_unprintable(error: yaml.YAMLError, text: str) -> NoReturn:
     for offset, character in enumerate(text):
         if yaml.reader.Reader.NON_PRINTABLE.match(character):
             tell_character(text, offset)
-    raise YamlError(1, 1, "not YAML: {reason}", reason=str(error)) from error
+    raise YamlError(1, 1, say("not YAML: {reason}", reason=str(error))) from error

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import yaml
 
+from graph.words import Words, say
 from graph.yaml_faults import YamlError, tell_character, tell_syntax
 from graph.yaml_scalars import meaning
 
@@ -67,7 +68,7 @@ def read(text: str) -> Node:
     except UnicodeEncodeError as error:
         tell_character(text, error.start)
     if size > MAX_BYTES:
-        raise YamlError(1, 1, "is longer than {limit} KiB", limit=MAX_BYTES // 1024)
+        raise YamlError(1, 1, say("is longer than {limit} KiB", limit=MAX_BYTES // 1024))
     builder = _Builder()
     try:
         for event in yaml.parse(text, Loader=LOADER):
@@ -79,11 +80,11 @@ def read(text: str) -> Node:
 
 def _mapping(root: Node | None) -> Node:
     if root is None or root.value is None:
-        raise YamlError(1, 1, "is empty: write {} for a message with nothing but defaults")
+        raise YamlError(1, 1, say("is empty: write {} for a message with nothing but defaults"))
     if not isinstance(root.value, dict):
-        words = "expected fields as `name: value`, found a single value"
+        words = say("expected fields as `name: value`, found a single value")
         if isinstance(root.value, list):
-            words = "expected fields as `name: value`, found a list"
+            words = say("expected fields as `name: value`, found a list")
         raise YamlError(root.line, root.column, words)
     return root
 
@@ -115,14 +116,14 @@ class _Builder:
             if not self._stack:
                 self.root = opened.node
         elif isinstance(event, yaml.AliasEvent):
-            _refuse(event, "aliases are refused: write the value out")
+            _refuse(event, say("aliases are refused: write the value out"))
         elif isinstance(event, yaml.DocumentStartEvent) and self.root is not None:
-            _refuse(event, "a second document begins here; one message, one document")
+            _refuse(event, say("a second document begins here; one message, one document"))
 
     def _open(self, event: yaml.CollectionStartEvent) -> None:
         _check(event)
         if len(self._stack) >= MAX_DEPTH:
-            _refuse(event, "is nested deeper than {limit} levels", limit=MAX_DEPTH)
+            _refuse(event, say("is nested deeper than {limit} levels", limit=MAX_DEPTH))
         node = _node(event, {} if isinstance(event, yaml.MappingStartEvent) else [])
         self._put(node)
         self._stack.append(_Open(node))
@@ -144,11 +145,17 @@ class _Builder:
 
     def _begin(self, top: _Open, key: Node) -> None:
         if isinstance(key.value, (dict, list)):
-            raise YamlError(key.line, key.column, "expected a field's name, found a list or fields")
+            raise YamlError(
+                key.line, key.column, say("expected a field's name, found a list or fields")
+            )
         first = top.node.value.get(key.value)
         if first is not None:
-            words = "the field {name} stands here a second time, first on line {line}"
-            raise YamlError(key.line, key.column, words, name=repr(key.value), line=first.key_line)
+            words = say(
+                "the field {name} stands here a second time, first on line {line}",
+                name=repr(key.value),
+                line=first.key_line,
+            )
+            raise YamlError(key.line, key.column, words)
         top.key = key
 
     def _scalar(self, event: yaml.ScalarEvent) -> Any:  # noqa: ANN401 - whatever was written
@@ -171,11 +178,11 @@ def _place(event: yaml.Event) -> tuple[int, int]:
 
 def _check(event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
     if event.anchor is not None:
-        _refuse(event, "anchors are refused: write the value out")
+        _refuse(event, say("anchors are refused: write the value out"))
     if event.tag not in (None, f"{_TAG}str"):
         tag = event.tag.replace(_TAG, "!!")
-        _refuse(event, "the tag {tag} is refused: a message holds plain values", tag=tag)
+        _refuse(event, say("the tag {tag} is refused: a message holds plain values", tag=tag))
 
 
-def _refuse(event: yaml.Event, words: str, **facts: str | int) -> NoReturn:
-    raise YamlError(*_place(event), words, **facts)
+def _refuse(event: yaml.Event, message: Words) -> NoReturn:
+    raise YamlError(*_place(event), message)
