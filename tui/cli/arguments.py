@@ -7,12 +7,10 @@ parser of its own.
 from __future__ import annotations
 
 import argparse
-import math
 from typing import TYPE_CHECKING, NoReturn
 
-from launcher.domain import parse_domain
-from launcher.errors import DomainError
-from tui.i18n import LANGUAGES, N_, _, ngettext, said
+from tui.cli.values import count, domain, rate, seconds
+from tui.i18n import LANGUAGES, N_, _, ngettext
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,6 +26,8 @@ COMMANDS = {
     "logs": N_("the log of a node that runs in the background"),
     "attach": N_("the screen of what runs in the background"),
     "down": N_("stop what runs in the background"),
+    "record": N_("record topics of what runs into a folder that `ros2 bag` reads"),
+    "replay": N_("the screen on a recording, with no robot at all"),
     "doctor": N_("what is installed, which ROS, which ports, and how to mend what is missing"),
 }
 WITH_VALUE = ("--hardware", "--set", "--domain", "--lang")
@@ -115,7 +115,7 @@ def _add_run(parser: Parser) -> None:
         "--for",
         dest="seconds",
         metavar="S",
-        type=_seconds,
+        type=seconds,
         help=_("stop S seconds after all nodes are ready"),
     )
     _add_json(parser)
@@ -156,7 +156,7 @@ def _add_logs(parser: Parser) -> None:
         "-n",
         dest="lines",
         metavar="N",
-        type=_count,
+        type=count,
         default=100,
         help=_("how many lines of the past, 100 by default"),
     )
@@ -166,6 +166,47 @@ def _add_logs(parser: Parser) -> None:
 def _add_running(parser: Parser) -> None:
     parser.add_argument(
         "name", nargs="?", metavar="NAME", help=_("name of the profile, if several run")
+    )
+
+
+def _add_record(parser: Parser) -> None:
+    parser.add_argument(
+        "topics", nargs="*", metavar="TOPIC", help=_("what to record; without it all topics")
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FOLDER",
+        help=_("where to, a folder that is not there yet; by default named by the time"),
+    )
+    parser.add_argument(
+        "--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds")
+    )
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain; by default that of the robot which runs"),
+    )
+    _add_json(parser)
+    parser.epilog = _(
+        "Exit code: 0 if the recording is whole, 1 if it broke off or nothing came, 2 if nothing"
+        " could be started."
+    )
+
+
+def _add_replay(parser: Parser) -> None:
+    parser.add_argument("bag", metavar="BAG", help=_("folder with metadata.yaml, or an .mcap file"))
+    parser.add_argument(
+        "--rate", metavar="R", type=rate, default=1.0, help=_("how fast, 0.1 to 10 times")
+    )
+    parser.add_argument("--loop", action="store_true", help=_("begin anew at the end"))
+    parser.add_argument(
+        "--start",
+        metavar="S",
+        type=seconds,
+        default=0.0,
+        help=_("begin S seconds after the first message"),
     )
 
 
@@ -183,6 +224,8 @@ _ADD = {
     "logs": _add_logs,
     "attach": _add_running,
     "down": _add_running,
+    "record": _add_record,
+    "replay": _add_replay,
     "doctor": _add_doctor,
 }
 
@@ -209,7 +252,7 @@ def _add_profile_options(parser: Parser) -> None:
         help=_("a parameter of a node, the value as in YAML; may be repeated"),
     )
     parser.add_argument(
-        "--domain", metavar="N", type=_domain, help=_("ROS domain, 0 to 232, best 1 to 101")
+        "--domain", metavar="N", type=domain, help=_("ROS domain, 0 to 232, best 1 to 101")
     )
 
 
@@ -221,27 +264,3 @@ def _add_language(parser: Parser) -> None:
     parser.add_argument(
         "--lang", choices=LANGUAGES, help=_("language; by default that of the locale")
     )
-
-
-def _domain(text: str) -> int:
-    try:
-        return parse_domain(text, "--domain")
-    except DomainError as error:
-        words = said(error.args[0]).removeprefix("--domain: ")
-        raise argparse.ArgumentTypeError(words) from error
-
-
-def _seconds(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = math.nan
-    if not 0 <= seconds < math.inf:
-        raise argparse.ArgumentTypeError(_("{text!r} is no number of seconds").format(text=text))
-    return seconds
-
-
-def _count(text: str) -> int:
-    if not (text.isascii() and text.isdigit()):
-        raise argparse.ArgumentTypeError(_("{text!r} is no number of lines").format(text=text))
-    return int(text)

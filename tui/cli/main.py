@@ -28,6 +28,8 @@ HANDLERS = {
     "ps": ("tui.cli.background", "ps_command"),
     "logs": ("tui.cli.background", "logs_command"),
     "down": ("tui.cli.background", "down_command"),
+    "record": ("tui.cli.record", "record_command"),
+    "replay": ("tui.cli.replay", "replay_command"),
     "doctor": ("tui.cli.doctor", "doctor_command"),
 }
 """Command to module and function: only the module of the command in hand is imported."""

@@ -1,0 +1,68 @@
+"""`deck record` beside a real publisher: its lines, its end, its exit codes."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+from std_msgs.msg import Float32
+
+from tests.deck_process import DeckProcess, deck
+from tests.ros.peer import Peer
+from tests.ros.recorded import read_by_mcap
+from tests.waiting import wait_until
+
+
+@pytest.fixture(autouse=True)
+def _domain(ros_domain: int) -> int:
+    return ros_domain
+
+
+def publish_until(peer: Peer, run: DeckProcess, text: str) -> None:
+    """Go on publishing until the command says `text`."""
+    publisher = peer.publisher("/numbers", Float32)
+
+    def said() -> bool:
+        publisher.publish(Float32(data=1.0))
+        return any(text in line for line in run.lines)
+
+    wait_until(said, text)
+
+
+def test_it_records_until_ctrl_c_and_tells_each_second(ros_domain: int, tmp_path: Path) -> None:
+    with Peer(ros_domain) as peer:
+        run = DeckProcess("record", "-o", str(tmp_path / "bag"))
+        run.said(f"recording domain {ros_domain} into")
+        publish_until(peer, run, "1 topic")
+        run.signal(signal.SIGINT)
+        assert run.finish() == 0
+    assert run.errors == []
+    assert any(line.startswith("/numbers") and "std_msgs/msg/Float32" in line for line in run.lines)
+    assert run.lines[-1] == f"to see it: deck replay {tmp_path / 'bag'}"
+    assert read_by_mcap(tmp_path / "bag")["/numbers"]
+
+
+def test_json_tells_the_same_to_programs(ros_domain: int, tmp_path: Path) -> None:
+    with Peer(ros_domain) as peer:
+        run = DeckProcess("record", "/numbers", "/never", "-o", str(tmp_path / "b"), "--json")
+        publish_until(peer, run, '"topics": 1')
+        run.signal(signal.SIGTERM)
+        assert run.finish() == 0
+    first, *_, last = run.events()
+    assert (first["event"], first["domain"]) == ("recording", ros_domain)
+    assert last["event"] == "summary"
+    assert last["messages"] == len(read_by_mcap(tmp_path / "b")["/numbers"])
+    assert last["complaints"] == ["nobody has published /never"]
+
+
+def test_when_nothing_came_it_says_so_and_fails(tmp_path: Path) -> None:
+    run = deck("record", "-o", str(tmp_path / "bag"), "--for", "0.5")
+    assert run.process.returncode == 1
+    assert any("nothing was recorded" in line for line in run.lines)
+
+
+def test_a_folder_that_is_there_is_refused_with_a_word(tmp_path: Path) -> None:
+    run = deck("record", "-o", str(tmp_path))
+    assert run.process.returncode == 2
+    assert "is there already: choose another folder" in run.errors[0]

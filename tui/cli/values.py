@@ -1,0 +1,50 @@
+"""What options are made of: words into values, or a word why not."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+from launcher.domain import parse_domain
+from launcher.errors import DomainError
+from tui.i18n import _, said
+
+
+def domain(text: str) -> int:
+    """Return a ROS domain, 0 to 232."""
+    try:
+        return parse_domain(text, "--domain")
+    except DomainError as error:
+        words = said(error.args[0]).removeprefix("--domain: ")
+        raise argparse.ArgumentTypeError(words) from error
+
+
+def seconds(text: str) -> float:
+    """Return seconds, none below 0."""
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not 0 <= seconds < math.inf:
+        raise argparse.ArgumentTypeError(_("{text!r} is no number of seconds").format(text=text))
+    return seconds
+
+
+def rate(text: str) -> float:
+    """Return how many times as fast as it was, 0.1 to 10."""
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = math.nan
+    if not 0.1 <= rate <= 10:
+        raise argparse.ArgumentTypeError(
+            _("{text!r} is no rate; expected 0.1 to 10").format(text=text)
+        )
+    return rate
+
+
+def count(text: str) -> int:
+    """Return a number of lines."""
+    if not (text.isascii() and text.isdigit()):
+        raise argparse.ArgumentTypeError(_("{text!r} is no number of lines").format(text=text))
+    return int(text)
