@@ -151,6 +151,11 @@ class DriveToPointNode(LessonNode):
             for _turn in range(5):
                 self.executor.spin_once(timeout_sec=0.01)
 
+    def destroy_node(self) -> None:
+        """Close the action before the node that it hangs on."""
+        self._server.destroy()
+        super().destroy_node()
+
     # ---------------------------------------------------------------- goals
 
     def _judge(self, goal: DriveToPoint.Goal) -> GoalResponse:

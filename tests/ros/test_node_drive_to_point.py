@@ -16,6 +16,7 @@ from rclpy.action import ActionClient
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
+from tests.deck_process import DeckProcess
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
@@ -268,3 +269,21 @@ def test_it_ends_in_the_middle_of_a_drive_with_a_stop_and_a_result(
         wait_for_stop(drive)
         wait_until(result.done, "a last word")
         assert "ending" in result.result().result.message
+
+
+def test_the_lesson_ends_in_the_middle_of_a_drive_without_a_crash(
+    peer: Peer, ros_domain: int
+) -> None:
+    """Forked from the spawn server, which frees less carefully than a process of its own."""
+    del ros_domain
+    lesson = DeckProcess("run", "03b-drive-to-point")
+    try:
+        asker = Asker(peer)
+        assert asker.ask(9.0, 0.0)
+        wait_until(lambda: asker.feedback, "a drive")
+        lesson.signal(signal.SIGINT)
+        lesson.finish()
+        assert lesson.said("[drive_to_point]").strip()
+        assert not [line for line in lesson.lines if "killed" in line], lesson.lines
+    finally:
+        lesson.process.kill()
