@@ -13,7 +13,7 @@ from textual.events import Paste
 from robot.commands import CommandError, parse_llm
 from tui.i18n import set_language
 from tui.widgets.json_editor import JsonEditor, Place
-from tui.widgets.json_tokens import token_at, tokens
+from tui.widgets.json_tokens import tokens
 from tui.widgets.json_verdict import JsonVerdict
 from tui.widgets.templates import TEMPLATES
 
@@ -67,12 +67,6 @@ def test_tokens_of_any_line_follow_each_other(line: str) -> None:
     for token in tokens(line):
         assert end <= token.start < token.end <= len(line)
         end = token.end
-
-
-def test_the_token_at_a_place_is_found_and_is_never_empty() -> None:
-    assert token_at('{"speed": 5.0}', 10) == (10, 13)
-    assert token_at("", 0) == (0, 1)
-    assert token_at("x", 99) == (99, 100)
 
 
 async def test_the_line_of_the_cursor_keeps_its_colours() -> None:

@@ -1,15 +1,15 @@
 """The tokens of a line of JSON, for colouring it and for underlining one that is wrong.
 
 A JSON text has no token that spans two lines, so a line is read alone: no parser has to be kept
-in step with the editor, and none (tree-sitter and its grammar are 2.5 MB of compiled code) has to
-be installed.
+in step with the editor.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
+
+from tui.widgets.marked_editor import Token
 
 _TOKEN = re.compile(
     r"""
@@ -26,27 +26,10 @@ _NUMBER = re.compile(r"-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?")
 _WORDS = frozenset({"true", "false", "null"})
 
 
-class Token(NamedTuple):
-    """One token; columns in characters from 0."""
-
-    start: int
-    end: int
-    kind: str
-    """`key`, `string`, `number`, `word`, `mark`, or `bad` for what JSON does not know."""
-
-
 def tokens(line: str) -> Iterator[Token]:
     """Yield the tokens of a line in order; never fails, whatever the line is."""
     for match in _TOKEN.finditer(line):
         yield Token(match.start(), match.end(), _kind(match, line))
-
-
-def token_at(line: str, column: int) -> tuple[int, int]:
-    """Start and end of the token at a column, at least one character wide."""
-    for token in tokens(line):
-        if token.start <= column < token.end:
-            return token.start, token.end
-    return column, column + 1
 
 
 def _kind(match: re.Match[str], line: str) -> str:

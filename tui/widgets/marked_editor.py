@@ -1,0 +1,168 @@
+"""A text field coloured by hand, with the places that are wrong underlined and marked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+from rich.segment import Segment
+from rich.text import Text
+from textual.geometry import Offset
+from textual.message import Message
+from textual.strip import Strip
+from textual.widgets import TextArea
+
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rich.style import Style
+    from textual.events import Paste
+
+MARK = "✗"
+MARGIN = 2
+"""Cells that `TextArea` leaves between a line's number and its text."""
+
+LONGEST_COLOURED = 4096
+"""Characters of a line: a wrapped line is coloured anew for each of its rows on the screen."""
+
+
+class Place(NamedTuple):
+    """Where something is wrong, counted from 1."""
+
+    line: int
+    column: int
+
+
+class Token(NamedTuple):
+    """One token of a line; columns in characters from 0."""
+
+    start: int
+    end: int
+    kind: str
+    """`key`, `string`, `number`, `word`, `mark`, `comment`, or `bad` for what does not belong."""
+
+
+class MarkedEditor(TextArea):
+    """Edits text line by line; Enter is a new line, and nothing here sends anything.
+
+    A subclass says what the tokens of a line are. Highlighting hangs on `get_line`, which is there
+    to be extended, and not on tree-sitter: it and a grammar are 2.5 MB of compiled code.
+    """
+
+    class TooLong(Message):
+        """What was pasted would make the text longer than is taken; it was left out."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "marked-editor--key",
+        "marked-editor--string",
+        "marked-editor--number",
+        "marked-editor--word",
+        "marked-editor--mark",
+        "marked-editor--comment",
+        "marked-editor--bad",
+        "marked-editor--problem",
+        "marked-editor--gutter",
+    }
+    DEFAULT_CSS = """
+    MarkedEditor {
+        border: none; padding: 0; height: 1fr; scrollbar-size: 1 1;
+        &:focus { border: none; }
+        & .marked-editor--key { color: $text-primary; }
+        & .marked-editor--string { color: $text-success; }
+        & .marked-editor--number { color: $text-warning; }
+        & .marked-editor--word { color: $text-accent; }
+        & .marked-editor--mark { color: $foreground; text-style: dim; }
+        & .marked-editor--comment { color: $text-muted; text-style: italic; }
+        & .marked-editor--bad { color: $text-error; }
+        & .marked-editor--problem { color: $text-error; text-style: bold underline; }
+        & .marked-editor--gutter { color: $text-error; text-style: bold; }
+    }
+    """
+
+    longest: ClassVar[int] = 64 * 1024
+    """Characters that the text may have; a longer one would hold the whole screen up."""
+
+    def __init__(self, text: str = "", *, id: str | None = None) -> None:
+        super().__init__(
+            text, id=id, soft_wrap=True, show_line_numbers=True, tab_behavior="focus", compact=True
+        )
+        self.indent_width = 2
+        # A blink is bytes over the line twice a second, for as long as the screen is open.
+        self.cursor_blink = False
+        self._places: tuple[Place, ...] = ()
+
+    def tokens_of(self, line: str) -> Iterable[Token]:
+        """Return the tokens of a line in order; never fails, whatever the line is."""
+        del line
+        return ()
+
+    def show_problems(self, places: Iterable[Place]) -> None:
+        """Underline what stands at these places and mark their lines; none clears the marks."""
+        shown = tuple(places)
+        if shown != self._places:
+            self._places = shown
+            self.notify_style_update()
+            self.refresh()
+
+    def go_to(self, place: Place) -> None:
+        """Put the cursor to a place, as near as the text allows."""
+        row = max(0, min(place.line - 1, self.document.line_count - 1))
+        column = max(0, min(place.column - 1, len(self.document.get_line(row))))
+        self.move_cursor((row, column), center=True)
+        self.focus()
+
+    def replace_all(self, text: str) -> None:
+        """Put another text in place of this one, in a way that can be undone."""
+        self.replace(text, self.document.start, self.document.end)
+        self.move_cursor((0, 0))
+
+    def on_paste(self, event: Paste) -> None:
+        """Leave out what is too long."""
+        if len(event.text) + len(self.text) > self.longest:
+            event.prevent_default().stop()
+            self.post_message(self.TooLong())
+
+    def get_line(self, line_index: int) -> Text:
+        """The line with its tokens coloured and control characters harmless."""
+        source = self.document.get_line(line_index)
+        shown = source if source.isprintable() else "\t".join(map(plain, source.split("\t")))
+        line = Text(shown, end="", no_wrap=True)
+        for token in self.tokens_of(source) if len(source) <= LONGEST_COLOURED else ():
+            line.stylize(self._style(token.kind), token.start, token.end)
+        for place in self._places:
+            if place.line - 1 == line_index:
+                line.stylize(self._style("problem"), *self._token_at(source, place.column - 1))
+        return line
+
+    def render_line(self, y: int) -> Strip:
+        """The line with a mark between its number and its text where something is wrong in it."""
+        strip = super().render_line(y)
+        if not self._places:
+            return strip
+        row, column = self.wrapped_document.offset_to_location(Offset(0, y + self.scroll_offset.y))
+        beyond = y + self.scroll_offset.y >= self.wrapped_document.height
+        if column or beyond or not any(place.line - 1 == row for place in self._places):
+            return strip
+        before, after = self.gutter_width - MARGIN, self.gutter_width - MARGIN + 1
+        mark = Strip([Segment(MARK, self._style("gutter"))], 1)
+        return Strip.join([strip.crop(0, before), mark, strip.crop(after)])
+
+    def get_component_rich_style(
+        self, *names: str, partial: bool = False, default: Style | None = None
+    ) -> Style:
+        """The line of the cursor gets a background only: its tokens keep their colours."""
+        style = super().get_component_rich_style(*names, partial=partial, default=default)
+        if "text-area--cursor-line" in names:
+            return type(style)(bgcolor=style.bgcolor)
+        return style
+
+    def _token_at(self, line: str, column: int) -> tuple[int, int]:
+        """Start and end of the token at a column, at least one character wide."""
+        for token in self.tokens_of(line):
+            if token.start <= column < token.end:
+                return token.start, token.end
+        return column, column + 1
+
+    def _style(self, kind: str) -> Style:
+        return self.get_component_rich_style(f"marked-editor--{kind}", partial=True)

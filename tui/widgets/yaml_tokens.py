@@ -1,0 +1,44 @@
+"""The tokens of a line of YAML, for colouring it and for underlining one that is wrong.
+
+A line is read alone: a text in quotes that spans two lines is coloured as if it ended, which harms
+nobody.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from graph.yaml_scalars import meaning
+from tui.widgets.marked_editor import Token
+
+_TOKEN = re.compile(
+    r"""
+    (?P<comment>(?:^|(?<=\s))\#.*)
+    | (?P<string>"(?:[^"\\]|\\.)*"? | '(?:[^']|'')*'?)
+    | (?P<mark>[\[\]{},] | [-:](?=\s|$))
+    | (?P<plain>(?:[^\s\[\]{},:] | :(?!\s|$))+)
+    """,
+    re.VERBOSE,
+)
+_KEY_FOLLOWS = re.compile(r"\s*:(?=\s|$)")
+
+
+def tokens(line: str) -> Iterator[Token]:
+    """Yield the tokens of a line in order; never fails, whatever the line is."""
+    for match in _TOKEN.finditer(line):
+        yield Token(match.start(), match.end(), _kind(match, line))
+
+
+def _kind(match: re.Match[str], line: str) -> str:
+    kind = match.lastgroup or "plain"
+    if kind in {"comment", "mark"}:
+        return kind
+    if _KEY_FOLLOWS.match(line, match.end()):
+        return "key"
+    if kind == "string":
+        return kind
+    value = meaning(match.group())
+    if isinstance(value, str):
+        return "string"
+    return "word" if value is None or isinstance(value, bool) else "number"
