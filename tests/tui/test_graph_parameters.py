@@ -1,0 +1,119 @@
+"""Parameters on the screen of the graph: read, changed, refused, saved and loaded."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from concurrent.futures import Future
+from pathlib import Path
+
+import pytest
+from textual.widgets import Input
+
+from graph.data import ParametersResult
+from tests.tui.graph_room import Room, opened
+from tui.screens.graph_parameter import ParameterDialog
+
+NODE = "/sonar_front"
+
+
+@pytest.fixture
+async def room() -> AsyncIterator[Room]:
+    async with opened() as opened_room:
+        await opened_room.choose(NODE)
+        yield opened_room
+
+
+async def typed(room: Room, text: str) -> None:
+    room.app.screen.query_one(Input).value = text
+    await room.press("enter")
+
+
+async def test_they_are_read_when_asked_and_not_before(room: Room) -> None:
+    assert room.graph.asked_parameters == []
+    await room.press("p")
+    await room.wait_for("5 parameters · read in 10 ms")
+    assert room.graph.asked_parameters == [NODE]
+    assert "0.1…50, above 0" in room.seen()
+    assert "⊘ sonar_front" in room.seen()
+    await room.press("p")
+    assert "5 parameters" not in room.seen()
+
+
+async def test_another_value_is_set_and_read_back(room: Room) -> None:
+    await room.press("p", "down", "enter")
+    assert "Allowed: 0.1…50, above 0" in room.seen()
+    await typed(room, "2.5")
+    await room.wait(lambda: room.app.screen is room.screen)
+    assert room.graph.set_to == [(NODE, {"rate": "2.5"})]
+    await room.wait(lambda: room.graph.asked_parameters == [NODE, NODE])
+
+
+async def test_a_refusal_keeps_the_dialog_open_and_says_why(room: Room) -> None:
+    room.graph.refusals["rate"] = "outside of 0.1 to 50"
+    await room.press("p", "down", "enter")
+    await typed(room, "99")
+    await room.wait_for("Refused: outside of 0.1 to 50")
+    await room.press("escape")
+    assert room.app.screen is room.screen
+
+
+async def test_what_can_only_be_read_is_not_offered_for_change(room: Room) -> None:
+    await room.press("p", "enter")
+    assert isinstance(room.app.screen, ParameterDialog)
+    assert room.app.screen.query_one(Input).disabled
+    assert "It can only be read" in room.seen()
+    await room.press("escape")
+    await room.wait(lambda: room.app.screen is room.screen)
+
+
+async def test_a_node_that_does_not_answer_freezes_nothing(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    future: Future[ParametersResult] = Future()
+    monkeypatch.setattr(room.graph, "parameters", lambda _node: future)
+    await room.press("p")
+    assert "the node is being asked" in room.seen()
+    assert "asked, no answer for 0 s" in room.seen()
+    future.set_result(ParametersResult(NODE, (), "no answer within 5 s"))
+    await room.wait_for("no answer within 5 s")
+
+
+async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    future: Future[ParametersResult] = Future()
+    monkeypatch.setattr(room.graph, "parameters", lambda _node: future)
+    await room.press("p", "p")
+    monkeypatch.undo()
+    await room.choose("/camera")
+    future.set_result(ParametersResult(NODE, (), "too late"))
+    await room.press("p")
+    await room.wait_for("5 parameters")
+    assert "too late" not in room.seen()
+
+
+async def test_they_are_saved_and_loaded_as_yaml(room: Room, tmp_path: Path) -> None:
+    path = tmp_path / "sonar.yaml"
+    await room.press("p", "w")
+    await typed(room, str(path))
+    await room.wait(lambda: room.app.screen is room.screen)
+    assert "rate: 1.0" in path.read_text()
+    path.write_text(path.read_text().replace("rate: 1.0", "rate: 3.0"))
+    await room.press("o")
+    await typed(room, str(path))
+    await room.wait(lambda: room.graph.set_to)
+    ((node, values),) = room.graph.set_to
+    assert node == NODE
+    assert values["rate"] == 3.0
+    assert "frame_id" not in values
+
+
+async def test_a_file_that_is_wrong_is_told_with_its_line(room: Room, tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text("/sonar_front:\n  ros__parameters:\n    rate: [1, 2\n")
+    await room.press("p", "o")
+    await typed(room, str(path))
+    await room.wait_for("bad.yaml:3:")
+    await typed(room, str(tmp_path / "none.yaml"))
+    await room.wait_for("No such file")
+    assert room.graph.set_to == []

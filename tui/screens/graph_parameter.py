@@ -1,0 +1,110 @@
+"""The dialog in which a parameter is given another value."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.content import Content
+from textual.widgets import Input, Static
+
+from tui.i18n import _
+from tui.screens.dialog import Dialog
+from tui.widgets.graph_parameter_words import allowed_words, typed
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import ParameterRow
+
+LONGEST = 400
+
+Apply = Callable[[str], Awaitable[str]]
+"""Sets the value that was typed; returns why it was refused, or nothing."""
+
+
+class ParameterDialog(Dialog[bool]):
+    """Answers whether it was set; stays open, with the reason, while it is refused."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False)]
+    DEFAULT_CSS: ClassVar[str] = """
+    ParameterDialog Input { width: 1fr; margin: 0 1; }
+    ParameterDialog #parameter-remark { height: auto; padding: 1 1 0 1; color: $text-warning; }
+    ParameterDialog #parameter-keys { height: auto; padding: 1 1; color: $text-muted; }
+    """
+
+    def __init__(self, node: str, row: ParameterRow, apply: Apply) -> None:
+        """Ask for the value of a parameter of `node`."""
+        super().__init__()
+        self._node, self._row, self._apply = node, row, apply
+        self._busy = False
+
+    def title_words(self) -> str:
+        """Name node and parameter."""
+        return f"{plain(self._node, LONGEST)} · {plain(self._row.name, LONGEST)}"
+
+    def words(self) -> Content:
+        """Tell what it is and what it may be."""
+        row = self._row
+        lines = [Content.styled(plain(row.type_name), "$text-muted")]
+        if row.description:
+            lines.insert(0, Content(plain(row.description, LONGEST)))
+        allowed = allowed_words(row)
+        if allowed:
+            lines.append(Content(_("Allowed: {words}").format(words=allowed)))
+        return Content("\n").join(lines)
+
+    def compose(self) -> ComposeResult:
+        """Words, field, remark, keys."""
+        with Vertical(id="dialog"):
+            yield Static(id="dialog-text", markup=False)
+            yield Input(typed(self._row.value), compact=True, disabled=self._row.read_only)
+            yield Static(id="parameter-remark", markup=False)
+            yield Static(id="parameter-keys", markup=False)
+
+    def on_mount(self) -> None:
+        """Begin in the field."""
+        self.query_one(Input).focus()
+        if self._row.read_only:
+            self._remark(_("It can only be read: the node sets it when it starts."))
+
+    def redraw(self) -> None:
+        """Show the texts in the language spoken now."""
+        super().redraw()
+        keys = _("Enter sets it, Escape leaves")
+        if self._row.read_only:
+            keys = _("Escape leaves")
+        self.query_one("#parameter-keys", Static).update(keys)
+
+    def action_leave(self) -> None:
+        """Change nothing."""
+        self.dismiss(False)
+
+    @on(Input.Changed)
+    def _changed(self) -> None:
+        if not self._busy and not self._row.read_only:
+            self._remark("")
+
+    @on(Input.Submitted)
+    def _submitted(self, event: Input.Submitted) -> None:
+        if not self._busy:
+            self._busy = True
+            self._remark(_("The node is being asked…"))
+            self.run_worker(self._set(event.value), exit_on_error=False)
+
+    async def _set(self, text: str) -> None:
+        refusal = await self._apply(text)
+        self._busy = False
+        if refusal:
+            self._remark(_("Refused: {reason}").format(reason=refusal))
+        elif self.is_current:
+            self.dismiss(True)
+
+    def _remark(self, words: str) -> None:
+        remark = self.query_one("#parameter-remark", Static)
+        remark.update(plain(words, LONGEST))
+        remark.display = bool(words)

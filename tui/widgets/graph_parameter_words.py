@@ -1,0 +1,58 @@
+"""A parameter in words: its value as one types it, and what it may be."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from tui.i18n import _
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from graph.data import ParameterRow, Value
+
+LONGEST = 400
+
+
+def typed(value: Value | None) -> str:
+    """Return a value as one would type it; a text as it is, a list with commas in brackets."""
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (bytes, bytearray)):
+        return "[" + ", ".join(map(str, value)) + "]"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    # Quotes keep a text in a list from being taken for a number.
+    items = [f'"{item}"' if isinstance(item, str) else typed(item) for item in _items(value)]
+    return "[" + ", ".join(items) + "]"
+
+
+def value_text(value: Value | None) -> str:
+    """Return a value for one line of a table, harmless."""
+    return _("not set") if value is None else plain(typed(value), LONGEST)
+
+
+def allowed_words(row: ParameterRow) -> str:
+    """Return the range, the step, and whether it can be changed at all."""
+    parts = []
+    if row.read_only:
+        parts.append(_("read-only"))
+    if row.least is not None and row.greatest is not None:
+        parts.append(f"{_number(row.least)}…{_number(row.greatest)}")
+    if row.step:
+        parts.append(_("step {n}").format(n=_number(row.step)))
+    if row.constraints:
+        parts.append(plain(row.constraints, LONGEST))
+    return ", ".join(parts)
+
+
+def _number(value: float) -> str:
+    return f"{value:g}"
+
+
+def _items(value: Value) -> list[Value]:
+    items: Any = value.tolist() if hasattr(value, "tolist") else value
+    return list(items)
