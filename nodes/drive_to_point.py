@@ -154,7 +154,7 @@ class DriveToPointNode(LessonNode):
     def destroy_node(self) -> None:
         """Close the action before the node that it hangs on."""
         self._server.destroy()
-        super().destroy_node()
+        super().destroy_node()  # type: ignore[no-untyped-call]
 
     # ---------------------------------------------------------------- goals
 
