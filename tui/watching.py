@@ -1,0 +1,79 @@
+"""A session in which Deck has started nothing: what runs in a ROS domain is looked at as it is."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Iterable, Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from launcher.events import Event
+    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+
+WATCH = "watch"
+"""The name of the session, where a profile's would stand."""
+
+
+class WatchLink:
+    """Fits the seam of a session, and has no nodes: there is nothing to start, stop or restart."""
+
+    def __init__(self, session: SessionInfo) -> None:
+        self.session = session
+        self.nodes: Mapping[str, NodeStatus] = {}
+        self.strays: tuple[Stray, ...] = ()
+        self._closed = asyncio.Event()
+
+    async def events(self) -> AsyncIterator[Event]:
+        """Tell of nothing until it is let go of."""
+        nothing: tuple[Event, ...] = ()
+        for event in nothing:
+            yield event
+        await self._closed.wait()
+
+    async def start(self, *names: str) -> None:
+        """Nothing to start."""
+
+    async def stop(self, *names: str) -> None:
+        """Nothing to stop: what others have started is theirs."""
+
+    async def restart(self, *names: str) -> None:
+        """Nothing to restart."""
+
+    async def history(self, node: str | None, limit: int) -> list[LogLine]:
+        """Nothing was written down before."""
+        del node, limit
+        return []
+
+    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+        """Nothing was left behind."""
+
+    async def shutdown(self, now: bool = False) -> None:
+        """Let go of it."""
+        del now
+        self._closed.set()
+
+    async def aclose(self) -> None:
+        """Let go of it."""
+        self._closed.set()
+
+
+def watched(domain: int, discovery: str = "localhost") -> WatchLink:
+    """Return the session of whatever runs in this domain.
+
+    `discovery`: `localhost` for this machine only, `subnet` for the network too.
+    """
+    from launcher.status import SessionInfo
+
+    title = {"en": "What runs in the domain", "ru": "Что работает в домене"}
+    return WatchLink(
+        SessionInfo(
+            run_id=WATCH,
+            profile="",
+            name=WATCH,
+            title=title,
+            domain=domain,
+            discovery=discovery,
+            hardware="",
+            foreground=False,
+        )
+    )
