@@ -11,6 +11,7 @@ from graph.words import Words, say
 _LIST = say("this list is not closed: a ',' or a ']' is missing")
 _BRACES = say("these braces are not closed: a ',' or a '}' is missing")
 _INDENT = say("the indentation does not fit the lines above")
+_NO_VALUE = say("a value is missing here, or a ']' or '}'")
 _NOT_CLOSED = {
     "did not find expected ',' or ']'": _LIST,
     "expected ',' or ']'": _LIST,
@@ -26,6 +27,8 @@ _WORDS = {
     ),
     "did not find expected key": _INDENT,
     "expected <block end>": _INDENT,
+    "did not find expected node content": _NO_VALUE,
+    "expected the node content": _NO_VALUE,
     "did not find expected '-' indicator": say("the indentation does not fit the list above"),
     "block sequence entries are not allowed": say(
         "a list cannot begin here: put it on a line of its own, or the '-' into quotes"
@@ -65,13 +68,21 @@ def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
     meant = _meant(words, _NOT_CLOSED)
     if meant and error.context_mark:
         mark = error.context_mark
-    place = (mark.line + 1, mark.column + 1)
+    place = _within(mark.line, mark.column, lines)
     if words.startswith(_COLON):
         meant = _SECOND_COLON if ":" in content[: mark.column] else _NO_COLON
     meant = meant or _meant(words, _WORDS)
     if meant is None:
         raise YamlError(*place, say("not YAML: {reason}", reason=words)) from error
     raise YamlError(*place, meant) from error
+
+
+def _within(line: int, column: int, lines: list[str]) -> tuple[int, int]:
+    """Return a place counted from 1; what is missed at the very end, at the last line's end."""
+    while line > 0 and (line >= len(lines) or not lines[line].strip()):
+        line -= 1
+        column = len(lines[line].rstrip())
+    return line + 1, column + 1
 
 
 def _meant(words: str, known: dict[str, Words]) -> Words | None:

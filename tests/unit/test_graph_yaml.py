@@ -121,6 +121,7 @@ def test_nan_is_a_number() -> None:
         ("a: 1\n---\nb: 2", 2, 1, "a second document"),
         ("a:\n\tb: 1", 2, 1, "a tab indents this line"),
         ("b: 1\na: [1, 2", 2, 4, "this list is not closed"),
+        ("a: [1,\n\n", 1, 7, "a value is missing here"),
         ("a: {b: 1", 1, 4, "these braces are not closed"),
         ('a: "x\nb: 3', 1, 4, "the text in quotes is not closed"),
         ("a: b: c", 1, 5, "a second ':' in one line"),

@@ -1,0 +1,32 @@
+"""What is wrong with a form of YAML, said in the language of the screen."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from graph.making import FieldError
+from graph.types import UnknownTypeError
+from graph.yaml_text import YamlError
+from tui.i18n import _, said
+from tui.widgets.marked_editor import Place
+from tui.widgets.plain import plain
+
+LONGEST = 300
+
+Wrong: TypeAlias = YamlError | FieldError | UnknownTypeError
+"""All that checking a form may raise."""
+
+
+def place_of(error: Wrong) -> Place | None:
+    """Return where it is wrong, None for a type that is not there."""
+    line = getattr(error, "line", None)
+    return None if line is None else Place(line, getattr(error, "column", None) or 1)
+
+
+def wrong_words(error: Wrong) -> str:
+    """The line, the field and the mend: `line 3: drive.speed: expected a number, got 'b'`."""
+    place = place_of(error)
+    line = "" if place is None else _("line {line}").format(line=place.line)
+    field = error.field if isinstance(error, FieldError) else ""
+    message = error.reason if isinstance(error, UnknownTypeError) else error.message
+    return plain(": ".join(part for part in (line, field, said(message)) if part), LONGEST)
