@@ -8,7 +8,7 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from graph.data import ParametersResult, SetResult
-from graph.orders import Ask, Call, ObserverError, Order, Prepare, Publish
+from graph.orders import Ask, Call, Do, ObserverError, Order, Prepare, Publish
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -68,16 +68,25 @@ class Asking:
         raise NotImplementedError(number)
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
-        """Send a goal; the future tells its number, or fails. Updates tell how it goes."""
-        raise NotImplementedError(action, type_name, goal)
+        """Send a goal; the future tells its number, and updates how it goes.
+
+        It raises GoalError, UnknownTypeError, FieldError or ObserverError.
+        """
+        order = Ask[int](
+            lambda station, future: station.goals.send(
+                action, type_name, goal, station.action(action), future
+            )
+        )
+        self._order(order)
+        return order.future
 
     def cancel_goal(self, number: int) -> None:
-        """Ask for a goal to be cancelled."""
-        raise NotImplementedError(number)
+        """Ask for a goal to be cancelled; updates tell whether its server agrees."""
+        self._order(Do(lambda station: station.goals.cancel(number)))
 
     def forget_goal(self, number: int) -> None:
         """Tell no more of a goal; one that has not ended is cancelled."""
-        raise NotImplementedError(number)
+        self._order(Do(lambda station: station.goals.forget(number)))
 
     def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
         """Read all parameters of a node, with descriptors; `timeout_s` is for each answer.

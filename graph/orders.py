@@ -112,6 +112,20 @@ class Call:
 
 
 @dataclass(frozen=True)
+class Do:
+    """Have something done that nobody waits for; without an observer there is nothing to do."""
+
+    act: Callable[[Station], None]
+
+    def carry_out(self, station: Station) -> None:
+        """Do it."""
+        self.act(station)
+
+    def fail(self, error: Exception) -> None:
+        """Keep silent: what it was about has ended with the observer."""
+
+
+@dataclass(frozen=True)
 class Ask(Generic[T]):
     """Have something begun that has a future for its end."""
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from graph.calls import Calls
 from graph.data import GraphUpdate
+from graph.goals import Goals
 from graph.interest import Interest
 from graph.outbox import Outbox
 from graph.parameters import Parameters
@@ -14,7 +15,7 @@ from graph.scan import Scan, Signature, is_complete, scan, signature
 from graph.taps import Taps
 
 if TYPE_CHECKING:
-    from graph.data import NodeRow, Sample, ServiceRow
+    from graph.data import ActionRow, NodeRow, Sample, ServiceRow
     from graph.ros import Ros
     from graph.scan import TopicEnds
 
@@ -29,6 +30,7 @@ class Station:
     def __init__(self, ros: Ros) -> None:
         self.calls = Calls(ros.node)
         self.outbox = Outbox(ros.node)
+        self.goals = Goals(ros.node)
         self.parameters = Parameters(self.calls, self._known_node, self._known_service)
         self._ros = ros
         self._taps = Taps(ros.node)
@@ -42,7 +44,7 @@ class Station:
     @property
     def is_idle(self) -> bool:
         """Whether only the graph itself is to be looked at."""
-        return not self._taps.any_open
+        return not (self._taps.any_open or self.goals.under_way)
 
     def ends(self, topic: str) -> TopicEnds | None:
         """Return what is known of a topic now."""
@@ -53,6 +55,11 @@ class Station:
         """Return what is known of a service now."""
         self._look_at_graph()
         return self._known_service(name)
+
+    def action(self, name: str) -> ActionRow | None:
+        """Return what is known of an action now."""
+        self._look_at_graph()
+        return next((row for row in self._scan.actions if row.name == name), None)
 
     def look(self, interest: Interest) -> GraphUpdate | None:
         """Look at the graph and at the queues; return what is new, None if nothing is."""
@@ -69,16 +76,20 @@ class Station:
         calling = self.calls.step()
         # What has just been answered leads to the next question.
         talking = self.parameters.step()
+        pursuing = self.goals.step()
         publishing = self.outbox.step()
-        return calling or talking or publishing
+        return calling or talking or pursuing or publishing
 
     def close(self, error: Exception) -> None:
-        """Let everything under way fail, and leave the graph."""
-        self.parameters.fail(error)
-        self.calls.fail(error)
-        self.outbox.fail(error)
-        self._taps.close()
-        self._ros.close()
+        """Have goals cancelled, let all else that is under way fail, and leave the graph."""
+        try:
+            self.goals.close()
+        finally:
+            self.parameters.fail(error)
+            self.calls.fail(error)
+            self.outbox.fail(error)
+            self._taps.close()
+            self._ros.close()
 
     def _known_service(self, name: str) -> ServiceRow | None:
         return next((row for row in self._scan.services if row.name == name), None)
@@ -101,8 +112,11 @@ class Station:
     def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
         rows = self._taps.rows()
         seen = self._scan
-        told = (rows, seen.nodes, seen.services, seen.actions)
+        goals = self.goals.rows()
+        told = (rows, seen.nodes, seen.services, seen.actions, goals)
         if not samples and told == self._told:
             return None
         self._told = told
-        return GraphUpdate(time.time(), rows, samples, seen.nodes, seen.services, seen.actions)
+        return GraphUpdate(
+            time.time(), rows, samples, seen.nodes, seen.services, seen.actions, goals
+        )

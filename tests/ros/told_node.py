@@ -25,6 +25,7 @@ from rclpy.serialization import serialize_message
 
 from graph.making import to_message
 from graph.types import load_message, load_service
+from tests.ros.told_actions import ActionOrders
 
 IDLE_S = 0.02
 
@@ -70,10 +71,11 @@ class Timed:
             self.sway_s = -self.sway_s
 
 
-class Orders:
+class Orders(ActionOrders):
     """What a test can order."""
 
     def __init__(self, node: Node) -> None:
+        super().__init__()
         self.node = node
         self.publishers: dict[str, Any] = {}
         self.subscriptions: dict[str, Any] = {}

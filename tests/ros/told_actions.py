@@ -1,0 +1,80 @@
+"""What a told node can be ordered about actions: each of its goals waits for the test's word."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.node import Node
+from rclpy.task import Future
+
+from graph.making import to_message
+from graph.types import load_action
+
+DRIVE = "deck_interfaces/action/DriveToPoint"
+
+
+class Served:
+    """One action server, its goals in the order in which they were accepted."""
+
+    def __init__(self, node: Node, name: str, reject: bool, refuse_cancel: bool) -> None:
+        self.handles: list[Any] = []
+        self.ends: list[Any] = []
+        self.cancels = 0
+        self.rejects = reject
+        self.refuses_cancel = refuse_cancel
+        self.kind = load_action(DRIVE)
+        self.server = ActionServer(
+            node,
+            self.kind,
+            name,
+            self._execute,
+            goal_callback=self._asked,
+            cancel_callback=self._asked_to_cancel,
+        )
+
+    def _asked(self, _goal: Any) -> GoalResponse:
+        return GoalResponse.REJECT if self.rejects else GoalResponse.ACCEPT
+
+    def _asked_to_cancel(self, _handle: Any) -> CancelResponse:
+        self.cancels += 1
+        return CancelResponse.REJECT if self.refuses_cancel else CancelResponse.ACCEPT
+
+    async def _execute(self, handle: Any) -> Any:
+        self.handles.append(handle)
+        end: Any = Future()
+        self.ends.append(end)
+        return await end
+
+
+class ActionOrders:
+    """What a test can order about actions; the type is DriveToPoint."""
+
+    node: Node
+
+    def __init__(self) -> None:
+        self.served_actions: dict[str, Served] = {}
+
+    def serve_action(self, topic: str, reject: bool = False, refuse_cancel: bool = False) -> None:
+        self.served_actions[topic] = Served(self.node, topic, reject, refuse_cancel)
+
+    def goals(self, topic: str) -> list[list[float]]:
+        """The goals that are at work or have ended, as x and y."""
+        return [[h.request.x, h.request.y] for h in self.served_actions[topic].handles]
+
+    def cancels(self, topic: str) -> int:
+        """How often somebody has asked to cancel."""
+        return self.served_actions[topic].cancels
+
+    def feedback(self, topic: str, goal: int, distance: float) -> None:
+        served = self.served_actions[topic]
+        served.handles[goal].publish_feedback(served.kind.Feedback(distance=distance))
+
+    def finish(self, topic: str, goal: int, how: str, **result: Any) -> None:
+        """End a goal: `succeed`, `abort` or `canceled`, with these fields in its result."""
+        served = self.served_actions[topic]
+        getattr(served.handles[goal], how)()
+        served.ends[goal].set_result(to_message(served.kind.Result, result))
+
+    def withdraw_action(self, topic: str) -> None:
+        self.served_actions.pop(topic).server.destroy()
