@@ -6,6 +6,7 @@ import os
 import re
 from typing import TYPE_CHECKING
 
+from graph.words import say
 from graph.yaml_faults import YamlError, tell_character
 from graph.yaml_reading import Node, read
 from graph.yaml_scalars import quoted, written
@@ -44,7 +45,7 @@ def load(text: str, node: str) -> dict[str, Value]:
     Raises YamlError, with line and column.
     """
     if not text.strip():
-        raise YamlError(1, 1, "the file is empty")
+        raise YamlError(1, 1, say("the file is empty"))
     found = list(_nodes(read(text), ""))
     values = {
         name: value
@@ -54,8 +55,8 @@ def load(text: str, node: str) -> dict[str, Value]:
     }
     if not values and not any(_pattern(pattern).fullmatch(node) for pattern, _ in found):
         names = ", ".join(dict.fromkeys(pattern for pattern, _ in found)) or "nobody"
-        words = "the file has nothing for {node}; it is for {names}"
-        raise YamlError(1, 1, words, node=node, names=names)
+        words = say("the file has nothing for {node}; it is for {names}", node=node, names=names)
+        raise YamlError(1, 1, words)
     return values
 
 
@@ -76,7 +77,7 @@ def load_file(path: Path, node: str) -> dict[str, Value]:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise YamlError(line, 1, "this is no text in UTF-8") from error
+        raise YamlError(line, 1, say("this is no text in UTF-8")) from error
     if "\0" in text:
         tell_character(text, text.index("\0"))
     return load(text, node)
@@ -125,22 +126,29 @@ def _nodes(branch: Node, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
     for key, below in branch.value.items():
         if key == KEY:
             if not path:
-                words = "`{key}:` stands under no node; write the node's name, or `/**:`, above it"
-                raise YamlError(below.key_line, below.key_column, words, key=KEY)
+                words = say(
+                    "`{key}:` stands under no node; write the node's name, or `/**:`, above it",
+                    key=KEY,
+                )
+                raise YamlError(below.key_line, below.key_column, words)
             parameters: dict[str, Value] = {}
             _flatten(_fields(below, "parameters"), "", parameters)
             yield path, parameters
             continue
         if not isinstance(below.value, dict):
-            words = "expected `{key}:` under the name of a node, found {name} with a value"
-            raise YamlError(below.key_line, below.key_column, words, key=KEY, name=repr(key))
+            words = say(
+                "expected `{key}:` under the name of a node, found {name} with a value",
+                key=KEY,
+                name=repr(key),
+            )
+            raise YamlError(below.key_line, below.key_column, words)
         yield from _nodes(below, f"{path}/{key.strip('/')}")
 
 
 def _fields(node: Node, what: str) -> Node:
     if not isinstance(node.value, dict):
-        words = "expected {what} as `name: value`"
-        raise YamlError(node.line, node.column, words, what=what)
+        words = say("expected {what} as `name: value`", what=what)
+        raise YamlError(node.line, node.column, words)
     return node
 
 
@@ -150,8 +158,8 @@ def _flatten(branch: Node, prefix: str, found: dict[str, Value]) -> None:
         if isinstance(below.value, dict):
             _flatten(below, f"{name}.", found)
         elif name in found:
-            words = "the parameter {name} stands here a second time"
-            raise YamlError(below.key_line, below.key_column, words, name=repr(name))
+            words = say("the parameter {name} stands here a second time", name=repr(name))
+            raise YamlError(below.key_line, below.key_column, words)
         else:
             found[name] = _value(below, name)
 
@@ -159,7 +167,7 @@ def _flatten(branch: Node, prefix: str, found: dict[str, Value]) -> None:
 def _value(node: Node, name: str) -> Value:
     if node.value is None:
         line, column = node.key_line or node.line, node.key_column or node.column
-        raise YamlError(line, column, "{name} has no value", name=repr(name))
+        raise YamlError(line, column, say("{name} has no value", name=repr(name)))
     if isinstance(node.value, list):
         return _list(node, name)
     value: Value = node.value
@@ -169,13 +177,16 @@ def _value(node: Node, name: str) -> Value:
 def _list(node: Node, name: str) -> Value:
     for each in node.value:
         if isinstance(each.value, (dict, list)):
-            words = "{name} is a list: expected a single value here"
-            raise YamlError(each.line, each.column, words, name=repr(name))
+            words = say("{name} is a list: expected a single value here", name=repr(name))
+            raise YamlError(each.line, each.column, words)
     values = [_value(each, name) for each in node.value]
     kinds = {float if type(each) is int else type(each) for each in values}
     if len(kinds) > 1:
-        words = "{name} has values of different types; a list of parameters has one type"
-        raise YamlError(node.line, node.column, words, name=repr(name))
+        words = say(
+            "{name} has values of different types; a list of parameters has one type",
+            name=repr(name),
+        )
+        raise YamlError(node.line, node.column, words)
     return values
 
 
