@@ -6,7 +6,7 @@ One that was cut short, by a crash or a full disk, is read as far as it goes, an
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -70,18 +70,29 @@ class Bag:
         """Seconds from the first message to the last."""
         return (self.end_ns - self.start_ns) / 1e9
 
-    def messages(self, start_ns: int | None = None) -> Iterator[tuple[TopicInBag, int, bytes]]:
+    def messages(
+        self, start_ns: int | None = None, names: Collection[str] = ()
+    ) -> Iterator[tuple[TopicInBag, int, bytes]]:
         """Yield topic, unix time in nanoseconds and raw message in the order of their times.
 
-        Raises BagError where the bag turns out to be damaged.
+        `names`: of which topics, all if empty. Raises BagError where the bag turns out to be
+        damaged.
         """
+        wanted = [each for each in self._reader.connections if not names or each.topic in names]
         try:
-            for connection, stamp_ns, raw in self._reader.messages(start_ns):
+            for connection, stamp_ns, raw in self._reader.messages(start_ns, wanted):
                 yield self._topics[connection.topic, connection.msgtype], stamp_ns, bytes(raw)
         except GeneratorExit:
             raise
         except Exception as error:
             raise unreadable(self.path, error) from error
+
+    def on_this_thread(self) -> Bag:
+        """Return a bag that this thread may read: a sqlite3 is bound to who has opened it."""
+        if not any(self.path.glob("*.db3")) and self.path.suffix != ".db3":
+            return self
+        self.close()
+        return open_bag(self.path)
 
     def close(self) -> None:
         """Let go of the files."""
@@ -100,19 +111,20 @@ def open_bag(path: Path) -> Bag:
 
     path = path.parent if path.name == METADATA else path
     files = _files(path)
-    try:
-        return Bag(path, WholeBag(path if (path / METADATA).exists() else files[0]), None)
-    except Exception as error:
-        mcaps = [file for file in files if file.suffix == ".mcap"]
-        if not mcaps or isinstance(error, PermissionError):
-            raise unreadable(path, error) from error
-        reason = error
+    mcaps = [file for file in files if file.suffix == ".mcap"]
+    reason: Exception | None = None
+    if (path / METADATA).exists() or len(mcaps) < 2:
+        try:
+            return Bag(path, WholeBag(path if (path / METADATA).exists() else files[0]), None)
+        except Exception as error:
+            if not mcaps or isinstance(error, PermissionError):
+                raise unreadable(path, error) from error
+            reason = error
     try:
         cut = CutFiles(mcaps)
-    except (OSError, ValueError, struct.error) as error:
-        raise unreadable(path, reason) from error
     except Exception as error:
-        raise unreadable(path, error) from error
+        foreign = isinstance(error, (OSError, ValueError, struct.error))
+        raise unreadable(path, reason if reason and foreign else error) from error
     return Bag(path, cut, cut.missing(path))
 
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from graph.data import Value
 
 AS_BYTES = BYTES | {"byte"}
+CDR = frozenset({b"\x00\x00", b"\x00\x01"})
+"""How big-endian and little-endian plain CDR begin (OMG DDS-XTypes 1.3, 7.6.3.1.2)."""
 LISTED = frozenset({"bool", "string", "wstring"})
 
 
@@ -53,9 +55,15 @@ def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
             )
         )
     read = _reader(store, kind.name)
+    plan = store.get_msgdef(kind.name)
 
     def decode(raw: bytes) -> dict[str, Value]:
-        return read(store.deserialize_cdr(raw, kind.name))
+        if raw[:2] not in CDR:
+            raise ValueError("it is not in plain CDR")
+        take = plan.deserialize_cdr_le if raw[1] else plan.deserialize_cdr_be
+        # The store's own method refuses messages with bytes to spare; rmw makes such ones.
+        message, _end = take(memoryview(raw)[4:], 0, plan.cls, store)
+        return read(message)
 
     return decode
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import struct
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING, Protocol
 
@@ -35,8 +35,8 @@ class BagReader(Protocol):
     message_count: int
     distro: str
 
-    def messages(self, start_ns: int | None) -> Iterator[Raw]:
-        """Yield messages in the order of their times."""
+    def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
+        """Yield messages of these connections in the order of their times."""
 
     def close(self) -> None:
         """Let go of the files."""
@@ -55,9 +55,9 @@ class WholeBag:
         self.end_ns = self._reader.end_time - 1 if self.message_count else 0
         self.distro = self._reader.ros_distro or ""
 
-    def messages(self, start_ns: int | None) -> Iterator[Raw]:
-        """Yield messages in the order of their times."""
-        return self._reader.messages(start=start_ns)
+    def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
+        """Yield messages of these connections in the order of their times."""
+        return self._reader.messages(wanted, start_ns) if wanted else iter(())
 
     def close(self) -> None:
         """Let go of the files."""
@@ -74,6 +74,7 @@ class CutFiles:
         self._stack = ExitStack()
         self._readers: list[McapReader] = []
         self._lost_bytes = 0
+        self._is_cut = False
         try:
             for path in paths:
                 self._readers.append(self._opened(path))
@@ -87,8 +88,10 @@ class CutFiles:
         self.start_ns = min((each.start_time for each in spoken), default=0)
         self.end_ns = max((each.end_time for each in spoken), default=0)
 
-    def missing(self, path: Path) -> Words:
+    def missing(self, path: Path) -> Words | None:
         """Return what is not there, and how the bag is made whole for other programs."""
+        if not self._is_cut:
+            return None
         return say(
             "{path} was cut short: the recording has not ended in order. {messages} messages are "
             "whole, the last {bytes} bytes are not; what was to come after is missing. "
@@ -98,11 +101,11 @@ class CutFiles:
             bytes=self._lost_bytes,
         )
 
-    def messages(self, start_ns: int | None) -> Iterator[Raw]:
-        """Yield messages in the order of their times."""
+    def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
+        """Yield messages of these connections in the order of their times."""
         for reader in self._readers:
-            found = reader.messages_scan(reader.connections, start_ns)
-            yield from in_order(found)
+            own = [each for each in reader.connections if each in wanted]
+            yield from in_order(reader.messages_scan(own, start_ns))
 
     def close(self) -> None:
         """Let go of the files."""
@@ -114,6 +117,7 @@ class CutFiles:
             reader.open()
             self._stack.callback(reader.close)
             return reader
+        self._is_cut = True
         reader = McapReader(path)
         reader.bio = self._stack.enter_context(path.open("rb"))
         reader.data_start, reader.data_end, size = whole_records(path)

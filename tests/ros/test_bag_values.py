@@ -1,0 +1,66 @@
+"""A bag's trees are those of live messages: the same rules, by the bag's own definitions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from ackermann_msgs.msg import AckermannDriveStamped
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import ByteMultiArray, Char, ColorRGBA, Empty, Int8MultiArray
+from std_msgs.msg import String as Text
+from tf2_msgs.msg import TFMessage
+
+from graph.bag_decoding import TypeText, bag_decoder
+from graph.bag_types import definition, jazzy
+from graph.values import to_tree
+
+MESSAGES = [
+    Image(height=1, width=2, encoding="rgb8", step=6, data=[1, 2, 3, 4, 5, 255]),
+    JointState(name=["a", "б"], position=[0.5, -1.0], velocity=[], effort=[1e300]),
+    TFMessage(transforms=[TransformStamped(child_frame_id="camera"), TransformStamped()]),
+    DiagnosticArray(
+        status=[DiagnosticStatus(level=b"\x02", name="x", values=[KeyValue(key="k", value="v")])]
+    ),
+    ByteMultiArray(data=[b"\x01", b"\xff"]),
+    Int8MultiArray(data=[-1, 2]),
+    Odometry(child_frame_id="base_link"),
+    AckermannDriveStamped(),
+    ColorRGBA(r=0.25),
+    Char(data=65),
+    Empty(),
+    Text(data="привет"),
+]
+
+
+def type_of(message: Any) -> str:
+    package, kind, *_ = type(message).__module__.split(".")
+    return f"{package}/{kind}/{type(message).__name__}"
+
+
+def plain(value: Any) -> Any:
+    """Arrays as lists with the name of their element's kind."""
+    if isinstance(value, np.ndarray):
+        return (value.dtype.kind, value.tolist())
+    if isinstance(value, dict):
+        return {key: plain(each) for key, each in value.items()}
+    return [plain(each) for each in value] if isinstance(value, list) else value
+
+
+@pytest.mark.parametrize("message", MESSAGES, ids=type_of)
+def test_the_tree_is_that_of_the_live_message(message: Any) -> None:
+    name = type_of(message)
+    decode = bag_decoder(TypeText(name, definition(name)))
+    tree = decode(serialize_message(message))
+    assert plain(tree) == plain(to_tree(message))
+    assert list(tree) == list(to_tree(message))
+
+
+@pytest.mark.parametrize("name", sorted(jazzy().fielddefs))
+def test_every_type_of_jazzys_is_told_to_a_bag_so_that_it_is_understood(name: str) -> None:
+    bag_decoder(TypeText(name, definition(name)))

@@ -1,0 +1,80 @@
+"""Small bags for tests, written by the library's own writer, with no ROS at hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from rosbags.interfaces import (
+    Connection,
+    Qos,
+    QosDurability,
+    QosHistory,
+    QosLiveliness,
+    QosReliability,
+    QosTime,
+)
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+BEGIN_NS = 1_700_000_000_000_000_000
+"""Unix time of the first message, unless another is asked for."""
+SECOND_NS = 1_000_000_000
+BATTERY = "other_msgs/msg/Battery"
+BATTERY_TEXT = "float32 volts\nuint8[] cells\nbool charging\nbyte level\nstring[] names\n"
+FOREVER = QosTime(9223372036, 854775807)
+LATCHED = Qos(
+    QosHistory.KEEP_LAST,
+    1,
+    QosReliability.RELIABLE,
+    QosDurability.TRANSIENT_LOCAL,
+    FOREVER,
+    FOREVER,
+    QosLiveliness.AUTOMATIC,
+    FOREVER,
+    False,
+)
+
+
+def store() -> Typestore:
+    """The types of ROS 2 Jazzy, and one that is installed nowhere."""
+    made = get_typestore(Stores.ROS2_JAZZY)
+    made.register(get_types_from_msg(BATTERY_TEXT, BATTERY))
+    return made
+
+
+def write_bag(
+    folder: Path,
+    seconds: float = 10.0,
+    hz: float = 10.0,
+    storage: StoragePlugin = StoragePlugin.MCAP,
+) -> Path:
+    """A bag with the rising /number, the /battery of an unknown package and a latched /map_name.
+
+    /number counts from 0 at `hz`, from 0 to `seconds`; /battery and /map_name speak once, at 0.
+    """
+    types = store()
+    number, text = types.types["std_msgs/msg/Float32"], types.types["std_msgs/msg/String"]
+    battery = types.types[BATTERY]
+    with Writer(folder, version=9, storage_plugin=storage) as writer:
+
+        def channel(topic: str, kind: str, offers: Sequence[Qos] = ()) -> Connection:
+            return writer.add_connection(topic, kind, typestore=types, offered_qos_profiles=offers)
+
+        numbers = channel("/number", "std_msgs/msg/Float32")
+        batteries = channel("/battery", BATTERY)
+        names = channel("/map_name", "std_msgs/msg/String", [LATCHED])
+
+        def put(connection: Connection, message: object, kind: str, at_s: float) -> None:
+            raw = bytes(types.serialize_cdr(message, kind))
+            writer.write(connection, BEGIN_NS + int(at_s * SECOND_NS), raw)
+
+        put(names, text(data="kitchen"), "std_msgs/msg/String", 0.0)
+        cells = np.array([1, 2, 3], dtype=np.uint8)
+        full = battery(volts=12.5, cells=cells, charging=True, level=7, names=["a", "b"])
+        put(batteries, full, BATTERY, 0.0)
+        for count in range(int(seconds * hz) + 1):
+            put(numbers, number(data=float(count)), "std_msgs/msg/Float32", count / hz)
+    return folder

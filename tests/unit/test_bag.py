@@ -1,0 +1,123 @@
+"""Bags that are no bags, cut short, or foreign: each gets a word that names file and mend."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from graph.bag import open_bag
+from graph.bag_errors import BagError
+from tests.unit.bags import write_bag
+
+
+def said_of(path: Path) -> str:
+    with pytest.raises(BagError) as told:
+        open_bag(path)
+    return str(told.value)
+
+
+def test_a_bag_tells_its_topics_and_times(tmp_path: Path) -> None:
+    with open_bag(write_bag(tmp_path / "walk")) as bag:
+        assert [(each.name, each.messages) for each in bag.topics] == [
+            ("/battery", 1),
+            ("/map_name", 1),
+            ("/number", 101),
+        ]
+        assert (bag.name, bag.length_s, bag.messages_count, bag.cut) == ("walk", 10.0, 103, None)
+
+
+@pytest.mark.parametrize("which", ["walk", "walk/metadata.yaml", "walk/walk.mcap"])
+def test_a_bag_is_opened_by_its_folder_or_its_files(tmp_path: Path, which: str) -> None:
+    write_bag(tmp_path / "walk")
+    with open_bag(tmp_path / which) as bag:
+        assert len(list(bag.messages())) == 103
+
+
+def test_a_folder_without_metadata_is_opened_by_its_file(tmp_path: Path) -> None:
+    (write_bag(tmp_path / "walk") / "metadata.yaml").unlink()
+    with open_bag(tmp_path / "walk") as bag:
+        assert len(list(bag.messages())) == 103
+
+
+def test_what_is_not_there_is_no_bag(tmp_path: Path) -> None:
+    said = said_of(tmp_path / "nothing")
+    assert "nothing is no bag: there is no such file or folder" in said
+    assert "metadata.yaml" in said
+
+
+def test_an_empty_folder_and_another_file_are_no_bags(tmp_path: Path) -> None:
+    assert "neither metadata.yaml nor an .mcap file" in said_of(tmp_path)
+    text = tmp_path / "letter.txt"
+    text.write_text("hello")
+    assert "ends neither in .mcap nor in .db3" in said_of(text)
+
+
+def test_a_file_that_only_looks_like_one_is_named(tmp_path: Path) -> None:
+    fake = tmp_path / "fake.mcap"
+    fake.write_bytes(b"hello, I am no bag")
+    said = said_of(fake)
+    assert "fake.mcap cannot be read" in said
+    assert "ros2 bag reindex" in said
+
+
+def test_an_unknown_storage_is_named(tmp_path: Path) -> None:
+    path = write_bag(tmp_path / "walk") / "metadata.yaml"
+    path.write_text(path.read_text().replace("storage_identifier: mcap", "storage_identifier: x9"))
+    said = said_of(tmp_path / "walk")
+    assert "storage 'x9' is not known" in said
+    assert "ros2 bag convert" in said
+
+
+def test_broken_metadata_are_named(tmp_path: Path) -> None:
+    (write_bag(tmp_path / "walk") / "metadata.yaml").write_text("a: [")
+    with open_bag(tmp_path / "walk") as bag:
+        # The file itself is whole.
+        assert len(list(bag.messages())) == 103
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.99])
+def test_a_bag_cut_anywhere_is_read_as_far_as_it_goes(tmp_path: Path, share: float) -> None:
+    write_bag(tmp_path / "walk", seconds=5000, hz=20)
+    file = tmp_path / "walk" / "walk.mcap"
+    whole = file.read_bytes()
+    file.write_bytes(whole[: int(len(whole) * share)])
+    with open_bag(tmp_path / "walk") as bag:
+        found = list(bag.messages())
+        stamps = [stamp for _topic, stamp, _raw in found]
+        assert 0 < len(found) == bag.messages_count <= 100_003
+        assert stamps == sorted(stamps)
+        assert "was cut short" in str(bag.cut)
+        assert f"{len(found)} messages are whole" in str(bag.cut)
+
+
+def test_a_bag_cut_in_its_first_breath_is_empty_but_opens(tmp_path: Path) -> None:
+    file = write_bag(tmp_path / "walk") / "walk.mcap"
+    file.write_bytes(file.read_bytes()[:60])
+    with open_bag(tmp_path / "walk") as bag:
+        assert bag.messages_count == 0
+        assert list(bag.messages()) == []
+        assert bag.length_s == 0.0
+
+
+def test_a_damaged_middle_is_a_word_when_it_is_come_to(tmp_path: Path) -> None:
+    file = write_bag(tmp_path / "walk", seconds=5000, hz=20) / "walk.mcap"
+    whole = bytearray(file.read_bytes())
+    middle = len(whole) // 3
+    whole[middle : middle + 2000] = b"\xff" * 2000
+    file.write_bytes(whole)
+    with open_bag(tmp_path / "walk") as bag, pytest.raises(BagError, match="cannot be read"):
+        list(bag.messages())
+
+
+def test_several_files_of_one_bag_are_read_though_the_last_is_cut(tmp_path: Path) -> None:
+    folder = write_bag(tmp_path / "walk", seconds=1)
+    second = write_bag(tmp_path / "more", seconds=5000, hz=20) / "more.mcap"
+    data = second.read_bytes()
+    (folder / "walk_1.mcap").write_bytes(data[: len(data) // 2])
+    (folder / "metadata.yaml").unlink()
+    shutil.rmtree(tmp_path / "more")
+    with open_bag(folder) as bag:
+        assert len(list(bag.messages())) == bag.messages_count > 13
+        assert bag.cut
