@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
+from math import nan, sin
 from typing import Any
 
 import pytest
 from textual.pilot import Pilot
 
 from graph.data import EndpointInfo, GraphUpdate, Trouble
-from tests.tui.recorded import TOPICS, RecordedPad, lesson_update, sample
+from tests.tui.recorded import NOW_S, TOPICS, RecordedPad, lesson_update, sample
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
 from tui.app import DeckApp
 from tui.screens.topics import TopicsScreen
@@ -80,6 +81,63 @@ def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
     keys = ("s",) * (7 if look.size[0] >= 100 else 6)
     before = shown("/sensor/sonar_front", update, *keys)
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_endpoints(look: Look, snap_compare: SnapCompare) -> None:
+    """Two mended by words above, a type that differs, then every endpoint with its policies."""
+    kind = "std_msgs/msg/Float32"
+    lidar = EndpointInfo("/lidar", kind, "best_effort", "volatile", 5, "keep_last", 0.1, 0.5, 2.0,
+                         "manual_by_topic")  # fmt: skip
+    front = EndpointInfo("/sonar_front", kind, "reliable", "transient_local", 1, "keep_last")
+    brain = EndpointInfo("/ai_brain", kind, "reliable", "transient_local", liveliness="automatic")
+    other = replace(front, node="/recorder", type_name="std_msgs/msg/Float64")
+    ends = {
+        "published_by": (lidar, front), "subscribed_by": (brain, other), "publishers": 2,
+        "type_names": (kind, "std_msgs/msg/Float64"), "jitter_s": 0.0123, "latency_s": 0.00045,
+        "lost": 12,
+    }  # fmt: skip
+    rows = tuple(
+        replace(row, **ends) if row.name == "/sensor/sonar_front" else row for row in TOPICS
+    )
+    before = shown("/sensor/sonar_front", lesson_update(topics=rows), "e")
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_a_plot_of_two_fields(look: Look, snap_compare: SnapCompare) -> None:
+    """A wave with a gap and a line that steps, each with its letter, its range and its marks."""
+    before = shown("/drive", None, "enter", "down", "down", "down", "down", "m")
+
+    async def plot(pilot: Pilot[Any]) -> None:
+        await shown("/sensor/sonar_front", None, "m")(pilot)
+        await before(pilot)
+        app = pilot.app
+        assert isinstance(app, DeckApp)
+        for step in range(112):
+            app.feed.graph.show(drive_and_sonar(step / 4))  # type: ignore[union-attr]
+            await pilot.pause()
+        for _round in range(3):
+            await pilot.pause()
+
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=plot)
+
+
+def drive_and_sonar(at_s: float) -> GraphUpdate:
+    """One /drive that steps, ten of the sonar in a wave, nan for two seconds."""
+    drive, sonar = lesson_update().samples["/drive"][0], "/sensor/sonar_front"
+    speed = 0.3 if int(at_s / 5) % 2 else -0.2
+    value = {**drive.value, "drive": {**drive.value["drive"], "speed": speed}}  # type: ignore[dict-item]
+    kind = "std_msgs/msg/Float32"
+    wave = tuple(
+        replace(
+            sample(sonar, kind, {"data": nan if 8 <= at_s < 10 else 1.5 + sin(at_s + n / 40)}, 8),
+            received_s=NOW_S + at_s + n / 40,
+        )
+        for n in range(10)
+    )
+    drives = (replace(drive, value=value, received_s=NOW_S + at_s),)
+    return lesson_update(time_s=NOW_S + at_s + 0.25, samples={"/drive": drives, sonar: wave})
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])

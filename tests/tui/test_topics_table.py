@@ -157,7 +157,7 @@ def test_jitter_latency_and_losses_come_all_at_once_and_cut_no_name() -> None:
         if "lost" in places:
             assert places["name"].width >= 23
             assert places["type"].width >= 26
-    assert extra <= {place.column.id for place in placed(130, 23)}
+    assert extra <= {place.column.id for place in placed(131, 23)}
 
 
 def test_the_longest_name_is_whole_before_the_types_get_room() -> None:

@@ -12,7 +12,12 @@ if TYPE_CHECKING:
 
 
 class TopicsAction(Action["TopicsScreen"]):
-    """Something that the screen of topics does."""
+    """Something that the screen of topics does, while its table and message are shown."""
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """Not while the plot covers all."""
+        return not target.is_covered
 
 
 class Filter(TopicsAction):
@@ -28,7 +33,7 @@ class Filter(TopicsAction):
     @classmethod
     def possible(cls, target: TopicsScreen) -> bool | None:
         """Not in the filter itself: there a slash is a slash."""
-        return not target.filter.has_focus
+        return not target.filter.has_focus and not target.is_covered
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:
@@ -42,18 +47,111 @@ class Pause(TopicsAction):
     id = "topics.pause"
     key = "p,з"
     title = N_("Pause")
-    tooltip = N_("Hold the message still, or go on with the newest one.")
+    tooltip = N_("Hold message and plot still, or go on with what is newest.")
     footer = True
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """Always: the plot can be held too."""
+        del target
+        return True
 
     @classmethod
     def label(cls, target: TopicsScreen) -> str:
         """By what it would do now."""
-        return N_("Resume") if target.detail.echo.paused else cls.title
+        return N_("Resume") if target.paused else cls.title
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:
         """Pause, or go on."""
         target.toggle_pause()
+
+
+class Plot(TopicsAction):
+    """The plot beside the rest, alone, or not at all."""
+
+    id = "topics.plot"
+    key = "v,м"
+    title = N_("Plot")
+    tooltip = N_("Show the plot beside the message, then alone, then not at all.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """With a field in it."""
+        return target.plot.has_value
+
+    @classmethod
+    def label(cls, target: TopicsScreen) -> str:
+        """By what it would do now."""
+        return _PLOT_LABELS[target.plot_place.value]
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Show it elsewhere."""
+        target.show_plot_next()
+
+
+_PLOT_LABELS = {"none": N_("Plot"), "beside": N_("Larger"), "alone": N_("Hide plot")}
+
+
+class PlotField(TopicsAction):
+    """A number of the message against time."""
+
+    id = "topics.plot_field"
+    key = "m,ь"
+    title = N_("Plot field")
+    tooltip = N_("Plot the number at the cursor against time, or take it out of the plot.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """Where there is a message with fields to choose from."""
+        return not target.is_covered and (target.detail.front is target.detail.echo or None)
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Take it in, or out."""
+        target.toggle_field()
+
+
+class PlotWindow(TopicsAction):
+    """How many seconds the plot shows."""
+
+    id = "topics.plot_window"
+    key = "w,ц"
+    title = N_("Time span")
+    tooltip = N_("Let the plot show 10, 30 or 60 seconds, or 5 minutes.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """With a plot on the screen."""
+        return target.plot.display
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Show more, or the least."""
+        target.plot.next_window()
+
+
+class ClearPlot(TopicsAction):
+    """Nothing plotted any more."""
+
+    id = "topics.plot_clear"
+    key = "M,Ь"
+    title = N_("Clear plot")
+    tooltip = N_("Take all fields out of the plot.")
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """With a field in it."""
+        return target.plot.has_value
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Take them out."""
+        target.plot.clear()
 
 
 class CopyMessage(TopicsAction):
@@ -83,7 +181,7 @@ class PictureOrTree(TopicsAction):
     @classmethod
     def possible(cls, target: TopicsScreen) -> bool | None:
         """Only for images."""
-        return target.shows_image
+        return target.shows_image and not target.is_covered
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:
@@ -159,6 +257,10 @@ class Housekeeping(TopicsAction):
 TOPICS_ACTIONS = (
     Filter,
     Pause,
+    Plot,
+    PlotField,
+    PlotWindow,
+    ClearPlot,
     CopyMessage,
     PictureOrTree,
     Endpoints,

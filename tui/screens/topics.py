@@ -12,11 +12,13 @@ from textual.widgets import Input, Static
 from graph import images
 from graph.yaml_text import is_cut, to_yaml
 from tui.actions import bindings
+from tui.actions.publish import OpenPublish
 from tui.actions.topics import TOPICS_ACTIONS
 from tui.i18n import N_, _, ngettext
-from tui.screens.base import DeckScreen
+from tui.screens.topics_plotting import PlotPlace, TopicsPlotting
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.topic_detail import TopicDetail
+from tui.widgets.topic_plot import TopicPlot
 from tui.widgets.topic_words import size_text
 from tui.widgets.topics_table import TopicsTable
 from tui.widgets.topics_table_columns import hz_text
@@ -38,7 +40,7 @@ SETTLED_S = 0.12
 the arrow keys asks for none of those passed by."""
 
 
-class TopicsScreen(DeckScreen):
+class TopicsScreen(TopicsPlotting):
     """A table of topics and, of the chosen one, the newest message as a tree or a picture."""
 
     tab: ClassVar[str] = "topics"
@@ -48,7 +50,7 @@ class TopicsScreen(DeckScreen):
         "beside: as a tree that folds, an image as a picture. Where nothing comes, it says why."
     )
     measure_all = True
-    BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS)
+    BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS, OpenPublish)
     DEFAULT_CSS = """
     TopicsScreen {
         #topics-bar { height: 1; }
@@ -80,16 +82,7 @@ class TopicsScreen(DeckScreen):
         with Vertical(id="topics-body"):
             yield TopicsTable()
             yield TopicDetail()
-
-    @property
-    def table(self) -> TopicsTable:
-        """The table of topics."""
-        return self.query_one(TopicsTable)
-
-    @property
-    def detail(self) -> TopicDetail:
-        """The chosen topic."""
-        return self.query_one(TopicDetail)
+            yield TopicPlot()
 
     @property
     def filter(self) -> Input:
@@ -109,6 +102,9 @@ class TopicsScreen(DeckScreen):
     def on_graph_changed(self, message: GraphChanged) -> None:
         """Show rates, and the newest message of the chosen topic."""
         update = message.update
+        self.plot.take(update)
+        if self.feed.front is not self:
+            return
         if update.error:
             self.table.show_words(_("ROS cannot be observed"), update.error)
         self._listed = tuple(row for row in update.topics if self._is_listed(row))
@@ -125,6 +121,7 @@ class TopicsScreen(DeckScreen):
         if self.feed.link is None:
             self._listed = ()
             self.table.show(())
+            self.plot.clear()
             self._label()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
@@ -132,10 +129,12 @@ class TopicsScreen(DeckScreen):
         del message
         self._label()
         self.detail.relabel()
+        self.plot.words_changed()
 
     @on(TopicsTable.Chosen)
     def _chosen(self) -> None:
         self.detail.show_topic(self.table.chosen_row)
+        self.mark_plotted()
         self.refresh_bindings()
         if self._settling is not None:
             self._settling.stop()
@@ -164,7 +163,9 @@ class TopicsScreen(DeckScreen):
         self.table.focus()
 
     def key_escape(self) -> None:
-        """Leave the filter and show every topic again, or leave the message."""
+        """Leave the filter and show every topic again, or leave the message or the plot."""
+        if self.plot_place is PlotPlace.ALONE:
+            self.show_plot(PlotPlace.BESIDE)
         if self.filter.has_focus or self.focused is self.table:
             self.filter.value = ""
         self.table.focus()
@@ -177,10 +178,6 @@ class TopicsScreen(DeckScreen):
         """Show or hide topics of ROS itself."""
         order = self.table.order
         self.table.reorder(replace(order, housekeeping=not order.housekeeping))
-
-    def toggle_pause(self) -> None:
-        """Hold the message still, or go on."""
-        self.detail.echo.pause(not self.detail.echo.paused)
 
     @property
     def shows_image(self) -> bool:

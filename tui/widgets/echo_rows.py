@@ -13,7 +13,9 @@ from textual.strip import Strip
 from tui.widgets.words import cut, word_strips
 
 if TYPE_CHECKING:
-    from tui.widgets.echo_lines import EchoLine
+    from collections.abc import Mapping
+
+    from tui.widgets.echo_lines import EchoLine, Path
 
 OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "
 INDENT = 2
@@ -29,6 +31,7 @@ class EchoRows(ScrollView, can_focus=True):
         "echo-tree--text",
         "echo-tree--bytes",
         "echo-tree--note",
+        "echo-tree--mark",
         "echo-tree--cursor",
     }
     DEFAULT_CSS = """
@@ -38,6 +41,7 @@ class EchoRows(ScrollView, can_focus=True):
         &> .echo-tree--text { color: $text-success; }
         &> .echo-tree--bytes { color: $text-warning; }
         &> .echo-tree--note { color: $foreground; text-style: italic dim; }
+        &> .echo-tree--mark { color: $text-accent; text-style: bold; }
         &> .echo-tree--cursor {
             color: $block-cursor-foreground; background: $block-cursor-background;
         }
@@ -49,6 +53,8 @@ class EchoRows(ScrollView, can_focus=True):
         self._lines: list[EchoLine] = []
         self._cursor = 0
         self._words = ("", "")
+        self._marks: Mapping[Path, str] = {}
+        """Letters behind the keys of lines, by their paths."""
 
     def render_line(self, y: int) -> Strip:
         """One line of the tree, or of the words."""
@@ -94,10 +100,12 @@ class EchoRows(ScrollView, can_focus=True):
             kind = base + self.get_component_rich_style(f"echo-tree--{line.kind}", partial=True)
         elif line.kind == "branch":
             kind = base + self.get_component_rich_style("echo-tree--note", partial=True)
+        mark = base + self.get_component_rich_style("echo-tree--mark", partial=True)
         return [
             Segment(_margin(line), base),
             Segment(f"{line.label} " if line.label else "", key),
             Segment(line.text, kind),
+            Segment(f"  ◂ {self._marks[line.path]}" if line.path in self._marks else "", mark),
         ]
 
 

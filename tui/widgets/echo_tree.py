@@ -104,6 +104,18 @@ class EchoTree(EchoRows):
             self._flatten()
         self.post_message(self.PauseChanged(paused))
 
+    @property
+    def at_cursor(self) -> Path | None:
+        """The path of the line with the cursor."""
+        line = self._line_at(self._cursor)
+        return None if line is None else line.path
+
+    def mark(self, marks: Mapping[Path, str]) -> None:
+        """Write these letters behind the lines at these paths."""
+        if marks != self._marks:
+            self._marks = dict(marks)
+            self.refresh()
+
     def relabel(self) -> None:
         """Draw again, after the language changed."""
         self._flatten()

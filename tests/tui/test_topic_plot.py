@@ -1,0 +1,327 @@
+"""The plot: numbers of any field, gaps, round axes, bounded memory, and what stands on screen."""
+
+from __future__ import annotations
+
+import math
+import tracemalloc
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from textual.app import App, ComposeResult
+
+from graph.data import GraphUpdate, Sample
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
+from tests.tui.snapshots import Look, settle
+from tui.screens.topics import TopicsScreen
+from tui.screens.topics_plotting import PlotPlace
+from tui.widgets.topic_plot import TopicPlot
+from tui.widgets.topic_plot_axis import axis_for, steadied
+from tui.widgets.topic_plot_curve import curve
+from tui.widgets.topic_plot_field import PlotField
+from tui.widgets.topic_plot_history import SLOT_S, History
+from tui.widgets.topic_plot_legend import number_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+FLOAT = "std_msgs/msg/Float32"
+DATA = PlotField("/number", ("data",))
+
+
+class PlotApp(App[None]):
+    """A bare app with nothing but the plot."""
+
+    def compose(self) -> ComposeResult:
+        """The plot fills the screen."""
+        yield TopicPlot()
+
+    @property
+    def plot(self) -> TopicPlot:
+        """The plot."""
+        return self.query_one(TopicPlot)
+
+    def text(self) -> str:
+        """What is drawn."""
+        return "\n".join(
+            self.plot.render_line(y).text.rstrip() for y in range(self.plot.size.height)
+        )
+
+
+def said(topic: str, at_s: float, **value: Any) -> Sample:
+    return Sample(topic, FLOAT, at_s, 0.0, 8, value)
+
+
+def update(at_s: float, *samples: Sample) -> GraphUpdate:
+    by_topic: dict[str, tuple[Sample, ...]] = {}
+    for sample in samples:
+        by_topic[sample.topic] = (*by_topic.get(sample.topic, ()), sample)
+    return GraphUpdate(at_s, samples=by_topic)
+
+
+def history(numbers: Iterable[tuple[float, float | None]]) -> History:
+    kept = History()
+    for at_s, number in numbers:
+        kept.add(NOW_S + at_s, number)
+    return kept
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "number"),
+    [
+        (("data",), {"data": 1.5}, 1.5),
+        (("data",), {"data": True}, 1.0),
+        (("data",), {"data": np.float32(0.5)}, 0.5),
+        (("data",), {"data": 10**400}, math.inf),
+        (("ranges", 3), {"ranges": np.arange(9, dtype=np.float32)}, 3.0),
+        (("ranges", 9), {"ranges": np.arange(9)}, None),
+        (("ranges",), {"ranges": np.arange(1)}, None),
+        (("pose", "x"), {"pose": {"x": -2}}, -2.0),
+        (("joints", 1, "x"), {"joints": [{"x": 1}, {"x": 2}]}, 2.0),
+        (("data", 0), {"data": "5"}, None),
+        (("data",), {"data": "5"}, None),
+        (("data",), {"data": b"5"}, None),
+        (("gone",), {"data": 5}, None),
+        (("data", "deeper"), {"data": 5}, None),
+    ],
+)
+def test_any_number_of_a_message_can_be_had(
+    path: tuple[str | int, ...], value: Any, number: float | None
+) -> None:
+    assert PlotField("/a", path).number(value) == number
+
+
+def test_a_field_is_named_as_one_writes_it() -> None:
+    assert PlotField("/a", ("joints", 1, "x")).name == "joints[1].x"
+
+
+def test_a_history_knows_the_range_of_its_window_only() -> None:
+    kept = history([(0, 99.0), (20, -1.0), (21, 3.0), (22, math.nan), (23, math.inf)])
+    assert kept.range(NOW_S + 25, 10.0) == (-1.0, 3.0)
+    assert kept.range(NOW_S + 25, 60.0) == (-1.0, 99.0)
+    assert kept.range(NOW_S + 100, 10.0) is None
+    assert kept.last == math.inf
+
+
+def test_what_is_not_finite_leaves_a_gap_and_so_does_silence() -> None:
+    axis = axis_for(0, 2, 2)
+    whole = history([(t / 2, 1.0) for t in range(20)])
+    assert curve(whole.columns(NOW_S + 10, 10.0, 40), axis, 2).any(axis=0)[1:19].all()
+    broken = history([(t / 2, math.nan if 6 <= t < 14 else 1.0) for t in range(20)])
+    drawn = curve(broken.columns(NOW_S + 10, 10.0, 40), axis, 2).any(axis=0)
+    assert drawn[2:5].all()
+    assert not drawn[7:12].any()
+    assert drawn[15:18].all()
+    silent = history([*((t / 2, 1.0) for t in range(5)), (9, 1.0), (9.5, 1.0)])
+    assert not curve(silent.columns(NOW_S + 10, 10.0, 40), axis, 2).any(axis=0)[8:16].any()
+
+
+def test_a_slow_topic_is_a_line_all_the_same() -> None:
+    slow = history([(t * 10, 1.0) for t in range(6)])
+    drawn = curve(slow.columns(NOW_S + 50, 60.0, 80), axis_for(0, 2, 2), 2)
+    assert drawn.any(axis=0)[8:39].all()
+
+
+def test_a_steep_line_has_no_holes() -> None:
+    steep = history([(t / 2, 0.0 if t % 2 else 100.0) for t in range(20)])
+    drawn = curve(steep.columns(NOW_S + 10, 10.0, 40), axis_for(0, 100, 4), 12)
+    assert drawn.any(axis=1).all()
+
+
+def test_a_curve_is_not_redrawn_otherwise_while_it_moves() -> None:
+    rough = history([(t / 10, math.sin(t * 7)) for t in range(100)])
+    axis = axis_for(-1, 1, 4)
+    before = curve(rough.columns(NOW_S + 10, 10.0, 40), axis, 5)
+    after = curve(rough.columns(NOW_S + 10.5, 10.0, 40), axis, 5)
+    assert (before[:, 2:-1] == after[:, 1:-2]).all()
+
+
+def test_a_peak_between_two_dots_is_not_lost() -> None:
+    peak = history([*((t / 100, 0.0) for t in range(3000)), (30.005, 5.0), (30.01, 0.0)])
+    assert np.nanmax(peak.columns(NOW_S + 300, 300.0, 40).high) == 5.0
+
+
+def test_memory_is_bounded_however_much_comes() -> None:
+    kept = History()
+    tracemalloc.start()
+    for n in range(60_000):
+        kept.add(NOW_S + n / 100, float(n))
+    grown, _peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert grown < 20_000
+    assert kept.range(NOW_S + 600, 300.0) == pytest.approx((30_000, 59_999), abs=5)
+
+
+def test_a_clock_that_is_set_back_begins_anew() -> None:
+    kept = history([(100, 5.0), (0, 1.0), (1, 2.0)])
+    assert kept.range(NOW_S + 1, 300.0) == (1.0, 2.0)
+    near = history([(1, 5.0), (1 - SLOT_S / 2, 6.0)])
+    assert near.range(NOW_S + 1, 300.0) == (5.0, 6.0)
+
+
+@pytest.mark.parametrize(
+    ("low", "high"),
+    [(0, 1), (-0.2, 2.82), (1e-7, 3e-7), (-1e12, 5e13), (5, 5), (0, 0), (-3, -3), (1e300, 1e308)],
+)
+@pytest.mark.parametrize("ticks", [1, 3, 10])
+def test_axes_hold_their_numbers_and_have_round_ticks(low: float, high: float, ticks: int) -> None:
+    axis = axis_for(low, high, ticks)
+    bound = 1e15
+    assert axis.low <= max(-bound, min(low, bound))
+    assert axis.high >= min(high, bound) * (1 - 1e-12)
+    assert 1 <= len(axis.ticks) <= ticks + 2
+    labels = [axis.label(tick) for tick in axis.ticks]
+    assert len(set(labels)) == len(labels)
+    assert all(len(label) <= 10 for label in labels)
+
+
+def test_an_axis_grows_at_once_and_shrinks_late() -> None:
+    axis = steadied(None, 0.0, 9.0, 4)
+    assert steadied(axis, 1.0, 7.0, 4) is axis
+    assert steadied(axis, 0.0, 11.0, 4).high >= 11
+    assert steadied(axis, 1.0, 1.5, 4).high <= 2
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(None, "–"), (math.nan, "nan"), (-math.inf, "-inf"), (0.3, "0.3000"), (1e9, "1.00e+09")],
+)
+def test_numbers_of_the_legend_are_short(number: float | None, text: str) -> None:
+    assert number_text(number) == text
+
+
+async def test_two_fields_have_letters_a_range_and_their_own_look() -> None:
+    app = PlotApp()
+    async with app.run_test(size=(90, 24)):
+        assert app.plot.toggle(DATA)
+        assert app.plot.toggle(PlotField("/other", ("pose", "x")))
+        for n in range(40):
+            at_s = NOW_S + n / 4
+            other = said("/other", at_s, pose={"x": 5.0 - n / 10})
+            app.plot.take(update(at_s, said("/number", at_s, data=n / 10), other))
+        text = app.text()
+        assert "Plot · 30 s" in text
+        assert "A /number data" in text
+        assert "3.9000    0.0000    3.9000" in text
+        assert "B /other pose.x" in text
+        assert text.splitlines()[-1].endswith("now")
+        assert app.plot.topics == {"/number", "/other"}
+        assert not app.plot.toggle(DATA)
+        assert "/number" not in app.text()
+        assert "B /other pose.x" in app.text()
+
+
+async def test_a_pause_holds_the_picture_and_keeps_what_comes() -> None:
+    app = PlotApp()
+    async with app.run_test(size=(90, 24)):
+        app.plot.toggle(DATA)
+        app.plot.take(update(NOW_S, said("/number", NOW_S, data=1.0)))
+        app.plot.pause(True)
+        held = app.text()
+        assert "PAUSED" in held
+        app.plot.take(update(NOW_S + 5, said("/number", NOW_S + 5, data=9.0)))
+        assert app.text() == held
+        app.plot.pause(False)
+        assert "9.0000" in app.text()
+
+
+async def test_no_more_fields_than_letters_and_letters_are_given_again() -> None:
+    app = PlotApp()
+    async with app.run_test(size=(90, 24)):
+        for n in range(6):
+            assert app.plot.toggle(PlotField("/a", ("data", n)))
+        assert not app.plot.toggle(PlotField("/a", ("data", 9)))
+        app.plot.toggle(PlotField("/a", ("data", 2)))
+        assert app.plot.toggle(PlotField("/a", ("data", 9)))
+        assert app.plot.marks("/a")["data", 9] == "C"
+
+
+async def test_a_field_that_is_gone_says_so() -> None:
+    app = PlotApp()
+    async with app.run_test(size=(90, 24)):
+        app.plot.toggle(PlotField("/a", ("ranges", 3)))
+        app.plot.take(update(NOW_S, said("/a", NOW_S, ranges=np.arange(2))))
+        assert "no number there" in app.text()
+
+
+@pytest.mark.parametrize("size", [(1, 1), (4, 3), (12, 5), (40, 8)])
+async def test_any_size_is_survived(size: tuple[int, int]) -> None:
+    app = PlotApp()
+    async with app.run_test(size=size):
+        for n in range(6):
+            app.plot.toggle(PlotField("/\x1b[2J[red]", ("data" * 50, n)))
+        app.plot.take(update(NOW_S, said("/\x1b[2J[red]", NOW_S, **{"data" * 50: [1.0] * 6})))
+        assert "\x1b" not in app.text()
+
+
+@pytest.fixture
+async def stage() -> Any:
+    graph = RecordedGraph()
+    look = Look((120, 40), "en")
+    app = look.app("topics", RecordedPad(graph=graph))
+    async with app.run_test(size=look.size) as pilot:
+        await settle(pilot)
+        screen = app.screen
+        assert isinstance(screen, TopicsScreen)
+        screen.table.choose("/drive")
+        await pilot.pause()
+        graph.show(lesson_update())
+        await pilot.pause()
+        yield screen, pilot, graph
+
+
+async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(stage: Any) -> None:
+    screen, pilot, graph = stage
+    await pilot.press("m")
+    assert screen.plot_place is PlotPlace.NONE
+    await pilot.press("enter", "down", "down", "m")
+    await pilot.pause()
+    assert screen.plot.fields == (PlotField("/drive", ("drive", "steering_angle")),)
+    assert screen.plot.display
+    assert "/drive" in graph.followed
+    assert any("◂ A" in screen.detail.echo.render_line(y).text for y in range(6))
+    screen.table.choose("/sensor/sonar_front")
+    await pilot.pause()
+    assert screen.plot.fields
+    assert "/drive" in graph.followed
+    await pilot.press("4")
+    await settle(pilot)
+    assert "/drive" in graph.followed
+    sample = replace(lesson_update().samples["/drive"][0], received_s=NOW_S + 4)
+    graph.show(lesson_update(time_s=NOW_S + 4, samples={"/drive": (sample,)}))
+    await pilot.press("2")
+    await pilot.pause()
+    screen.table.choose("/drive")
+    await pilot.pause()
+    graph.show(lesson_update())
+    await pilot.pause()
+    screen.detail.echo.focus()
+    await pilot.press("home", "down", "down", "m")
+    await pilot.pause()
+    assert not screen.plot.fields
+    assert screen.plot_place is PlotPlace.NONE
+    assert "/drive" not in graph.followed
+
+
+async def test_the_plot_goes_beside_alone_and_away(stage: Any) -> None:
+    screen, pilot, _graph = stage
+    await pilot.press("enter", "down", "down", "m", "v")
+    await pilot.pause()
+    assert screen.is_covered
+    assert not screen.table.display
+    await pilot.press("w", "p")
+    assert screen.plot.window_s == 60.0
+    assert screen.plot.paused
+    await pilot.press("escape")
+    await pilot.pause()
+    assert screen.plot_place is PlotPlace.BESIDE
+    assert screen.table.has_focus
+    await pilot.press("p")
+    assert not screen.plot.paused
+    await pilot.press("v", "v")
+    await pilot.pause()
+    assert not screen.plot.display
+    assert screen.plot.fields
+    await pilot.press("M")
+    assert not screen.plot.fields

@@ -1,0 +1,59 @@
+"""A field of a topic that is plotted: its name, and its number in a message."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple, SupportsFloat
+
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from graph.data import Value
+
+LONGEST = 200
+
+
+class PlotField(NamedTuple):
+    """One number in the messages of one topic."""
+
+    topic: str
+    path: tuple[str | int, ...]
+    """Field names and indexes: `("ranges", 3)`."""
+
+    @property
+    def name(self) -> str:
+        """The path as one writes it: `drive.speed`, `ranges[3]`."""
+        parts = [f"[{step}]" if isinstance(step, int) else f".{step}" for step in self.path]
+        return plain("".join(parts).removeprefix("."), LONGEST)
+
+    def number(self, message: Mapping[str, Value]) -> float | None:
+        """The field's number, nan and infinities too; None where there is none."""
+        value: object = message
+        for step in self.path:
+            if isinstance(value, Mapping):
+                if step not in value:
+                    return None
+                value = value[step]
+            elif isinstance(step, int) and _is_indexed(value):
+                if not 0 <= step < len(value):  # type: ignore[arg-type]
+                    return None
+                value = value[step]  # type: ignore[index]
+            else:
+                return None
+        return as_number(value)
+
+
+def as_number(value: object) -> float | None:
+    """A number or a truth value as a float; None for anything else."""
+    if not isinstance(value, SupportsFloat) or hasattr(value, "__len__"):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def _is_indexed(value: object) -> bool:
+    """Whether it is an array: of numbers (numpy) or of anything else, but no text."""
+    return hasattr(value, "__len__") and not isinstance(value, (str, bytes))

@@ -1,0 +1,138 @@
+"""What a plotted field was over the last minutes, in a fixed amount of memory."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Numbers: TypeAlias = NDArray[np.float64]
+
+SLOT_S = 0.025
+"""Finer than a dot of the shortest window on the widest terminal."""
+SLOTS = 12_288
+"""Five minutes and a little: a field takes a third of a megabyte, however fast its topic is."""
+QUIET_S = 3.0
+QUIET_PERIODS = 3.0
+"""After so long without a message the line is broken (the rule of the rates)."""
+
+
+class Columns(NamedTuple):
+    """A history seen through a window, by dots from left to right; nan where nothing came."""
+
+    low: Numbers
+    high: Numbers
+    last: Numbers
+    broken: NDArray[np.bool_]
+    """Whether the line does not reach this dot from the one with a number before it."""
+
+
+class History:
+    """The least, greatest and last number of each slot of time, and where the line is broken."""
+
+    def __init__(self) -> None:
+        self._begin()
+
+    def _begin(self) -> None:
+        self._low = np.full(SLOTS, np.nan)
+        self._high = np.full(SLOTS, np.nan)
+        self._last = np.full(SLOTS, np.nan)
+        self._broken = np.zeros(SLOTS, np.bool_)
+        self._newest = -1
+        """Number of the newest slot, counted from the epoch; -1 before the first message."""
+        self._time_s = 0.0
+        self._period_s = math.inf
+        self._gap = False
+        self.last: float | None = None
+        """The newest number, finite or not; None before the first."""
+
+    def add(self, time_s: float, number: float | None) -> None:
+        """Take a number that came at this unix time; None: the message had none.
+
+        One that is older than the newest is of a clock that was set back: all begins anew.
+        """
+        slot = int(time_s / SLOT_S)
+        if slot < self._newest - 1:
+            self._begin()
+        slot = max(slot, self._newest)
+        self._go_to(slot)
+        self._note_pause(time_s)
+        self.last = number
+        if number is None or not math.isfinite(number):
+            self._gap = True
+            return
+        at = slot % SLOTS
+        self._broken[at] |= self._gap
+        self._gap = False
+        self._low[at] = np.fmin(self._low[at], number)
+        self._high[at] = np.fmax(self._high[at], number)
+        self._last[at] = number
+
+    def range(self, end_s: float, window_s: float) -> tuple[float, float] | None:
+        """The least and the greatest number in the window that ends at this time."""
+        first, after = self._slots(end_s, window_s)
+        low, high = self._part(self._low, first, after), self._part(self._high, first, after)
+        seen = np.isfinite(low)
+        return (float(low[seen].min()), float(high[seen].max())) if seen.any() else None
+
+    def columns(self, end_s: float, window_s: float, count: int) -> Columns:
+        """The window that ends at this time as so many dots."""
+        first, after = self._slots(end_s, window_s)
+        width_s = window_s / count
+        # Counted from the epoch: a dot keeps its slots while the window moves by whole dots.
+        starts = [round((end_s - (count - n) * width_s) / SLOT_S) for n in range(count)]
+        low, high = self._part(self._low, first, after), self._part(self._high, first, after)
+        last, broken = self._part(self._last, first, after), self._part(self._broken, first, after)
+        edges = np.clip(np.array([*starts, after]) - first, 0, after - first)
+        out = Columns(
+            np.full(count, np.nan), np.full(count, np.nan), np.full(count, np.nan),
+            np.zeros(count, np.bool_),
+        )  # fmt: skip
+        seen = np.flatnonzero(np.isfinite(low))
+        if not seen.size:
+            return out
+        dots = np.clip(np.searchsorted(edges, seen, "right") - 1, 0, count - 1)
+        np.fmin.at(out.low, dots, low[seen])
+        np.fmax.at(out.high, dots, high[seen])
+        out.last[dots] = last[seen]
+        np.logical_or.at(out.broken, dots, broken[seen])
+        return out
+
+    def _slots(self, end_s: float, window_s: float) -> tuple[int, int]:
+        after = int(end_s / SLOT_S) + 1
+        return after - min(SLOTS, int(window_s / SLOT_S)), after
+
+    def _part(self, ring: NDArray[np.generic], first: int, after: int) -> NDArray[np.generic]:
+        """The slots from `first` to before `after`; nothing where they are too old or to come."""
+        slots = np.arange(first, after)
+        part = ring[slots % SLOTS]
+        known = (slots <= self._newest) & (slots > self._newest - SLOTS)
+        blank = False if ring.dtype == np.bool_ else np.nan
+        return np.where(known, part, blank)
+
+    def _go_to(self, slot: int) -> None:
+        """Blank the slots between the newest and this one."""
+        if self._newest < 0:
+            self._newest = slot
+        steps = min(SLOTS, slot - self._newest)
+        if steps > 0:
+            fresh = np.arange(slot - steps + 1, slot + 1) % SLOTS
+            for ring in (self._low, self._high, self._last):
+                ring[fresh] = np.nan
+            self._broken[fresh] = False
+            self._newest = slot
+
+    def _note_pause(self, time_s: float) -> None:
+        if self._time_s:
+            passed_s = time_s - self._time_s
+            if passed_s > max(QUIET_S, QUIET_PERIODS * self._period_s) and math.isfinite(
+                self._period_s
+            ):
+                self._gap = True
+            else:
+                self._period_s = passed_s
+        self._time_s = time_s
