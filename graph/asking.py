@@ -60,12 +60,22 @@ class Asking:
     def start_publishing(
         self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
     ) -> Future[int]:
-        """Publish a message again and again; the future tells its number, or fails."""
-        raise NotImplementedError(topic, type_name, value, hz)
+        """Publish a message at 0.1 to 100 Hz until it is stopped, or the observer is.
+
+        The future tells its number; it raises PublishError, UnknownTypeError, FieldError or
+        ObserverError.
+        """
+        order = Ask[int](
+            lambda station, future: station.publications.start(
+                topic, type_name, value, hz, station.ends(topic), future
+            )
+        )
+        self._order(order)
+        return order.future
 
     def stop_publishing(self, number: int) -> None:
         """Publish that one no more; updates do not tell of it any longer."""
-        raise NotImplementedError(number)
+        self._order(Do(lambda station: station.publications.stop(number)))
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
         """Send a goal; the future tells its number, and updates how it goes.

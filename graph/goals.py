@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from graph.data import ActionRow, Value
-    from graph.goals_line import Heard
 
 LEAVE_WITHIN_S = 1.5
 """How long an observer that is stopped waits for servers to agree to cancel."""
@@ -90,9 +89,7 @@ class Goals:
         if not self._lives:
             return False
         for line in list(self._lines.values()):
-            heard = line.take()
-            for life in [life for life in self._lives.values() if life.line is line]:
-                _go_on(life, heard)
+            _go_on(line, [life for life in self._lives.values() if life.line is line])
         for number, life in list(self._lives.items()):
             if life.is_forgotten and life.is_settled:
                 del self._lives[number]
@@ -135,9 +132,14 @@ class Goals:
                 del self._lines[key]
 
 
-def _go_on(life: GoalLife, heard: Heard) -> None:
+def _go_on(line: ActionLine, lives: list[GoalLife]) -> None:
+    going = lives
     try:
-        life.hear(heard)
-        life.act()
-    except Exception as error:  # noqa: BLE001 - one goal's odd server must not end the others
-        life.fail(str(error))
+        heard = line.take()
+        for life in lives:
+            going = [life]
+            life.hear(heard)
+            life.act()
+    except Exception as error:  # noqa: BLE001 - one odd server must not end what else is under way
+        for life in going:
+            life.fail(str(error))

@@ -127,7 +127,7 @@ class ActionLine:
 
 def _all(take: Any, kind: type[Any]) -> list[tuple[int, Any]]:  # noqa: ANN401 - a method of C
     """Take responses until there are none."""
-    taken = []
+    taken: list[tuple[int, Any]] = []
     while True:
         number, response = take(kind)
         if response is None:

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-PENDING_S = 0.01
-"""How often a call or a message under way is looked at."""
 STOP_WITHIN_S = 5.0
 
 
@@ -116,7 +114,7 @@ class Observer(Asking):
         while not self._stopping:
             self._carry_out_orders(station)
             try:
-                under_way = station.step()
+                due_s = station.step()
                 now_s = time.monotonic()
                 if now_s >= next_look_s or self._interest is not interest:
                     interest = self._interest
@@ -128,9 +126,9 @@ class Observer(Asking):
                 logger.exception("a look at the graph failed")
                 error_update = GraphUpdate(time.time(), error=f"the ROS graph: {error}")
                 self._tell(on_update, error_update)
-                next_look_s, under_way = time.monotonic() + LOOK_AT_GRAPH_S, False
-            wait_s = next_look_s - time.monotonic()
-            if self._wake.wait(max(0.0, min(wait_s, PENDING_S) if under_way else wait_s)):
+                next_look_s, due_s = time.monotonic() + LOOK_AT_GRAPH_S, None
+            until_s = next_look_s if due_s is None else min(next_look_s, due_s)
+            if self._wake.wait(max(0.0, until_s - time.monotonic())):
                 self._wake.clear()
 
     def _look(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from graph.making import to_message
 from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
 from graph.types import load_message
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +33,12 @@ DEPTH = 200
 
 
 class PublishError(Exception):
-    """The message cannot be published; str() says why."""
+    """The message cannot be published; str() says why, `words` so that it can be translated."""
+
+    def __init__(self, words: str) -> None:
+        """Say why, as `graph.words.say` makes it."""
+        super().__init__(words)
+        self.words = words
 
 
 @dataclass
@@ -137,9 +143,7 @@ class Outbox:
                 line.waiting.popleft()[1].set_exception(error)
 
     def _line(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> _Line:
-        others = ends.type_names if ends and not ends.is_deserted else ()
-        if others and type_name not in others:
-            raise PublishError(f"{topic} carries {', '.join(others)}, not {type_name}")
+        refuse_other_type(topic, type_name, ends)
         subscribers = ends.subscribers if ends else ()
         qos = Qos(RELIABLE, TRANSIENT_LOCAL) if latched else to_be_heard(subscribers)
         key = (topic, type_name, latched)
@@ -154,18 +158,38 @@ class Outbox:
         return self._lines[key]
 
     def _open(self, topic: str, type_name: str, qos: Qos, expected: int) -> _Line:
-        from rclpy.event_handler import PublisherEventCallbacks
-
         cls = load_message(type_name)
-        try:
-            publisher = self._node.create_publisher(
-                cls,
-                topic,
-                profile(qos, 1 if qos.durability == TRANSIENT_LOCAL else DEPTH),
-                event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
-            )
-        except Exception as error:
-            raise PublishError(f"{topic} cannot be published: {error}") from error
+        publisher = open_publisher(self._node, topic, cls, qos)
         now_s = time.monotonic()
         patience_ends_s = max(now_s + MATCH_WITHIN_S, self._born_s + DISCOVERY_S)
         return _Line(publisher, cls, qos, expected, patience_ends_s)
+
+
+def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> None:
+    """Raise PublishError if others know the topic, and none of them by this type."""
+    others = ends.type_names if ends and not ends.is_deserted else ()
+    if others and type_name not in others:
+        raise PublishError(
+            say(
+                "{topic} carries {types}, not {type}",
+                topic=topic,
+                types=", ".join(others),
+                type=type_name,
+            )
+        )
+
+
+def open_publisher(node: Node, topic: str, cls: type[Any], qos: Qos) -> Publisher:
+    """Make a publisher. Raises PublishError for a name that is none."""
+    from rclpy.event_handler import PublisherEventCallbacks
+
+    try:
+        return node.create_publisher(
+            cls,
+            topic,
+            profile(qos, 1 if qos.durability == TRANSIENT_LOCAL else DEPTH),
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+        )
+    except Exception as error:
+        words = say("{topic} cannot be published: {error}", topic=topic, error=str(error))
+        raise PublishError(words) from error

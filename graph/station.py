@@ -11,6 +11,7 @@ from graph.goals import Goals
 from graph.interest import Interest
 from graph.outbox import Outbox
 from graph.parameters import Parameters
+from graph.publications import Publications
 from graph.scan import Scan, Signature, is_complete, scan, signature
 from graph.taps import Taps
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from graph.scan import TopicEnds
 
 LOOK_AT_GRAPH_S = 0.25
+PENDING_S = 0.01
+"""How often a call or a message under way is looked at."""
 RESCAN_S = 3.0
 """A node that was replaced by its like between two looks is noticed after this long."""
 
@@ -31,6 +34,7 @@ class Station:
         self.calls = Calls(ros.node)
         self.outbox = Outbox(ros.node)
         self.goals = Goals(ros.node)
+        self.publications = Publications(ros.node)
         self.parameters = Parameters(self.calls, self._known_node, self._known_service)
         self._ros = ros
         self._taps = Taps(ros.node)
@@ -71,18 +75,27 @@ class Station:
             self._taps.tune(*tuned)
         return self._update(self._taps.drain())
 
-    def step(self) -> bool:
-        """Go on with calls and messages under way; tell whether there are any."""
+    def step(self) -> float | None:
+        """Go on with what is under way; return when to go on with it, on the monotonic clock.
+
+        None if nothing needs it before the next look.
+        """
+        # A message that is due goes out before all else.
+        due_s = self.publications.step()
         calling = self.calls.step()
         # What has just been answered leads to the next question.
         talking = self.parameters.step()
         pursuing = self.goals.step()
-        publishing = self.outbox.step()
-        return calling or talking or pursuing or publishing
+        sending = self.outbox.step()
+        if not (calling or talking or pursuing or sending):
+            return due_s
+        soon_s = time.monotonic() + PENDING_S
+        return soon_s if due_s is None else min(due_s, soon_s)
 
     def close(self, error: Exception) -> None:
-        """Have goals cancelled, let all else that is under way fail, and leave the graph."""
+        """Have goals cancelled, let everything else that is under way fail, and leave the graph."""
         try:
+            self.publications.close()
             self.goals.close()
         finally:
             self.parameters.fail(error)
@@ -108,15 +121,16 @@ class Station:
         seen = scan(self._ros.node, self._ros.name)
         if seen != self._scan:
             self._scan = seen
+            self.publications.tune(seen.topics)
 
     def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
         rows = self._taps.rows()
         seen = self._scan
-        goals = self.goals.rows()
-        told = (rows, seen.nodes, seen.services, seen.actions, goals)
+        doing = (self.goals.rows(), self.publications.rows())
+        told = (rows, seen.nodes, seen.services, seen.actions, *doing)
         if not samples and told == self._told:
             return None
         self._told = told
         return GraphUpdate(
-            time.time(), rows, samples, seen.nodes, seen.services, seen.actions, goals
+            time.time(), rows, samples, seen.nodes, seen.services, seen.actions, *doing
         )
