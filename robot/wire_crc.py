@@ -1,0 +1,18 @@
+"""The checks that serial frames carry."""
+
+from __future__ import annotations
+
+import binascii
+
+
+def crc16(data: bytes) -> int:
+    """CRC-16/IBM-3740, also called CCITT-FALSE: polynomial 1021, begins with FFFF, 0..65535.
+
+    In lines of up to 4 KiB it tells every change of one, two or three bits.
+    """
+    return binascii.crc_hqx(data, 0xFFFF)
+
+
+def sum8(data: bytes) -> int:
+    """The low byte of the sum, 0..255: tells every change of one bit, and few others."""
+    return sum(data) & 0xFF
