@@ -44,10 +44,16 @@ def prefilled(type_name: str) -> str:
     For `pkg/msg/X`, for the request of `pkg/srv/X`, for the goal of `pkg/action/X`. Raises
     UnknownTypeError.
     """
-    cls = form_class(type_name)
-    tree = to_tree(cls())
-    remarks = dict(_remarks(cls, tree, ""))
-    return to_yaml(tree, remark=lambda path: remarks.get(path, ""))
+    return filled(type_name, to_tree(form_class(type_name)()))
+
+
+def filled(type_name: str, tree: Mapping[str, Value], most: int | None = None) -> str:
+    """Return YAML of a whole message, with the type of each field in a comment.
+
+    Arrays are cut at `most` elements; a comment tells. Raises UnknownTypeError.
+    """
+    remarks = dict(_remarks(form_class(type_name), tree, "", most))
+    return to_yaml(tree, most, lambda path: remarks.get(path, ""))
 
 
 def check(type_name: str, text: str) -> Mapping[str, Value]:
@@ -70,7 +76,12 @@ def check(type_name: str, text: str) -> Mapping[str, Value]:
     return tree
 
 
-def _remarks(cls: type[Any], tree: Any, prefix: str) -> Iterator[tuple[str, str]]:  # noqa: ANN401 - a message's tree
+def _remarks(
+    cls: type[Any],
+    tree: Any,  # noqa: ANN401 - a message's tree
+    prefix: str,
+    most: int | None,
+) -> Iterator[tuple[str, str]]:
     """Yield paths and types of all that is no message in a message itself."""
     for name, text in fields_of(cls):
         kind = parse(text)
@@ -80,9 +91,9 @@ def _remarks(cls: type[Any], tree: Any, prefix: str) -> Iterator[tuple[str, str]
             nested = load_message(ros_name(text).partition("[")[0].replace("/", "/msg/"))
             parts = [("", value)]
             if kind.is_many:
-                parts = [(f"[{index}]", each) for index, each in enumerate(value)]
+                parts = [(f"[{index}]", each) for index, each in enumerate(value[:most])]
                 yield path, ros_name(text)
             for index, each in parts:
-                yield from _remarks(nested, each, f"{path}{index}.")
+                yield from _remarks(nested, each, f"{path}{index}.", most)
         else:
             yield path, ros_name(text)

@@ -73,7 +73,7 @@ class MarkedEditor(TextArea):
         & .marked-editor--number { color: $text-warning; }
         & .marked-editor--word { color: $text-accent; }
         & .marked-editor--mark { color: $foreground; text-style: dim; }
-        & .marked-editor--comment { color: $text-muted; text-style: italic; }
+        & .marked-editor--comment { color: $foreground; text-style: dim; }
         & .marked-editor--bad { color: $text-error; }
         & .marked-editor--problem { color: $text-error; text-style: bold underline; }
         & .marked-editor--gutter { color: $text-error; text-style: bold; }

@@ -91,6 +91,7 @@ class YamlForm(Vertical, Acting):
         self._checked: str | None = None
         """The text that was checked."""
         self._timer: Timer | None = None
+        self._loading = False
 
     def compose(self) -> ComposeResult:
         """The editor above the verdict."""
@@ -118,7 +119,7 @@ class YamlForm(Vertical, Acting):
     def value(self) -> Mapping[str, Value] | None:
         """The fields as they are filled in, None while something is wrong."""
         self.check_now()
-        return self._value
+        return None if self._loading else self._value
 
     @property
     def verdict(self) -> str:
@@ -128,6 +129,7 @@ class YamlForm(Vertical, Acting):
     def load(self, type_name: str, text: str | None = None) -> Worker[None]:
         """Show the form of another type, or `text` in it; wait for the worker to see it there."""
         self.type_name = type_name
+        self._loading = True
         self._forget()
         return self.run_worker(self._load(type_name, text), group="load", exclusive=True)
 
@@ -148,7 +150,7 @@ class YamlForm(Vertical, Acting):
 
     def check_now(self) -> None:
         """Check what stands there, at once; the screen waits for it."""
-        if self.type_name and self.text != self._checked:
+        if self.type_name and not self._loading and self.text != self._checked:
             self._take(self.text, _checked(self.type_name, self.text))
 
     def relabel(self) -> None:
@@ -169,9 +171,11 @@ class YamlForm(Vertical, Acting):
         try:
             form = await asyncio.to_thread(prefilled, type_name)
         except UnknownTypeError as error:
+            self._loading = False
             self.editor.replace_all(text or "")
             self._take(self.text, error)
             return
+        self._loading = False
         self.editor.replace_all(form if text is None else text)
         await self._check()
 
@@ -189,7 +193,7 @@ class YamlForm(Vertical, Acting):
         self.notify(words, severity="warning", markup=False)
 
     def _check_soon(self) -> None:
-        if self.type_name and self.text != self._checked:
+        if self.type_name and not self._loading and self.text != self._checked:
             self.run_worker(self._check(), group="check", exclusive=True)
 
     async def _check(self) -> None:
