@@ -91,8 +91,9 @@ class TopicRow:
     facts: Mapping[str, str] = field(default_factory=dict)
     """What `detail` is made of, to say it in another language.
 
-    QOS_MISMATCH: `policy` (reliability, durability), `publisher`, `subscriber` (nodes), `offered`,
-    `requested`. UNKNOWN_TYPE: `type`, `package`, `reason`. QUIET: `seconds`. NO_PUBLISHER: none.
+    QOS_MISMATCH: of the first pair `policy` (as in `graph.qos_fit.Mismatch`), `publisher`,
+    `subscriber` (nodes), `offered`, `requested`; `more`, the number of further pairs, if there are
+    any. UNKNOWN_TYPE: `type`, `package`, `reason`. QUIET: `seconds`. NO_PUBLISHER: none.
     A remark: `types`, with the one that is shown in `shown`.
     """
     published_by: tuple[EndpointInfo, ...] = ()

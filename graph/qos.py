@@ -1,4 +1,4 @@
-"""Which quality of service to ask for, and who on a topic cannot hear whom."""
+"""Which quality of service Deck asks for and offers, so that it hears and is heard by all."""
 
 from __future__ import annotations
 
@@ -25,36 +25,6 @@ class Qos:
     durability: str = VOLATILE
 
 
-@dataclass(frozen=True)
-class Mismatch:
-    """A publisher and a subscriber of one topic that the middleware does not join."""
-
-    policy: str
-    """`reliability` or `durability`."""
-    publisher: str
-    subscriber: str
-    offered: str
-    requested: str
-
-    def in_words(self) -> str:
-        """Return who does not hear whom, and the two ways out."""
-        return (
-            f"{self.subscriber} does not hear {self.publisher}: it asks for {self.policy} "
-            f"{self.requested}, offered is {self.offered}. Make the publisher {self.requested} "
-            f"or the subscriber {self.offered}"
-        )
-
-    def facts(self) -> dict[str, str]:
-        """Return the same as names and values, to be said in another language."""
-        return {
-            "policy": self.policy,
-            "publisher": self.publisher,
-            "subscriber": self.subscriber,
-            "offered": self.offered,
-            "requested": self.requested,
-        }
-
-
 def to_hear(publishers: Sequence[EndpointInfo]) -> Qos:
     """Return the strongest request that every one of these publishers meets."""
     if not publishers:
@@ -69,29 +39,6 @@ def to_be_heard(subscribers: Iterable[EndpointInfo]) -> Qos:
     """Return an offer that meets every one of these subscribers."""
     latched = any(s.durability == TRANSIENT_LOCAL for s in subscribers)
     return Qos(RELIABLE, TRANSIENT_LOCAL if latched else VOLATILE)
-
-
-def mismatches(
-    publishers: Sequence[EndpointInfo], subscribers: Sequence[EndpointInfo]
-) -> list[Mismatch]:
-    """Return every pair that does not fit, by the rule that an offer may exceed the request.
-
-    Source: ROS 2 documentation, "Quality of Service settings", tables of compatibilities.
-    """
-    found = []
-    for publisher in publishers:
-        for subscriber in subscribers:
-            if publisher.reliability == BEST_EFFORT and subscriber.reliability == RELIABLE:
-                found.append(
-                    Mismatch("reliability", publisher.node, subscriber.node, BEST_EFFORT, RELIABLE)
-                )
-            if publisher.durability == VOLATILE and subscriber.durability == TRANSIENT_LOCAL:
-                found.append(
-                    Mismatch(
-                        "durability", publisher.node, subscriber.node, VOLATILE, TRANSIENT_LOCAL
-                    )
-                )
-    return found
 
 
 def profile(qos: Qos, depth: int) -> QoSProfile:

@@ -6,13 +6,17 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from graph.data import Trouble
-from graph.qos import mismatches
+from graph.qos_fit import mismatches
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from graph.qos_fit import Mismatch
     from graph.scan import TopicEnds
     from graph.types import UnknownTypeError
+
+MOST_PAIRS = 5
+"""Pairs that are told in words; the rest are counted."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +43,7 @@ def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | Non
         return Finding(Trouble.NO_PUBLISHER, "nobody publishes this topic")
     found = mismatches(ends.everyone_publishing, ends.subscribers)
     if found:
-        more = f" (and {len(found) - 1} more pairs)" if len(found) > 1 else ""
-        return Finding(Trouble.QOS_MISMATCH, found[0].in_words() + more, found[0].facts())
+        return _misfit(found)
     if len(ends.type_names) > 1:
         types = ", ".join(ends.type_names)
         return Finding(
@@ -49,6 +52,17 @@ def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | Non
             {"types": types, "shown": shown_type},
         )
     return Finding()
+
+
+def _misfit(found: Sequence[Mismatch]) -> Finding:
+    """Return all that does not fit in words, and the first of it as facts."""
+    # Two endpoints alike of one node read the same.
+    told = list(dict.fromkeys(found))
+    more = len(told) - MOST_PAIRS
+    words = [pair.in_words() for pair in told[:MOST_PAIRS]]
+    words += [f"(and {more} more pairs)"] if more > 0 else []
+    others = {"more": str(len(told) - 1)} if len(told) > 1 else {}
+    return Finding(Trouble.QOS_MISMATCH, " ".join(words), told[0].facts() | others)
 
 
 def quiet(seconds: float, *, ever: bool) -> Finding:

@@ -160,7 +160,7 @@ def test_a_publisher_and_a_subscriber_that_do_not_fit_are_named(
         "offered": "best_effort",
         "requested": "reliable",
     }
-    assert "Make the publisher reliable" in row.detail
+    assert "Let /talker offer reliable, or let /talker ask for best_effort." in row.detail
     wait_until(lambda: watcher.of("/misfit"), "Deck itself hears it")
 
 

@@ -102,7 +102,9 @@ async def test_only_the_chosen_topic_is_decoded(room: Room) -> None:
     await room.show(lesson_update())
     assert "data:    1.84" in room.echo()
     assert "std_msgs/msg/Float32" in room.head()
-    assert "1.0 Hz · 8 B/s · age <1 s · jitter – · latency – · lost – · 8 B a message" in room.head()
+    assert (
+        "1.0 Hz · 8 B/s · age <1 s · jitter – · latency – · lost – · 8 B a message" in room.head()
+    )
 
 
 async def test_walking_past_topics_subscribes_none_of_them(
@@ -186,7 +188,7 @@ async def test_a_qos_mismatch_names_who_and_what_to_change(room: Room) -> None:
     words = " ".join(room.echo().split())
     assert words.startswith("QoS does not fit")
     assert "/brain does not hear /lidar: reliability reliable is asked for" in words
-    assert "Make the publisher reliable or the subscriber best_effort." in words
+    assert "Let /lidar offer reliable, or let /brain ask for best_effort." in words
 
 
 async def test_an_unknown_type_names_its_package(room: Room) -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import pytest
 
 from graph.data import EndpointInfo, Trouble
 from graph.housekeeping import is_housekeeping
-from graph.qos import Qos, mismatches, to_be_heard, to_hear
+from graph.qos import Qos, to_be_heard, to_hear
+from graph.qos_fit import mismatches
 from graph.scan import TopicEnds, full_name
 from graph.troubles import quiet, structural
 from graph.types import UnknownTypeError
@@ -53,7 +57,7 @@ def test_a_mismatch_names_both_sides_and_the_ways_out() -> None:
     (found,) = mismatches([BEST_EFFORT, PLAIN], [end("/vlm")])
     assert found.in_words() == (
         "/vlm does not hear /camera: it asks for reliability reliable, offered is best_effort. "
-        "Make the publisher reliable or the subscriber best_effort"
+        "Let /camera offer reliable, or let /vlm ask for best_effort."
     )
     (found,) = mismatches([PLAIN], [LATCHED])
     assert found.facts() == {
@@ -65,6 +69,76 @@ def test_a_mismatch_names_both_sides_and_the_ways_out() -> None:
     }
 
 
+def told(offer: dict[str, Any], request: dict[str, Any]) -> list[str]:
+    """Each mismatch of one publisher and one subscriber, in words."""
+    found = mismatches([replace(end("/p"), **offer)], [replace(end("/s"), **request)])
+    return [mismatch.in_words() for mismatch in found]
+
+
+def test_a_deadline_is_met_by_one_that_is_as_short() -> None:
+    assert told({"deadline_s": 0.5}, {"deadline_s": 0.5}) == []
+    assert told({"deadline_s": 0.1}, {"deadline_s": 0.5}) == []
+    assert told({"deadline_s": 0.1}, {}) == []
+    assert told({"deadline_s": 0.5}, {"deadline_s": 0.25}) == [
+        (
+            "/s does not hear /p: it asks for a message at least every 0.25 s (deadline), offered "
+            "is 0.5 s. Let /p offer 0.25 s or less, or let /s ask for 0.5 s or more."
+        )
+    ]
+    assert told({}, {"deadline_s": 2.0}) == [
+        (
+            "/s does not hear /p: it asks for a message at least every 2 s (deadline), offered is "
+            "none. Let /p offer 2 s or less, or let /s ask for none."
+        )
+    ]
+
+
+def test_signs_of_life_are_as_many_and_of_the_kind_that_is_asked_for() -> None:
+    assert told({"liveliness": "manual_by_topic"}, {"liveliness": "automatic"}) == []
+    assert told({"liveliness": ""}, {"liveliness": "manual_by_topic"}) == []
+    assert told({"lease_s": 1.0}, {"lease_s": 1.0}) == []
+    assert told({"liveliness": "automatic"}, {"liveliness": "manual_by_topic"}) == [
+        (
+            "/s does not hear /p: it asks for liveliness manual_by_topic, offered is automatic. "
+            "Let /p offer manual_by_topic, or let /s ask for automatic."
+        )
+    ]
+    assert told({"lease_s": 2.0}, {"lease_s": 1.0}) == [
+        (
+            "/s does not hear /p: it asks for a sign of life at least every 1 s (liveliness lease "
+            "duration), offered is 2 s. Let /p offer 1 s or less, or let /s ask for 2 s or more."
+        )
+    ]
+
+
+def test_every_policy_that_keeps_a_pair_apart_is_told() -> None:
+    offer = {"reliability": "best_effort", "deadline_s": None}
+    request = {"durability": "transient_local", "deadline_s": 1.0}
+    assert len(told(offer, request)) == 3
+
+
+def test_no_policy_joins_two_types() -> None:
+    assert told({"reliability": "best_effort"}, {"type_name": "std_msgs/msg/String"}) == []
+
+
+def test_each_pair_is_told_also_where_others_hear_each_other() -> None:
+    listeners = (PLAIN, end("/a"), end("/b"), BEST_EFFORT)
+    found = structural(TopicEnds("/t", (FLOAT,), (BEST_EFFORT, PLAIN), listeners), FLOAT, None)
+    assert found.trouble is Trouble.QOS_MISMATCH
+    assert found.detail.count("does not hear /camera") == 3
+    assert "/b does not hear /camera" in found.detail
+    assert (found.facts["subscriber"], found.facts["more"]) == ("/plain", "2")
+
+
+def test_many_pairs_are_counted_from_some_on_and_twins_told_once() -> None:
+    listeners = tuple(end(f"/n{number}") for number in range(8))
+    found = structural(TopicEnds("/t", (FLOAT,), (BEST_EFFORT,), listeners), FLOAT, None)
+    assert found.detail.endswith("ask for best_effort. (and 3 more pairs)")
+    twins = structural(TopicEnds("/t", (FLOAT,), (BEST_EFFORT,), (PLAIN, PLAIN)), FLOAT, None)
+    assert twins.detail.count("does not hear") == 1
+    assert "more" not in twins.facts
+
+
 def test_each_trouble_has_its_own_words() -> None:
     nobody = TopicEnds("/t", (FLOAT,), subscribers=(PLAIN,))
     misfit = TopicEnds("/t", (FLOAT,), publishers=(BEST_EFFORT,), subscribers=(PLAIN, end("/b")))
@@ -73,7 +147,6 @@ def test_each_trouble_has_its_own_words() -> None:
     assert structural(nobody, FLOAT, None).trouble is Trouble.NO_PUBLISHER
     found = structural(misfit, FLOAT, None)
     assert found.trouble is Trouble.QOS_MISMATCH
-    assert found.detail.endswith("(and 1 more pairs)")
     found = structural(fine, "foo_msgs/msg/Bar", unknown)
     assert found.trouble is Trouble.UNKNOWN_TYPE
     assert found.facts["package"] == "foo_msgs"

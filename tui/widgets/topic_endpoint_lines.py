@@ -7,16 +7,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from graph.qos import mismatches
+from graph.qos_fit import LEASE, LIVELINESS, mismatches
 from tui.i18n import _, ngettext
 from tui.widgets.drawing import Ink, Line, fit
 from tui.widgets.plain import plain
+from tui.widgets.qos_words import pair_words
 from tui.widgets.topic_endpoint_columns import Column, columns_for, left_over
-from tui.widgets.topic_words import names, pair_words
+from tui.widgets.topic_words import names
 
 if TYPE_CHECKING:
     from graph.data import EndpointInfo, TopicRow
-    from graph.qos import Mismatch
+    from graph.qos_fit import Mismatch
 
 MARK = 2
 MOST_PAIRS = 12
@@ -62,12 +63,17 @@ def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
                 for pair in pairs
                 if end is (pair.publisher if is_publisher else pair.subscriber)
             ]
-            bad = frozenset(pair.mismatch.policy for pair in at)
+            bad = frozenset(_column(pair.mismatch.policy) for pair in at)
             lines += _end_lines(end, columns, bad, width, with_type=disagree)
         if not ends:
             nobody = _("nobody publishes") if is_publisher else _("nobody listens")
             lines.append([Ink(" " * MARK), Ink(nobody, "muted")])
     return [*lines, [], *_notes(row, width)]
+
+
+def _column(policy: str) -> str:
+    """Return the column that shows the policy: the lease stands beside the kind."""
+    return LIVELINESS if policy == LEASE else policy
 
 
 def _types(row: TopicRow) -> list[str]:

@@ -9,12 +9,13 @@ from rich.cells import cell_len
 from graph.data import Trouble
 from tui.i18n import _, ngettext
 from tui.widgets.plain import plain
+from tui.widgets.qos_words import misfit_words
 from tui.widgets.topic_figures import count_text, seconds_text
 from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text
 from tui.widgets.trouble import no_data_words, trouble_words
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from graph.data import EndpointInfo, TopicRow
 
@@ -45,17 +46,8 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
         words = _("{type}: install the package {package}, or source the workspace that has it.")
         return words.format(**facts)
     if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
-        return pair_words(facts)
+        return misfit_words(facts)
     return row.detail
-
-
-def pair_words(facts: Mapping[str, str]) -> str:
-    """Who does not hear whom, and the two ways out, from the facts of a `Trouble.QOS_MISMATCH`."""
-    words = _(
-        "{subscriber} does not hear {publisher}: {policy} {requested} is asked for, {offered} "
-        "is offered. Make the publisher {requested} or the subscriber {offered}."
-    )
-    return plain(words.format(**facts), LONGEST)
 
 
 def _what_deck_sent(row: TopicRow) -> str:
