@@ -6,10 +6,12 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from graph.clients import Clients
 from graph.data import CallResult
 from graph.making import FieldError, to_message
 from graph.types import UnknownTypeError, load_service
 from graph.values import to_tree
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,11 +40,10 @@ class _Call:
 
 
 class Calls:
-    """Deck's service clients, made once and kept, and the calls that are under way."""
+    """The calls that are under way."""
 
     def __init__(self, node: Node) -> None:
-        self._node = node
-        self._clients: dict[tuple[str, str], Client] = {}
+        self._clients = Clients(node)
         self._calls: list[_Call] = []
 
     def begin(
@@ -60,17 +61,26 @@ class Calls:
         `known` is what the graph says of the service, `started_s` when it was asked for.
         """
         if known and type_name not in known.type_names:
-            error = f"{service} is a {', '.join(known.type_names)}, not a {type_name}"
-            future.set_result(_failed(service, error, started_s))
+            types = ", ".join(known.type_names)
+            words = say(
+                "{name} is a {types}, not a {type}", name=service, types=types, type=type_name
+            )
+            future.set_result(_failed(service, words, started_s))
             return
         try:
-            client = self._client(service, type_name)
+            busy = {call.client for call in self._calls}
+            client = self._clients.get(service, type_name, busy)
             made = to_message(load_service(type_name).Request, request)
-        except (UnknownTypeError, FieldError) as error:
-            future.set_result(_failed(service, str(error), started_s))
+        except UnknownTypeError as error:
+            future.set_result(_failed(service, error.reason, started_s))
+            return
+        except FieldError as error:
+            words = say("{field}: {message}", field=error.field, message=error.message)
+            future.set_result(_failed(service, words if error.field else error.message, started_s))
             return
         except Exception as error:  # noqa: BLE001 - of rclpy's, a name that is none
-            future.set_result(_failed(service, f"{service} cannot be called: {error}", started_s))
+            words = say("{name} cannot be called: {error}", name=service, error=str(error))
+            future.set_result(_failed(service, words, started_s))
             return
         self._calls.append(_Call(service, client, made, future, started_s, timeout_s))
         self.step()
@@ -103,20 +113,21 @@ class Calls:
                 elapsed_s = time.monotonic() - call.started_s
                 return CallResult(call.service, True, to_tree(answer), "", elapsed_s)
         except Exception as error:  # noqa: BLE001 - one bad call must not end the others
-            return _failed(call.service, f"{call.service} failed: {error}", call.started_s)
+            words = say("{name} failed: {error}", name=call.service, error=str(error))
+            return _failed(call.service, words, call.started_s)
         if time.monotonic() - call.started_s < call.timeout_s:
             return None
-        what = "nobody serves it" if call.sequence is None else "no answer"
-        return _failed(
-            call.service, f"{call.service}: {what} within {call.timeout_s:g} s", call.started_s
-        )
+        words = say("{name}: no answer within {seconds} s", **_facts(call))
+        if call.sequence is None:
+            words = say("{name}: nobody serves it within {seconds} s", **_facts(call))
+        return _failed(call.service, words, call.started_s)
 
     def _has_its_turn(self, call: _Call) -> bool:
         """Whether the service is there and has room: what overflows its queue gets no answer."""
         sent = sum(
             other.client is call.client and other.sequence is not None for other in self._calls
         )
-        return sent < QUEUE and call.client.service_is_ready()
+        return sent < QUEUE and self._clients.is_ready(call.client)
 
     def _take_answers(self) -> dict[tuple[Client, int], Any]:
         """Take all answers there are; those to calls that were given up are dropped here."""
@@ -130,17 +141,15 @@ class Calls:
                     answers[client, header.request_id.sequence_number] = response
         return answers
 
-    def _client(self, service: str, type_name: str) -> Client:
-        key = (service, type_name)
-        if key not in self._clients:
-            self._clients[key] = self._node.create_client(load_service(type_name), service)
-        return self._clients[key]
-
 
 def _response(client: Client) -> type[Any]:
     service: Any = client.srv_type
     response: type[Any] = service.Response
     return response
+
+
+def _facts(call: _Call) -> dict[str, str]:
+    return {"name": call.service, "seconds": f"{call.timeout_s:g}"}
 
 
 def _failed(service: str, error: str, started_s: float) -> CallResult:

@@ -13,6 +13,7 @@ from graph.goals_line import ActionLine
 from graph.making import to_message
 from graph.types import UnknownTypeError
 from graph.values import to_tree
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,7 +29,12 @@ LOOK_S = 0.01
 
 
 class GoalError(Exception):
-    """The goal cannot be sent; str() says why."""
+    """The goal cannot be sent; str() says why, `words` so that it can be translated."""
+
+    def __init__(self, words: str) -> None:
+        """Say why, as `graph.words.say` makes it."""
+        super().__init__(words)
+        self.words = words
 
 
 class Goals:
@@ -59,7 +65,10 @@ class Goals:
         FieldError.
         """
         if known and known.servers and type_name not in known.type_names:
-            raise GoalError(f"{action} is a {', '.join(known.type_names)}, not a {type_name}")
+            types = ", ".join(known.type_names)
+            raise GoalError(
+                say("{name} is a {types}, not a {type}", name=action, types=types, type=type_name)
+            )
         line = self._line(action, type_name)
         try:
             message = to_message(line.type.Goal, goal)
@@ -121,7 +130,8 @@ class Goals:
             except UnknownTypeError:
                 raise
             except Exception as error:
-                raise GoalError(f"{action} cannot be sent a goal: {error}") from error
+                words = say("{name} cannot be sent a goal: {error}", name=action, error=str(error))
+                raise GoalError(words) from error
         return self._lines[key]
 
     def _close_lines(self) -> None:

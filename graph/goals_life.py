@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import Goal, GoalStatus
 from graph.values import to_tree
+from graph.words import say
 
 if TYPE_CHECKING:
     from graph.goals_line import ActionLine, Heard
@@ -85,12 +86,15 @@ class GoalLife:
     def hear(self, heard: Heard) -> None:
         """Take in what has come."""
         if self._request in heard.accepted and self._accepted is None:
-            self._answered(heard.accepted[self._request])
+            self._answered(accepted=heard.accepted[self._request])
         news = heard.feedback.get(self._id)
         if news and not self.told.ended:
             count = self.told.feedbacks + len(news)
             self.told = replace(self.told, feedback=to_tree(news[-1]), feedbacks=count)
         if self._id in heard.status:
+            if self._request is not None and self._accepted is None:
+                # The answer itself is lost where the server has not found this client yet.
+                self._answered(accepted=True)
             self._status(STATUS.get(heard.status[self._id]))
         if self._cancel in heard.cancelled:
             self._cancel_answered(heard.cancelled[self._cancel])
@@ -105,7 +109,10 @@ class GoalLife:
         elif self._accepted is None:
             if not self.told.ended and now_s - self._request_s >= ANSWER_WITHIN_S:
                 self._wants_cancel = True
-                self._end(GoalStatus.FAILED, f"no answer within {ANSWER_WITHIN_S:g} s")
+                self._end(
+                    GoalStatus.FAILED,
+                    say("no answer within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
+                )
         else:
             self._ask_to_cancel(now_s)
             self._look_after_server(now_s)
@@ -124,18 +131,21 @@ class GoalLife:
         if self.told.ended:
             return
         if self._wants_cancel:
-            self._end(GoalStatus.CANCELED, "it was cancelled before it was sent")
+            self._end(GoalStatus.CANCELED, say("it was cancelled before it was sent"))
         elif self.line.is_ready:
             self._request = self.line.send(self._id, self._message)
             self._request_s = now_s
         elif now_s - self._began_s >= ANSWER_WITHIN_S:
-            self._end(GoalStatus.FAILED, f"nobody serves it within {ANSWER_WITHIN_S:g} s")
+            self._end(
+                GoalStatus.FAILED,
+                say("nobody serves it within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
+            )
 
-    def _answered(self, accepted: bool) -> None:
+    def _answered(self, *, accepted: bool) -> None:
         self._accepted = accepted
         if not accepted:
             if not self.told.ended:
-                self._end(GoalStatus.REJECTED, "the server rejects it")
+                self._end(GoalStatus.REJECTED, say("the server rejects it"))
             return
         self._servers = self.line.servers()
         self._servers_seen_s = time.monotonic()
@@ -154,7 +164,10 @@ class GoalLife:
     def _ask_to_cancel(self, now_s: float) -> None:
         if self._cancel is not None and now_s - self._cancel_s >= ANSWER_WITHIN_S:
             self._cancel = None
-            word = f"no answer to the request to cancel it within {ANSWER_WITHIN_S:g} s"
+            word = say(
+                "no answer to the request to cancel it within {seconds} s",
+                seconds=f"{ANSWER_WITHIN_S:g}",
+            )
             self.told = replace(self.told, error=word) if not self.told.ended else self.told
         if self._wants_cancel and self._accepted:
             self._wants_cancel = False
@@ -164,14 +177,14 @@ class GoalLife:
     def _cancel_answered(self, agreed: bool) -> None:
         self._cancel = None
         if not agreed and not self.told.ended:
-            self.told = replace(self.told, error="the server refuses to cancel it")
+            self.told = replace(self.told, error=say("the server refuses to cancel it"))
 
     def _take_result(self, response: Any) -> None:  # noqa: ANN401 - generated
         self._result = self._cancel = None
         self._wants_cancel = False
         status = STATUS.get(response.status)
         if status not in ENDS:
-            self._end(GoalStatus.FAILED, "the server knows nothing of it")
+            self._end(GoalStatus.FAILED, say("the server knows nothing of it"))
             return
         result = to_tree(response.result)
         self._end(status, _reason(result) if status == GoalStatus.ABORTED else "")
@@ -186,9 +199,9 @@ class GoalLife:
             self._servers_seen_s = now_s
         elif now_s - self._servers_seen_s >= GONE_AFTER_S:
             self._cancel = None
-            self._end(GoalStatus.FAILED, "its server has left the graph")
+            self._end(GoalStatus.FAILED, say("its server has left the graph"))
         if self._over_s is not None and now_s - self._over_s >= ANSWER_WITHIN_S:
-            self._end(GoalStatus.FAILED, "it has ended, and its result does not come")
+            self._end(GoalStatus.FAILED, say("it has ended, and its result does not come"))
 
     def _end(self, status: GoalStatus, error: str) -> None:
         self._ended_s = time.monotonic()
@@ -198,4 +211,4 @@ class GoalLife:
 def _reason(result: dict[str, Any]) -> str:
     """Return what the server says of an aborted goal: the texts of its result."""
     texts = [value.strip() for value in result.values() if isinstance(value, str)]
-    return "; ".join(text for text in texts if text) or "the server has aborted it"
+    return "; ".join(text for text in texts if text) or say("the server has aborted it")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from graph.data import CallResult, ParameterRow, ParametersResult, SetResult
 from graph.parameters_talk import read, write
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -94,7 +95,11 @@ class Parameters:
             except StopIteration:
                 word = ""
             except Exception as error:  # noqa: BLE001 - one odd node must not end the others
-                word = f"{talking.node} answers what cannot be understood: {error}"
+                word = say(
+                    "{node} answers what cannot be understood: {error}",
+                    node=talking.node,
+                    error=str(error),
+                )
             if word is not None:
                 self._talks.remove(talking)
                 talking.end(word)
@@ -150,9 +155,10 @@ class Parameters:
         if time.monotonic() - talking.asked_s < min(talking.timeout_s, FOUND_WITHIN_S):
             return ""
         if node:
-            return (
-                f"{talking.node} lets nobody at its parameters: it was started with its parameter "
-                "services off"
+            return say(
+                "{node} lets nobody at its parameters: it was started with its parameter services "
+                "off",
+                node=talking.node,
             )
         return _gone(talking)
 
@@ -160,14 +166,18 @@ class Parameters:
         if self._node(talking.node) is None:
             return _gone(talking)
         if time.monotonic() - talking.asked_s >= talking.timeout_s:
-            return f"{talking.node} does not answer within {talking.timeout_s:g} s"
+            return say(
+                "{node} does not answer within {seconds} s",
+                node=talking.node,
+                seconds=f"{talking.timeout_s:g}",
+            )
         return None
 
 
 def _gone(talking: _Talking) -> str:
     if talking.was_there:
-        return f"{talking.node} has left the graph"
-    return f"there is no node {talking.node} in the graph"
+        return say("{node} has left the graph", node=talking.node)
+    return say("there is no node {node} in the graph", node=talking.node)
 
 
 def _full(node: str) -> str:

@@ -132,7 +132,7 @@ def _nodes(branch: Node, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
                 )
                 raise YamlError(below.key_line, below.key_column, words)
             parameters: dict[str, Value] = {}
-            _flatten(_fields(below, "parameters"), "", parameters)
+            _flatten(_fields(below), "", parameters)
             yield path, parameters
             continue
         if not isinstance(below.value, dict):
@@ -145,9 +145,9 @@ def _nodes(branch: Node, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
         yield from _nodes(below, f"{path}/{key.strip('/')}")
 
 
-def _fields(node: Node, what: str) -> Node:
+def _fields(node: Node) -> Node:
     if not isinstance(node.value, dict):
-        words = say("expected {what} as `name: value`", what=what)
+        words = say("expected parameters as `name: value`")
         raise YamlError(node.line, node.column, words)
     return node
 

@@ -10,6 +10,7 @@ from collections.abc import Generator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graph.parameters_values import WrongValueError, carried, row, type_of
+from graph.words import say
 
 if TYPE_CHECKING:
     from graph.data import ParameterRow, Value
@@ -60,9 +61,9 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Talk:
         results = answer["results"]
         for name, result in zip(some, results, strict=False):
             if not result["successful"]:
-                refused[name] = result["reason"] or "the node refuses it and gives no reason"
+                refused[name] = result["reason"] or say("the node refuses it and gives no reason")
         for name in some[len(results) :]:
-            refused[name] = "the node says nothing of it"
+            refused[name] = say("the node says nothing of it")
 
 
 def _made(
@@ -70,22 +71,22 @@ def _made(
 ) -> tuple[str, dict[str, Value] | None]:
     """Return why not, or the tree of the ParameterValue."""
     if descriptor is None:
-        return "the node has no such parameter", None
+        return say("the node has no such parameter"), None
     if descriptor["read_only"]:
-        return "it is read-only: it can be set only when the node starts", None
+        return say("it is read-only: it can be set only when the node starts"), None
     type_name = type_of(descriptor)
     try:
         return "", carried(type_name, value)
     except WrongValueError as error:
         # The type of a dynamic one is kept where the value fits it.
-        return _made_anew(value) if descriptor["dynamic_typing"] else (str(error), None)
+        return _made_anew(value) if descriptor["dynamic_typing"] else (error.words, None)
 
 
 def _made_anew(value: Value) -> tuple[str, dict[str, Value] | None]:
     try:
         return "", carried("not_set", value)
     except WrongValueError as error:
-        return str(error), None
+        return error.words, None
 
 
 def _describe(names: list[str]) -> Generator[Question, Mapping[str, Any], dict[str, Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from graph.data import ParameterRow
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -32,7 +33,12 @@ SHOWN = 40
 
 
 class WrongValueError(ValueError):
-    """A value does not fit the parameter's type; str() says what was expected, and what was got."""
+    """A value does not fit its parameter; `words`, or str(), say what was expected and given."""
+
+    def __init__(self, words: str) -> None:
+        """Say why not, as `graph.words.say` makes it."""
+        super().__init__(words)
+        self.words = words
 
 
 def row(
@@ -98,12 +104,14 @@ def _type_for(value: Value) -> str:
             return name
     elements = _elements(value)
     if not elements:
-        raise WrongValueError("an empty list has no type, and the parameter has none either")
+        raise WrongValueError(say("an empty list has no type, and the parameter has none either"))
     names = {_type_for(each) for each in elements}
     if names == {"integer", "double"}:
         return "double_array"
     if len(names) > 1 or f"{min(names)}_array" not in TYPES:
-        raise WrongValueError(f"expected a list of values of one type, got {_shown(value)}")
+        raise WrongValueError(
+            say("expected a list of values of one type, got {value}", value=_shown(value))
+        )
     return f"{names.pop()}_array"
 
 
@@ -112,7 +120,7 @@ def _bool(value: Value) -> bool:
         return value
     word = value.strip().lower() if isinstance(value, str) else ""
     if word not in TRUE | FALSE:
-        raise WrongValueError(f"expected true or false, got {_shown(value)}")
+        raise WrongValueError(say("expected true or false, got {value}", value=_shown(value)))
     return word in TRUE
 
 
@@ -126,9 +134,11 @@ def _integer(value: Value) -> int:
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
         number = int(value) if isinstance(value, int) or value.is_integer() else None
     if number is None:
-        raise WrongValueError(f"expected a whole number, got {_shown(value)}")
+        raise WrongValueError(say("expected a whole number, got {value}", value=_shown(value)))
     if number not in INTEGERS:
-        raise WrongValueError(f"{_shown(value)} is too great for an integer of 64 bits")
+        raise WrongValueError(
+            say("{value} is too great for an integer of 64 bits", value=_shown(value))
+        )
     return number
 
 
@@ -139,24 +149,28 @@ def _double(value: Value) -> float:
         try:
             return float(text)
         except ValueError:
-            raise WrongValueError(f"expected a number, got {_shown(value)}") from None
+            raise WrongValueError(
+                say("expected a number, got {value}", value=_shown(value))
+            ) from None
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise WrongValueError(f"expected a number, got {_shown(value)}")
+        raise WrongValueError(say("expected a number, got {value}", value=_shown(value)))
     try:
         return float(value)
     except OverflowError:
-        raise WrongValueError(f"{_shown(value)} is too great for a double") from None
+        raise WrongValueError(
+            say("{value} is too great for a double", value=_shown(value))
+        ) from None
 
 
 def _string(value: Value) -> str:
     if not isinstance(value, str):
-        raise WrongValueError(f"expected a text, got {_shown(value)}")
+        raise WrongValueError(say("expected a text, got {value}", value=_shown(value)))
     if "\0" in value:
-        raise WrongValueError("a text of ROS cannot hold the character NUL")
+        raise WrongValueError(say("a text of ROS cannot hold the character NUL"))
     try:
         value.encode()
     except UnicodeEncodeError:
-        raise WrongValueError(f"{_shown(value)} is no valid Unicode") from None
+        raise WrongValueError(say("{value} is no valid Unicode", value=_shown(value))) from None
     return value
 
 
@@ -165,7 +179,7 @@ def _bytes(value: Value) -> bytes:
         return bytes(value)
     numbers = [_integer(each) for each in _elements(value)]
     if not all(0 <= number <= 255 for number in numbers):
-        raise WrongValueError(f"expected bytes, 0 to 255, got {_shown(value)}")
+        raise WrongValueError(say("expected bytes, 0 to 255, got {value}", value=_shown(value)))
     return bytes(numbers)
 
 
@@ -179,7 +193,9 @@ def _elements(value: Value) -> list[Value]:
     if hasattr(value, "tolist"):
         value = value.tolist()
     if not isinstance(value, (list, tuple)):
-        raise WrongValueError(f"expected a list, such as [1, 2], got {_shown(value)}")
+        raise WrongValueError(
+            say("expected a list, such as [1, 2], got {value}", value=_shown(value))
+        )
     return list(value)
 
 
