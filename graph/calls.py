@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 QUEUE = 10
 """Requests that a service keeps while it is busy, by default (source: rmw, the services' QoS)."""
+GONE_AFTER_S = 0.5
+"""A last answer may come a little after its service has left the graph."""
 
 
 @dataclass
@@ -37,6 +39,8 @@ class _Call:
     timeout_s: float
     sequence: int | None = None
     """Number of the request, once it is sent."""
+    served_s: float = 0.0
+    """When its service was last seen, once it is sent."""
 
 
 class Calls:
@@ -115,6 +119,9 @@ class Calls:
         except Exception as error:  # noqa: BLE001 - one bad call must not end the others
             words = say("{name} failed: {error}", name=call.service, error=str(error))
             return _failed(call.service, words, call.started_s)
+        if call.sequence is not None and _has_gone(call):
+            words = say("{name} has left the graph and has not answered", name=call.service)
+            return _failed(call.service, words, call.started_s)
         if time.monotonic() - call.started_s < call.timeout_s:
             return None
         words = say("{name}: no answer within {seconds} s", **_facts(call))
@@ -146,6 +153,13 @@ def _response(client: Client) -> type[Any]:
     service: Any = client.srv_type
     response: type[Any] = service.Response
     return response
+
+
+def _has_gone(call: _Call) -> bool:
+    now_s = time.monotonic()
+    if not call.served_s or call.client.service_is_ready():
+        call.served_s = now_s
+    return now_s - call.served_s >= GONE_AFTER_S
 
 
 def _facts(call: _Call) -> dict[str, str]:

@@ -6,9 +6,12 @@ import signal
 from collections.abc import Iterator
 
 import pytest
+import rclpy
 
 from graph.data import CallResult
+from graph.types import load_service
 from tests.ros.observing import Peer, Watcher, let_updates_come
+from tests.ros.peer import Peer as InProcess
 from tests.waiting import wait_until
 
 ADD = "example_interfaces/srv/AddTwoInts"
@@ -125,3 +128,19 @@ def test_a_server_that_dies_during_the_call_ends_in_a_time_out(
     dying.process.wait(10)
     assert "no answer" in future.result(30).error
     dying.close()
+
+
+def test_a_service_that_vanishes_in_mid_call_is_told_long_before_the_time_out(
+    watcher: Watcher, module_domain: int
+) -> None:
+    with InProcess(module_domain, "host") as host:
+        # Nobody spins this node, so the request stays unanswered.
+        silent = rclpy.create_node("silent", context=host.node.context)
+        silent.create_service(load_service(ADD), "/vanishing", lambda _, answer: answer)
+        wait_until(lambda: any(s.name == "/vanishing" for s in watcher.update.services), "it")
+        future = watcher.observer.call("/vanishing", ADD, {"a": 1, "b": 2}, timeout_s=60.0)
+        assert call(watcher, "/nobody", {}, timeout_s=0.5).error.startswith("/nobody")
+        assert not future.done()
+        silent.destroy_node()
+        result = future.result(30)
+        assert result.error == "/vanishing has left the graph and has not answered"
