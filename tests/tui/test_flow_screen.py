@@ -1,0 +1,166 @@
+"""What the Flow screen does: it follows, walks, hides, pauses, copies, and keeps what it has."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+from textual.pilot import Pilot
+
+from launcher.events import LogEvent
+from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, line
+from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines, word
+from tests.tui.snapshots import Look, settle
+from tui.app import DeckApp
+from tui.flow import Lane
+from tui.flow_reading import TOPICS
+from tui.screens.flow import FlowScreen
+from tui.widgets.flow_view import FlowView
+
+
+class Stage:
+    """The screen with its recorded session and graph."""
+
+    def __init__(self, pilot: Pilot[Any], graph: RecordedGraph, session: RecordedSession) -> None:
+        self.pilot, self.graph, self.session = pilot, graph, session
+
+    @property
+    def app(self) -> DeckApp:
+        assert isinstance(self.pilot.app, DeckApp)
+        return self.pilot.app
+
+    @property
+    def screen(self) -> FlowScreen:
+        found = self.app.get_screen("flow")
+        assert isinstance(found, FlowScreen)
+        return found
+
+    async def press(self, *keys: str) -> None:
+        await self.pilot.press(*keys)
+        await self.pilot.pause()
+
+    async def show(self, *samples: Any) -> None:
+        self.graph.show(update(*samples))
+        for _round in range(3):
+            await self.pilot.pause()
+
+    def rows(self) -> list[str]:
+        """What is drawn, without blanks at the ends."""
+        view = self.screen.query_one(FlowView)
+        height = int(view.virtual_size.height)
+        view.scroll_to(y=0, animate=False)
+        return [view.render_line(y).text.strip() for y in range(min(height, view.size.height))]
+
+
+@asynccontextmanager
+async def stage() -> AsyncIterator[Stage]:
+    graph, session = RecordedGraph(update(*BEFORE)), RecordedSession(lines=())
+    app = Look((120, 40), "en").app("flow", RecordedPad(session, graph))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await settle(pilot)
+        yield Stage(pilot, graph, session)
+
+
+async def test_it_follows_its_topics_also_behind_another_screen() -> None:
+    async with stage() as at:
+        assert at.graph.followed >= TOPICS
+        await at.press("1")
+        assert at.graph.followed >= TOPICS
+        await at.show(*voice(0.0))
+        await at.press("6")
+        assert len(at.screen.chains) == 1
+        assert any("/wheel_commands" in row for row in at.rows())
+
+
+async def test_messages_and_log_lines_meet_in_one_chain() -> None:
+    async with stage() as at:
+        at.session.say(LogEvent(voice_lines(0.0)))
+        await at.show(*voice(0.0))
+        rows = at.rows()
+        assert "13 steps in 1012 ms" in rows[0]
+        assert [row.split()[2] for row in rows[2:6]] == [
+            *("/audio/mic_raw", "ai_brain", "ai_brain", "ai_brain"),
+        ]
+
+
+async def test_the_cursor_walks_and_the_whole_of_a_step_is_shown() -> None:
+    async with stage() as at:
+        await at.show(*voice(0.0))
+        await at.show(*command(9.0))
+        assert at.screen.chosen_chain is at.screen.chains[0]
+        await at.press("n")
+        assert at.screen.chosen_chain is at.screen.chains[1]
+        await at.press("down", "down")
+        step = at.screen.chosen_step
+        assert step is not None
+        assert step.source == "/ai_command"
+        assert "вперед" in str(at.screen.query_one("#flow-step").render())
+        await at.press("N")
+        assert at.screen.chosen_chain is at.screen.chains[0]
+
+
+async def test_who_looks_at_an_older_one_is_not_carried_away_by_a_newer_one() -> None:
+    async with stage() as at:
+        await at.show(*voice(0.0))
+        await at.press("down", "down", "down")
+        chosen = at.screen.chosen_step
+        await at.show(*command(9.0))
+        assert at.screen.chosen_step == chosen
+        assert len(at.screen.chains) == 2
+
+
+async def test_a_kind_can_be_hidden_and_all_shown_again() -> None:
+    async with stage() as at:
+        await at.show(*voice(0.0))
+        await at.press("down", "m")
+        assert not any("/audio/mic_raw" in row for row in at.rows())
+        at.screen.action_lane(Lane.WHEELS.value)
+        assert not any("/wheel_commands" in row for row in at.rows())
+        await at.press("a")
+        assert any("/audio/mic_raw" in row for row in at.rows())
+
+
+async def test_the_logs_of_other_nodes_come_when_asked() -> None:
+    async with stage() as at:
+        await at.show(*voice(0.0))
+        at.session.say(LogEvent((line("sonar_front", 1, "Distance: 2.35 m", at_s=0.4),)))
+        await at.pilot.pause()
+        assert not any("sonar_front" in row for row in at.rows())
+        await at.press("l")
+        assert any("sonar_front" in row for row in at.rows())
+
+
+async def test_paused_it_stands_still_and_loses_nothing() -> None:
+    async with stage() as at:
+        await at.show(*voice(0.0))
+        await at.press("p")
+        await at.show(*command(9.0))
+        assert len(at.screen.chains) == 1
+        assert "+1" in str(at.screen.query_one("#flow-lanes").render())
+        await at.press("p")
+        assert len(at.screen.chains) == 2
+
+
+async def test_an_utterance_is_copied_as_text() -> None:
+    async with stage() as at:
+        await at.show(*command(9.0))
+        await at.press("y")
+        copied = at.app.clipboard
+        assert "“налево” · 4 steps in 5.2 ms" in copied
+        assert "2.1 ms  /drive" in copied
+        assert "a person" in copied
+
+
+async def test_hostile_words_are_drawn_as_they_are() -> None:
+    async with stage() as at:
+        await at.show(word("[b]left[/b] \x1b[31m", 9.0))
+        assert any("[b]left[/b] ␛[31m" in row for row in at.rows())
+
+
+async def test_it_speaks_another_language_at_once() -> None:
+    async with stage() as at:
+        await at.show(*command(9.0))
+        await at.press("f9")
+        assert any("рад, влево" in row for row in at.rows())
+        await at.press("f9")

@@ -1,0 +1,89 @@
+"""Steps of a chain in words, and the mark and name of who takes part."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from tui.flow import Kind, Lane
+from tui.flow_reading import COMMAND, JSON, MIC
+from tui.i18n import N_, _, ngettext
+from tui.widgets import outcome_words
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from tui.flow import Chain, Step
+
+LANES: dict[Lane, str] = {
+    Lane.MIC: N_("mic"),
+    Lane.BRAIN: N_("brain"),
+    Lane.COMMAND: N_("command"),
+    Lane.HEAD: N_("head"),
+    Lane.DRIVE: N_("drive"),
+    Lane.WHEELS: N_("wheels"),
+    Lane.SPEAKER: N_("speaker"),
+    Lane.LOG: N_("other logs"),
+}
+SOUND = "♪"
+SECOND_MS = 1000
+
+
+def content(step: Step) -> str:
+    """What a step says."""
+    words = _once(step)
+    return words if step.times == 1 else f"{words} ×{step.times}"
+
+
+def _once(step: Step) -> str:
+    if step.kind is Kind.DRIVE:
+        return outcome_words.drive_words(*step.figures)
+    if step.kind is Kind.WHEELS:
+        left, right = step.figures
+        return _("left {left:.2f}, right {right:.2f} rad/s").format(left=left, right=right)
+    if step.kind is Kind.HEAD_MOVES:
+        return _("begins to turn")
+    if step.kind is Kind.HEAD_THERE:
+        looks = [0.0 if math.isnan(angle) else angle for angle in step.figures]
+        return _("has come to rest: {pose}").format(pose=outcome_words.head_words(*looks))
+    return _("sound") if step.text == SOUND else step.text
+
+
+def said_by(step: Step, chain: Chain) -> str:
+    """The node that said it; a command that nothing led to is a person's."""
+    if step is chain.steps[0] and step.lane is not Lane.MIC and step.begins:
+        return _("a person")
+    return step.said_by.lstrip("/")
+
+
+def delay(delay_s: float) -> str:
+    """A delay in milliseconds, with tenths where it is short."""
+    milliseconds = delay_s * SECOND_MS
+    figure = f"{milliseconds:.1f}" if milliseconds < 100 else f"{milliseconds:.0f}"
+    return _("{n} ms").format(n=figure)
+
+
+def headline(chain: Chain, shown: Sequence[Step]) -> str:
+    """What began it, how many of its steps are shown, and how long they took."""
+    steps = len(shown) + chain.more
+    count = ngettext("{n} step", "{n} steps", steps).format(n=steps)
+    took = delay(max(map(chain.delay_s, shown), default=0.0))
+    return _("“{words}” · {count} in {time}").format(
+        words=_once(chain.first), count=count, time=took
+    )
+
+
+def nothing_yet(topics: Collection[str], command_key: str) -> list[str]:
+    """What is missing, and what to do about it with the `topics` that are there."""
+    said = [_("Nobody has spoken since this screen was opened.")]
+    if MIC in topics:
+        said.append(_("The microphone is there: speak, or wait for what is said next."))
+    if COMMAND in topics:
+        key = _("On the Deck screen, {key} writes a word to {topic}: forward, stop.")
+        said.append(key.format(key=command_key, topic=COMMAND))
+    if JSON in topics:
+        said.append(_("The Composer sends JSON to {topic}.").format(topic=JSON))
+    if not {MIC, COMMAND, JSON} & set(topics):
+        none = _("None of {topics} is here: lesson 9 has a voice, lesson 4 takes words.")
+        said.append(none.format(topics=f"{MIC}, {COMMAND}, {JSON}"))
+    return said
