@@ -1,0 +1,107 @@
+"""The emergency stop while Deck has its hands full: it goes out at once, whatever hangs."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import time
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import Bool
+
+from tests.ros.observing import Peer as Process
+from tests.ros.observing import Watcher
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
+from tui import emergency
+from tui.app import DeckApp
+from tui.brake import Brake
+
+ADD = "example_interfaces/srv/AddTwoInts"
+DRIVE = "deck_interfaces/action/DriveToPoint"
+FLOAT = "std_msgs/msg/Float32"
+AT_ONCE_S = 0.5
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class App:
+    """As much of the app as the brake needs."""
+
+    def __init__(self, watcher: Watcher) -> None:
+        self.feed = SimpleNamespace(graph=watcher.observer, update=watcher.update, link=None)
+        self.workers: list[asyncio.Task[Any]] = []
+
+    def run_worker(self, work: Any, group: str) -> None:
+        assert group == "brake"
+        self.workers.append(asyncio.ensure_future(work))
+
+    def emergency_changed(self) -> None:
+        """Nothing is drawn here."""
+
+
+@pytest.fixture
+def hung(ros_domain: int) -> Iterator[Process]:
+    """A node that serves all kinds of things and is stopped as soon as it has been found."""
+    process = Process("hung", ros_domain, "--parameters")
+    process.serve("/slow")
+    process.serve_action("/hung_drive")
+    yield process
+    os.kill(process.process.pid, signal.SIGCONT)
+    process.close()
+
+
+@pytest.fixture
+def watcher(ros_domain: int) -> Iterator[Watcher]:
+    watcher = Watcher(ros_domain)
+    yield watcher
+    watcher.close()
+
+
+def begin_everything(watcher: Watcher, hung: Process) -> list[Any]:
+    """Begin calls, questions and goals that hang, a goal that runs and publications that race."""
+    observer = watcher.observer
+    running = Process("running", int(os.environ["ROS_DOMAIN_ID"]))
+    running.serve_action("/drive_to")
+    wait_until(lambda: len(watcher.update.actions) == 2, "both actions")
+    wait_until(lambda: any(s.name == "/slow" for s in watcher.update.services), "the service")
+    os.kill(hung.process.pid, signal.SIGSTOP)
+    waiting = [observer.call("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0) for n in range(30)]
+    waiting.append(observer.parameters("/hung", timeout_s=60.0))
+    waiting.append(observer.set_parameters("/hung", {"use_sim_time": True}, timeout_s=60.0))
+    for n in range(3):
+        observer.start_publishing(f"/race_{n}", FLOAT, {"data": 1.0}, 100.0).result(30)
+        observer.send_goal("/hung_drive", DRIVE, {"x": float(n)}).result(30)
+        observer.send_goal("/drive_to", DRIVE, {"x": float(n)}).result(30)
+    wait_until(lambda: len(running.goals("/drive_to")) == 3, "goals that run")
+    return [running, *waiting]
+
+
+async def test_it_is_heard_at_once_while_everything_else_hangs(
+    watcher: Watcher, hung: Process, ros_domain: int
+) -> None:
+    app = App(watcher)
+    brake = Brake(cast("DeckApp", app))
+    with Peer(ros_domain) as robot:
+        heard: list[tuple[bool, float]] = []
+        robot.node.create_subscription(
+            Bool, emergency.TOPIC, lambda m: heard.append((m.data, time.monotonic())), LATCHED
+        )
+        watcher.wait_for(emergency.TOPIC, lambda row: row.subscribers == 1, "the robot listens")
+        brake.prepare()
+        running, *waiting = begin_everything(watcher, hung)
+        app.feed.update = watcher.update
+        for count in range(1, 6):
+            pressed_s = time.monotonic()
+            brake.engage()
+            await asyncio.gather(*app.workers)
+            await asyncio.to_thread(wait_until, lambda n=count: len(heard) >= n, "the stop")
+            assert heard[-1][0] is True
+            assert heard[-1][1] - pressed_s < AT_ONCE_S
+        assert brake.state.fallback == ""
+        assert not any(future.done() for future in waiting)
+        running.close()
