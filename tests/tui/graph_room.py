@@ -68,8 +68,8 @@ class Room:
         pytest.fail(f"waited in vain; on the terminal:\n{self.seen()}")
 
     async def wait_for(self, words: str) -> None:
-        """Wait until these words are on the terminal."""
-        await self.wait(lambda: words in self.seen())
+        """Wait until these words are on the terminal, with as many blanks as may be."""
+        await self.wait(lambda: words in " ".join(self.seen().split()))
 
 
 @asynccontextmanager

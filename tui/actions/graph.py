@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from tui.actions.action import Action
 from tui.i18n import N_
-from tui.screens import graph_parameters
 
 if TYPE_CHECKING:
     from tui.screens.graph import GraphScreen
@@ -65,6 +64,26 @@ class PreviousKind(GraphAction):
         target.list_next(-1)
 
 
+class Map(GraphAction):
+    """The graph drawn."""
+
+    id = "graph.map"
+    key = "m,ь"
+    title = N_("Map")
+    tooltip = N_("Draw the chosen node with those that it talks to; arrows walk, Enter goes on.")
+    footer = True
+
+    @classmethod
+    def label(cls, target: GraphScreen) -> str:
+        """By what it would do now."""
+        return N_("List") if target.draws else cls.title
+
+    @classmethod
+    async def run(cls, target: GraphScreen) -> None:
+        """Draw or list."""
+        target.toggle_map()
+
+
 class Parameters(GraphAction):
     """The node's parameters."""
 
@@ -77,7 +96,7 @@ class Parameters(GraphAction):
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
         """Only of a node."""
-        return target.node_pane is not None
+        return target.node_pane is not None and not target.draws
 
     @classmethod
     async def run(cls, target: GraphScreen) -> None:
@@ -94,7 +113,7 @@ class ParametersAction(GraphAction):
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
         """Only while they are shown."""
-        return target.node_pane is not None and target.node_pane.shows_parameters
+        return target.shows_parameters
 
 
 class SaveParameters(ParametersAction):
@@ -108,8 +127,7 @@ class SaveParameters(ParametersAction):
     @classmethod
     async def run(cls, target: GraphScreen) -> None:
         """Ask for a file."""
-        if target.node_pane is not None:
-            graph_parameters.save(target.deck, target.node_pane.parameters)
+        target.save_parameters()
 
 
 class LoadParameters(ParametersAction):
@@ -123,8 +141,49 @@ class LoadParameters(ParametersAction):
     @classmethod
     async def run(cls, target: GraphScreen) -> None:
         """Ask for a file."""
-        if target.node_pane is not None:
-            graph_parameters.load(target.deck, target.node_pane.parameters)
+        target.load_parameters()
+
+
+class Cancel(GraphAction):
+    """What is under way."""
+
+    id = "graph.cancel"
+    key = "f7,x,ч"
+    title = N_("Cancel")
+    tooltip = N_("Wait no longer for the call, or cancel the chosen goal.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def possible(cls, target: GraphScreen) -> bool | None:
+        """Only while something is under way."""
+        return target.ask_pane is not None and target.ask_pane.can_cancel
+
+    @classmethod
+    async def run(cls, target: GraphScreen) -> None:
+        """Cancel it."""
+        if target.ask_pane is not None:
+            target.ask_pane.cancel()
+
+
+class ForgetGoal(GraphAction):
+    """Off the list."""
+
+    id = "graph.forget"
+    key = "delete,d,в"
+    title = N_("Forget")
+    tooltip = N_("Take the chosen goal off the list; one that has not ended is cancelled.")
+
+    @classmethod
+    def possible(cls, target: GraphScreen) -> bool | None:
+        """Only of an action."""
+        return target.ask_pane is not None and target.ask_pane.can_forget
+
+    @classmethod
+    async def run(cls, target: GraphScreen) -> None:
+        """Forget it."""
+        if target.ask_pane is not None:
+            target.ask_pane.forget()
 
 
 class Housekeeping(GraphAction):
@@ -158,9 +217,12 @@ class Back(GraphAction):
 
 GRAPH_ACTIONS = (
     Filter,
+    Map,
     Parameters,
     SaveParameters,
     LoadParameters,
+    Cancel,
+    ForgetGoal,
     Housekeeping,
     NextKind,
     PreviousKind,

@@ -5,103 +5,36 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
-from textual.containers import Horizontal
-from textual.widgets import ContentSwitcher, Input, Static, TextArea
+from textual.widgets import Input
 
 from graph.housekeeping import is_housekeeping
 from tui.actions import bindings
-from tui.actions.graph import GRAPH_ACTIONS, Housekeeping
-from tui.i18n import N_, _
+from tui.actions.graph import GRAPH_ACTIONS
+from tui.i18n import N_
 from tui.screens import graph_parameters
-from tui.screens.base import DeckScreen
-from tui.screens.graph_trail import Trail
-from tui.widgets.graph_index import Entry, chosen_of, entries
-from tui.widgets.graph_list import GraphList
-from tui.widgets.graph_node import NodePane
-from tui.widgets.graph_pane import GraphPane, Words
+from tui.screens.graph_frame import GraphFrame
+from tui.widgets.graph_index import chosen_of
+from tui.widgets.graph_map import GraphMap, middle_of
+from tui.widgets.graph_pane import GraphPane
 from tui.widgets.graph_place import LISTED, Kind, Place
 from tui.widgets.graph_tabs import GraphTabs
-from tui.widgets.graph_words import why_empty
+from tui.widgets.graph_type_tree import GraphTypeTree
 from tui.widgets.rows import Rows
 
 if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
     from tui.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 
-class GraphScreen(DeckScreen):
-    """A list by kind, and the detail of the chosen one."""
+class GraphScreen(GraphFrame):
+    """Follows links, goes back, and asks what is to be asked."""
 
     tab: ClassVar[str] = "graph"
     about: ClassVar[str] = N_(
         "Nodes with what they publish, hear, serve and call; services to be called, actions to "
-        "be sent goals, types down to their fields."
+        "be sent goals, types down to their fields. Enter on a name goes there. The map draws a "
+        "node with those that it talks to: () marks a service, ⚑ an action."
     )
     BINDINGS: ClassVar = bindings(*GRAPH_ACTIONS)
-    DEFAULT_CSS = """
-    GraphScreen {
-        #graph-bar { height: 1; }
-        #graph-filter { width: 1fr; margin-left: 1; }
-        #graph-count { width: auto; padding: 0 1; color: $text-muted; }
-        #graph-body { height: 1fr; }
-        #graph-detail { width: 1fr; height: 1fr; border-left: solid $panel; }
-        GraphList { width: 26; height: 1fr; }
-    }
-    GraphScreen.-tiny GraphList { width: 14; }
-    GraphScreen.-home GraphList { width: 40; }
-    GraphScreen.-wide GraphList { width: 60; }
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.trail = Trail()
-        self.everything = False
-        """Whether ROS's own things are listed."""
-        self._listed: dict[Kind, list[Entry]] = {}
-
-    def compose_body(self) -> ComposeResult:
-        """Kinds and filter above list and detail."""
-        with Horizontal(id="graph-bar"):
-            yield GraphTabs()
-            yield Input(id="graph-filter", compact=True, select_on_focus=False)
-            yield Static(id="graph-count", markup=False)
-        with Horizontal(id="graph-body"):
-            yield GraphList()
-            with ContentSwitcher(id="graph-detail", initial="graph-words"):
-                yield Words(id="graph-words")
-                yield NodePane(id=f"graph-{Kind.NODE.value}")
-
-    @property
-    def names(self) -> GraphList:
-        """The names of one kind."""
-        return self.query_one(GraphList)
-
-    @property
-    def is_typing(self) -> bool:
-        """Whether letters go into a text."""
-        return isinstance(self.focused, (Input, TextArea))
-
-    @property
-    def filter(self) -> Input:
-        """Where the words of the filter are typed."""
-        return self.query_one("#graph-filter", Input)
-
-    @property
-    def pane(self) -> GraphPane | None:
-        """The detail in front."""
-        here = self.trail.here
-        if here is None or not self.is_mounted:
-            return None
-        found = self.query(f"#graph-{here.kind.value}").results(GraphPane)
-        return next(iter(found), None)
-
-    @property
-    def node_pane(self) -> NodePane | None:
-        """The detail in front, if it is a node's."""
-        pane = self.pane
-        return pane if isinstance(pane, NodePane) else None
 
     def on_mount(self) -> None:
         """Begin in the list."""
@@ -110,7 +43,7 @@ class GraphScreen(DeckScreen):
 
     def on_graph_changed(self, message: GraphChanged) -> None:
         """Show who is there now."""
-        self._take(message.update)
+        self.take(message.update)
 
     def on_status_changed(self, message: StatusChanged) -> None:
         """Show what processes have become."""
@@ -122,7 +55,7 @@ class GraphScreen(DeckScreen):
         """Forget the graph of a session that has ended."""
         super().on_session_changed(message)
         self.trail.forget()
-        self._take(None)
+        self.take(None)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Say everything anew."""
@@ -130,52 +63,6 @@ class GraphScreen(DeckScreen):
         for pane in self.query(GraphPane):
             pane.relabel()
         self.redraw()
-
-    def _take(self, update: GraphUpdate | None) -> None:
-        self._listed = {kind: entries(update, kind) for kind in LISTED}
-        self.redraw()
-
-    def redraw(self) -> None:
-        """Show list and detail as things stand."""
-        if not self.is_mounted:
-            return
-        kind, words = self.trail.kind, self.filter.value
-        self.filter.placeholder = _("filter: words of a name or a type")
-        fitting = {
-            each: chosen_of(listed, "", everything=self.everything)
-            for each, listed in self._listed.items()
-        }
-        self.query_one(GraphTabs).show(kind, {each: len(found) for each, found in fitting.items()})
-        shown = chosen_of(fitting.get(kind, []), words, everything=True)
-        self._count(len(shown), len(self._listed.get(kind, [])))
-        self.names.show_entries(kind, shown, self.trail.chosen.get(kind, ""), words)
-        if self.names.chosen_name and not self.trail.chosen.get(kind):
-            self.trail.choose(self.names.chosen_name)
-        self._show_detail(shown)
-
-    def _show_detail(self, shown: list[Entry]) -> None:
-        switcher = self.query_one("#graph-detail", ContentSwitcher)
-        pane, here = self.pane, self.trail.here
-        if pane is None or here is None or not self.names.chosen_name:
-            switcher.current = "graph-words"
-            key = self.deck.keys_of(Housekeeping)[0]
-            words = why_empty(
-                self.feed.update, self.trail.kind, self._listed.get(self.trail.kind, []),
-                running=self.feed.link is not None, all_key=key,
-            )  # fmt: skip
-            self.query_one("#graph-words", Words).show(*(words if not shown else ("", "")))
-            return
-        if switcher.current != pane.id:
-            switcher.current = pane.id
-            self.refresh_bindings()
-        pane.everything = self.everything
-        pane.show_name(here.name)
-
-    def _count(self, shown: int, everything: int) -> None:
-        words = _("{shown} of {n}").format(shown=shown, n=everything)
-        count = self.query_one("#graph-count", Static)
-        if words != count.content:
-            count.update(words)
 
     @on(Rows.Highlighted, "GraphList")
     def _highlighted(self) -> None:
@@ -201,6 +88,16 @@ class GraphScreen(DeckScreen):
     def _edited(self) -> None:
         if self.node_pane is not None:
             graph_parameters.edit(self.deck, self.node_pane.parameters)
+
+    @on(GraphTypeTree.Wanted)
+    async def _type_wanted(self, message: GraphTypeTree.Wanted) -> None:
+        await self.go(Place(Kind.TYPE, message.type_name))
+
+    @on(GraphMap.Wanted)
+    async def _place_wanted(self, message: GraphMap.Wanted) -> None:
+        if message.place.kind is not Kind.NODE:
+            self.remove_class("-map")
+        await self.go(message.place)
 
     @on(GraphTabs.Selected)
     def _selected(self, message: GraphTabs.Selected) -> None:
@@ -240,6 +137,11 @@ class GraphScreen(DeckScreen):
         if self.filter.has_focus or (self.names.has_focus and self.filter.value):
             self.filter.value = ""
             self.names.focus()
+        elif self.draws:
+            if not self.trail.back():
+                self.toggle_map()
+            else:
+                self._arrive()
         elif not self.names.has_focus:
             self.names.focus()
         elif self.trail.back():
@@ -249,25 +151,39 @@ class GraphScreen(DeckScreen):
         """Show the chosen place, though a filter or the lack of `everything` had hidden it."""
         here = self.trail.here
         if here is not None:
-            listed = {entry.name: entry for entry in self._listed.get(here.kind, [])}
+            listed = {entry.name: entry for entry in self.listed.get(here.kind, [])}
             entry = listed.get(here.name)
             if entry is not None and entry.housekeeping:
                 self.everything = True
             if entry is None or not chosen_of([entry], self.filter.value, everything=True):
                 self.filter.value = ""
         self.redraw()
-        self.names.focus()
+        (self.map if self.draws else self.names).focus()
         self.refresh_bindings()
+
+    def toggle_map(self) -> None:
+        """Draw the graph around the chosen node, or list it again."""
+        self.toggle_class("-map")
+        if self.draws:
+            middle = middle_of(self.feed.update, self.trail.here)
+            if middle:
+                self.trail.go(Place(Kind.NODE, middle))
+        self._arrive()
 
     def list_kind(self, kind: Kind) -> None:
         """List another kind."""
+        self.remove_class("-map")
         self.trail.kind = kind
         self.redraw()
         self.names.focus()
         self.refresh_bindings()
 
     def list_next(self, by: int) -> None:
-        """List the kind that stands so many tabs to the right."""
+        """List the kind that stands so many tabs to the right; left of a detail is the list."""
+        if self.focused not in {self.names, None}:
+            if by < 0:
+                self.names.focus()
+            return
         at = LISTED.index(self.trail.kind) + by
         self.list_kind(LISTED[at % len(LISTED)])
 
@@ -279,3 +195,13 @@ class GraphScreen(DeckScreen):
         """Show or hide what ROS itself needs."""
         self.everything = not self.everything
         self.redraw()
+
+    def save_parameters(self) -> None:
+        """Ask for a file, and write the node's parameters into it."""
+        if self.node_pane is not None:
+            graph_parameters.save(self.deck, self.node_pane.parameters)
+
+    def load_parameters(self) -> None:
+        """Ask for a file, and set what it has for the node."""
+        if self.node_pane is not None:
+            graph_parameters.load(self.deck, self.node_pane.parameters)

@@ -35,7 +35,8 @@ class GraphList(Rows):
         """Show these; `chosen` is the one that was chosen last, `words` what they were found by."""
         names = [(entry.name, True) for entry in shown]
         if chosen and not words and chosen not in {entry.name for entry in shown}:
-            names.append((chosen, False))
+            # A type is not gone because nobody uses it.
+            names.append((chosen, kind is Kind.TYPE))
         self._kind, self._named = kind, tuple(names)
         self._lay()
         if chosen:

@@ -1,0 +1,179 @@
+"""Calling services and sending goals on the screen of the graph."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import pytest
+
+from graph.data import CallResult, GoalStatus
+from tests.tui.graph_room import Room, opened
+from tests.tui.recorded import RecordedGraph
+from tests.tui.recorded_nodes import SERVICES, graph_update
+from tui.widgets.graph_place import Kind, Place
+
+SERVICE, ADD = "/set_head_position", "example_interfaces/srv/AddTwoInts"
+ACTION, DRIVE = "/drive_to_point", "deck_interfaces/action/DriveToPoint"
+
+
+@asynccontextmanager
+async def at(place: Place, graph: RecordedGraph | None = None) -> AsyncIterator[Room]:
+    """Open the screen with the form of this place filled in by its defaults."""
+    async with opened(graph) as room:
+        await room.screen.go(place)
+        await room.wait_for("✓ fits ")
+        await room.press("enter")
+        yield room
+
+
+@pytest.fixture
+async def service() -> AsyncIterator[Room]:
+    async with at(Place(Kind.SERVICE, SERVICE)) as room:
+        yield room
+
+
+@pytest.fixture
+async def action() -> AsyncIterator[Room]:
+    async with at(Place(Kind.ACTION, ACTION)) as room:
+        yield room
+
+
+def fill(room: Room, text: str) -> None:
+    pane = room.screen.ask_pane
+    assert pane is not None
+    pane.form.editor.replace_all(text)
+
+
+async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: Room) -> None:
+    assert "not called yet" in service.seen()
+    fill(service, "a: 30\nb: -10\n")
+    await service.press("ctrl+s")
+    await service.wait_for("Answer in 12.0 ms")
+    assert service.graph.called == [(SERVICE, ADD, {"a": 30, "b": -10})]
+    await service.wait_for("sum: 1")
+    assert "a 30, b -10 → sum 1" in service.seen()
+
+
+async def test_a_wrong_request_is_not_sent(service: Room) -> None:
+    fill(service, "a: much\n")
+    await service.press("ctrl+s")
+    assert service.graph.called == []
+    assert "✗" in service.seen()
+
+
+async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: Room) -> None:
+    service.graph.hold_calls = True
+    await service.press("ctrl+s")
+    await service.wait_for("Waiting: 0 s of 5 s")
+    assert "f7 Cancel" in service.seen()
+    await service.press("escape")
+    await service.press("left")
+    assert "/ai_brain" in service.seen()
+    await service.press("right", "x")
+    await service.wait_for("given up")
+    service.graph.waiting[0].set_result(CallResult(SERVICE, True, {"sum": 7}, "", 9.0))
+    await service.pilot.pause()
+
+
+async def test_a_call_that_fails_says_why(service: Room) -> None:
+    why = "no answer within 5 s"
+    service.graph.answers[SERVICE] = CallResult(SERVICE, False, None, why, 5.0)
+    await service.press("ctrl+s")
+    await service.wait_for("the call failed")
+    assert why in service.seen()
+    assert "No answer · 5000.0 ms" in service.seen()
+
+
+async def test_calls_are_listed_and_an_older_answer_can_be_seen_again(service: Room) -> None:
+    await service.press("ctrl+s")
+    await service.wait_for("Answer in")
+    service.graph.answers[SERVICE] = CallResult(SERVICE, True, {"sum": 0}, "", 0.2)
+    await service.press("ctrl+s")
+    await service.wait_for("sum: 0")
+    pane = service.screen.ask_pane
+    assert pane is not None
+    pane.asked_rows.choose("1")
+    await service.wait_for("sum: 1")
+
+
+async def test_a_service_that_vanishes_is_told_and_not_called(service: Room) -> None:
+    rest = tuple(row for row in SERVICES if row.name != SERVICE)
+    await service.show(graph_update(services=rest))
+    assert "nobody serves it any more" in service.seen()
+    await service.press("ctrl+s")
+    assert service.graph.called == []
+
+
+async def test_what_was_typed_is_there_when_one_comes_back(service: Room) -> None:
+    fill(service, "a: 5\nb: 6\n")
+    await service.press("escape", "a")
+    await service.choose("/camera/set_parameters")
+    await service.wait_for("fits rcl_interfaces/srv/SetParameters")
+    await service.choose(SERVICE)
+    await service.wait_for("a: 5")
+
+
+async def test_names_lead_to_the_type_and_to_the_server(service: Room) -> None:
+    await service.screen.go(Place(Kind.TYPE, ADD))
+    await service.wait_for("response")
+    assert "int64" in service.seen()
+    await service.press("escape")
+    assert service.screen.trail.here == Place(Kind.SERVICE, SERVICE)
+
+
+async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: Room) -> None:
+    fill(action, "x: 1.0\ny: 2.0\ntolerance: 0.1\n")
+    await action.press("ctrl+s")
+    await action.wait(lambda: action.graph.sent_goals)
+    assert action.graph.sent_goals == [(ACTION, DRIVE, {"x": 1.0, "y": 2.0, "tolerance": 0.1})]
+    await action.wait_for("#1 ◌ sending")
+    status = GoalStatus.EXECUTING
+    action.graph.change_goal(1, status=status, feedback={"distance": 1.5}, feedbacks=2)
+    await action.wait_for("distance: 1.5")
+    assert "● executing" in action.seen()
+    status = GoalStatus.SUCCEEDED
+    action.graph.change_goal(1, status=status, result={"reached": True}, elapsed_s=4.2)
+    await action.wait_for("reached: true")
+    assert "✓ succeeded" in action.seen()
+    assert "4.2 s" in action.seen()
+
+
+async def test_several_goals_are_listed_and_the_chosen_one_is_cancelled(action: Room) -> None:
+    await action.press("ctrl+s", "ctrl+s")
+    await action.wait_for("#2")
+    assert "#1" in action.seen()
+    assert "f7 Cancel" in action.seen()
+    await action.press("f7")
+    assert action.graph.canceled_goals == [2]
+    action.graph.change_goal(2, status=GoalStatus.CANCELED)
+    await action.wait_for("○ canceled")
+    await action.press("f7")
+    assert action.graph.canceled_goals == [2, 1]
+
+
+async def test_a_goal_is_forgotten(action: Room) -> None:
+    await action.press("ctrl+s")
+    await action.wait_for("#1")
+    await action.press("escape", "d")
+    assert action.graph.forgotten_goals == [1]
+    await action.wait_for("no goal was sent yet")
+
+
+async def test_a_goal_that_is_refused_says_why(action: Room) -> None:
+    await action.press("ctrl+s")
+    await action.wait_for("#1")
+    action.graph.change_goal(1, status=GoalStatus.REJECTED, error="the point is too far")
+    await action.wait_for("the point is too far")
+    action.graph.publish_error = RuntimeError("nobody serves /drive_to_point")
+    await action.press("ctrl+s")
+    told = "Not sent: nobody serves /drive_to_point"
+    await action.wait(lambda: told in [one.message for one in action.app._notifications])
+
+
+async def test_what_is_asked_belongs_to_its_place(action: Room) -> None:
+    await action.press("ctrl+s")
+    await action.wait_for("#1")
+    await action.press("escape", "left")
+    await action.wait_for("not called yet")
+    assert action.screen.trail.kind is Kind.SERVICE

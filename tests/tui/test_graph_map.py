@@ -1,0 +1,127 @@
+"""The graph drawn: what the drawing shows, and how one walks on it."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+
+import pytest
+
+from graph.data import GraphUpdate, NodeRow
+from tests.tui.graph_room import Room, opened
+from tests.tui.recorded_nodes import NODE_ROWS, graph_update
+from tui.widgets.graph_map_lines import Drawing, drawing
+from tui.widgets.graph_neighbours import neighbours, node_called
+from tui.widgets.graph_place import Kind, Place
+
+BRAIN = """
+/audio/mic_raw ──────────────┐                ┌▶ /ai_command
+  audio                      │                │    ai_driver
+/camera/color/image_raw ─────┤  ┌───────────┐ ├▶ /audio/speaker_raw
+  camera                     ├─▶│ /ai_brain │─┤    audio
+/sensor/sonar_front ─────────┘  └───────────┘ └▶ /set_head_position()
+  sonar_front                                      head_controller
+"""
+
+
+@pytest.fixture
+async def room() -> AsyncIterator[Room]:
+    async with opened() as opened_room:
+        await opened_room.choose("/safety_stop")
+        await opened_room.press("m")
+        yield opened_room
+
+
+def drawn(name: str, width: int, height: int, update: GraphUpdate | None = None) -> Drawing:
+    update = update or graph_update()
+    node = node_called(update, name)
+    assert node is not None
+    return drawing(name, neighbours(update, node), width, height)
+
+
+def text(made: Drawing, width: int) -> str:
+    rows = [[" "] * width for _row in range(made.height)]
+    for piece in made.pieces:
+        for at, character in enumerate(piece.text, piece.x):
+            assert rows[piece.row][at] == " ", f"{piece} lies on another piece"
+            rows[piece.row][at] = character
+    return "\n".join("".join(row).rstrip() for row in rows).strip("\n")
+
+
+def test_a_node_stands_between_what_it_hears_and_what_it_says() -> None:
+    assert text(drawn("/ai_brain", 78, 6), 78).splitlines() == BRAIN.strip("\n").splitlines()
+
+
+@pytest.mark.parametrize("width", [40, 78, 118, 198])
+@pytest.mark.parametrize("height", [3, 21, 57])
+@pytest.mark.parametrize("row", NODE_ROWS, ids=lambda row: row.name)
+def test_no_piece_lies_on_another_or_outside(row: NodeRow, width: int, height: int) -> None:
+    made = drawn(row.name, width, height)
+    text(made, width)
+    assert all(0 <= piece.row < made.height for piece in made.pieces)
+
+
+def test_every_neighbour_can_be_reached() -> None:
+    made = drawn("/safety_stop", 78, 21)
+    left, centre, right = ([stop.place.name for stop in stops] for stops in made.stops)
+    assert left == [
+        "/drive", "/ai_driver", "/drive_to_point", "/emergency_stop", "/sensor/sonar_front",
+        "/sonar_front",
+    ]  # fmt: skip
+    assert centre == ["/safety_stop"]
+    assert right == ["/drive_safe", "/electronic_differential", "/safety_state"]
+
+
+async def test_arrows_walk_and_enter_goes_on_from_there(room: Room) -> None:
+    assert room.screen.map.here == Place(Kind.NODE, "/safety_stop")
+    await room.press("right", "up", "up", "up", "down")
+    assert room.screen.map.here == Place(Kind.NODE, "/electronic_differential")
+    await room.press("enter")
+    assert room.screen.map.here == Place(Kind.NODE, "/electronic_differential")
+    assert "/wheel_commands" in room.seen()
+    await room.press("escape")
+    assert room.screen.map.here == Place(Kind.NODE, "/safety_stop")
+
+
+async def test_the_edge_is_not_walked_over(room: Room) -> None:
+    await room.press("left", "left", "left", *("up",) * 10)
+    assert room.screen.map.here == Place(Kind.TOPIC, "/drive")
+    await room.press(*("down",) * 30)
+    assert room.screen.map.here == Place(Kind.NODE, "/sonar_front")
+
+
+async def test_enter_on_a_service_goes_to_its_form(room: Room) -> None:
+    await room.screen.go(Place(Kind.NODE, "/head_controller"))
+    await room.pilot.pause()
+    await room.press("left", *("up",) * 5, "enter")
+    assert room.screen.trail.here == Place(Kind.SERVICE, "/set_head_position")
+    assert not room.screen.draws
+    await room.wait_for("fits example_interfaces/srv/AddTwoInts")
+
+
+async def test_a_node_that_vanishes_is_said_to_have_left(room: Room) -> None:
+    rest = tuple(row for row in NODE_ROWS if row.name != "/safety_stop")
+    await room.show(graph_update(nodes=rest))
+    assert "this node has left the graph" in room.seen()
+    await room.show(graph_update())
+    assert "┌" in room.seen()
+
+
+async def test_without_a_node_it_says_so(room: Room) -> None:
+    await room.press("m")
+    room.screen.trail.forget()
+    await room.show(GraphUpdate(0.0))
+    await room.press("m")
+    assert "no node to draw" in room.seen()
+    await room.press("m")
+    assert "no node in this domain" in room.seen()
+
+
+async def test_more_neighbours_than_rows_are_scrolled(room: Room) -> None:
+    hub = NodeRow("/hub", publishes=tuple(f"/topic_{n:02}" for n in range(60)))
+    await room.show(graph_update(nodes=(hub,)))
+    await room.screen.go(Place(Kind.NODE, "/hub"))
+    await room.pilot.pause()
+    await room.press("right", *("down",) * 60)
+    assert room.screen.map.here == Place(Kind.TOPIC, "/topic_59")
+    assert "/topic_59" in room.seen()
+    assert "/hub" in room.seen()

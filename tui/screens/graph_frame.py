@@ -1,0 +1,188 @@
+"""What the screen of the graph is made of, and how it is drawn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from textual.containers import Horizontal
+from textual.widgets import ContentSwitcher, Input, Static, TextArea
+
+from tui.actions.graph import Housekeeping
+from tui.i18n import _
+from tui.screens.base import DeckScreen
+from tui.screens.graph_trail import Trail
+from tui.widgets.graph_action import ActionPane
+from tui.widgets.graph_ask import AskPane
+from tui.widgets.graph_index import Entry, chosen_of, entries
+from tui.widgets.graph_list import GraphList
+from tui.widgets.graph_map import GraphMap, middle_of
+from tui.widgets.graph_node import NodePane
+from tui.widgets.graph_pane import GraphPane, Words
+from tui.widgets.graph_place import LISTED, Kind
+from tui.widgets.graph_service import ServicePane
+from tui.widgets.graph_tabs import GraphTabs
+from tui.widgets.graph_type import TypePane
+from tui.widgets.graph_words import why_empty
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+
+
+class GraphFrame(DeckScreen):
+    """Kinds and filter above a list and the detail of the chosen one, or above the drawing."""
+
+    DEFAULT_CSS = """
+    GraphFrame {
+        #graph-bar { height: 1; }
+        #graph-filter { width: 1fr; margin-left: 1; }
+        #graph-count { width: auto; padding: 0 1; color: $text-muted; }
+        #graph-body { height: 1fr; }
+        #graph-detail { width: 1fr; height: 1fr; border-left: solid $panel; }
+        GraphList { width: 26; height: 1fr; }
+        GraphMap { display: none; }
+    }
+    GraphFrame.-map {
+        #graph-body { display: none; }
+        GraphMap { display: block; }
+    }
+    GraphFrame.-tall, GraphFrame.-high {
+        AskPane GraphLinks { max-height: 8; }
+        .ask-right { border-top: solid $panel; }
+    }
+    GraphFrame.-wide {
+        .ask-body { layout: horizontal; }
+        .ask-right { border-top: none; border-left: solid $panel; }
+    }
+    GraphFrame.-tiny GraphList { width: 14; }
+    GraphFrame.-home GraphList { width: 40; }
+    GraphFrame.-wide GraphList { width: 60; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.trail = Trail()
+        self.everything = False
+        """Whether ROS's own things are listed."""
+        self.listed: dict[Kind, list[Entry]] = {}
+        """All there is of each kind."""
+
+    def compose_body(self) -> ComposeResult:
+        """Kinds and filter above list and detail."""
+        with Horizontal(id="graph-bar"):
+            yield GraphTabs()
+            yield Input(id="graph-filter", compact=True, select_on_focus=False)
+            yield Static(id="graph-count", markup=False)
+        with Horizontal(id="graph-body"):
+            yield GraphList()
+            with ContentSwitcher(id="graph-detail", initial="graph-words"):
+                yield Words(id="graph-words")
+                yield NodePane(id=f"graph-{Kind.NODE.value}")
+                yield ServicePane(id=f"graph-{Kind.SERVICE.value}")
+                yield ActionPane(id=f"graph-{Kind.ACTION.value}")
+                yield TypePane(id=f"graph-{Kind.TYPE.value}")
+        yield GraphMap()
+
+    @property
+    def names(self) -> GraphList:
+        """The names of one kind."""
+        return self.query_one(GraphList)
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether letters go into a text."""
+        return isinstance(self.focused, (Input, TextArea))
+
+    @property
+    def filter(self) -> Input:
+        """Where the words of the filter are typed."""
+        return self.query_one("#graph-filter", Input)
+
+    @property
+    def map(self) -> GraphMap:
+        """The drawing."""
+        return self.query_one(GraphMap)
+
+    @property
+    def draws(self) -> bool:
+        """Whether the drawing is in front."""
+        return self.has_class("-map")
+
+    @property
+    def pane(self) -> GraphPane | None:
+        """The detail in front."""
+        here = self.trail.here
+        if here is None or not self.is_mounted:
+            return None
+        found = self.query(f"#graph-{here.kind.value}").results(GraphPane)
+        return next(iter(found), None)
+
+    @property
+    def node_pane(self) -> NodePane | None:
+        """The detail in front, if it is a node's."""
+        pane = self.pane
+        return pane if isinstance(pane, NodePane) else None
+
+    @property
+    def shows_parameters(self) -> bool:
+        """Whether parameters are in front."""
+        pane = self.node_pane
+        return pane is not None and pane.shows_parameters and not self.draws
+
+    @property
+    def ask_pane(self) -> AskPane | None:
+        """The detail in front, if something can be asked there."""
+        pane = self.pane
+        return pane if isinstance(pane, AskPane) else None
+
+    def take(self, update: GraphUpdate | None) -> None:
+        """Show this graph from now on."""
+        self.listed = {kind: entries(update, kind) for kind in LISTED}
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Show list and detail as things stand."""
+        if not self.is_mounted:
+            return
+        kind, words = self.trail.kind, self.filter.value
+        self.filter.placeholder = _("filter: words of a name or a type")
+        fitting = {
+            each: chosen_of(listed, "", everything=self.everything)
+            for each, listed in self.listed.items()
+        }
+        self.query_one(GraphTabs).show(kind, {each: len(found) for each, found in fitting.items()})
+        shown = chosen_of(fitting.get(kind, []), words, everything=True)
+        self._count(len(shown), len(self.listed.get(kind, [])))
+        self.names.show_entries(kind, shown, self.trail.chosen.get(kind, ""), words)
+        if self.names.chosen_name and not self.trail.chosen.get(kind):
+            self.trail.choose(self.names.chosen_name)
+        self._show_detail(shown)
+        if self.draws:
+            update = self.feed.update
+            middle = middle_of(update, self.trail.here)
+            self.map.show_node(update, middle, everything=self.everything)
+
+    def _show_detail(self, shown: list[Entry]) -> None:
+        switcher = self.query_one("#graph-detail", ContentSwitcher)
+        pane, here = self.pane, self.trail.here
+        if pane is None or here is None or not self.names.chosen_name:
+            switcher.current = "graph-words"
+            key = self.deck.keys_of(Housekeeping)[0]
+            words = why_empty(
+                self.feed.update, self.trail.kind, self.listed.get(self.trail.kind, []),
+                running=self.feed.link is not None, all_key=key,
+            )  # fmt: skip
+            self.query_one("#graph-words", Words).show(*(words if not shown else ("", "")))
+            return
+        if switcher.current != pane.id:
+            switcher.current = pane.id
+            self.refresh_bindings()
+        pane.everything = self.everything
+        pane.show_name(here.name)
+
+    def _count(self, shown: int, everything: int) -> None:
+        words = _("{shown} of {n}").format(shown=shown, n=everything)
+        count = self.query_one("#graph-count", Static)
+        if words != count.content:
+            count.update(words)
