@@ -19,6 +19,7 @@ from graph.interest import Interest
 from graph.orders import ObserverError
 from graph.ros import open_ros
 from graph.station import LOOK_AT_GRAPH_S, Station
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -98,8 +99,9 @@ class Observer(Asking):
             # This imports rclpy; the screen need not wait for it.
             station = Station(open_ros(self._domain, self._discovery))
         except Exception as error:  # noqa: BLE001 - told to the screen
-            end = ObserverError(f"ROS cannot be used: {error}")
-            self._tell(on_update, GraphUpdate(time.time(), error=str(end)))
+            words = say("ROS cannot be used: {error}", error=str(error))
+            end = ObserverError(words)
+            self._tell(on_update, GraphUpdate(time.time(), error=words))
         else:
             try:
                 self._observe(station, on_update)
@@ -124,7 +126,9 @@ class Observer(Asking):
             except Exception as error:
                 # The graph is in motion while it is looked at: the next look has another chance.
                 logger.exception("a look at the graph failed")
-                error_update = GraphUpdate(time.time(), error=f"the ROS graph: {error}")
+                error_update = GraphUpdate(
+                    time.time(), error=say("the ROS graph: {error}", error=str(error))
+                )
                 self._tell(on_update, error_update)
                 next_look_s, due_s = time.monotonic() + LOOK_AT_GRAPH_S, None
             until_s = next_look_s if due_s is None else min(next_look_s, due_s)

@@ -115,7 +115,8 @@ class ActionPane(AskPane):
         try:
             number = await asyncio.wrap_future(future)
         except Exception as error:  # noqa: BLE001 - whatever it was, it is told
-            self.warn(_("Not sent: {reason}").format(reason=said(str(error))))
+            reason = said(getattr(error, "words", str(error)))
+            self.warn(_("Not sent: {reason}").format(reason=reason))
             return
         self.redraw()
         self.asked_rows.choose(str(number))
