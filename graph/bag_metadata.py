@@ -80,7 +80,13 @@ def information(
         "compression_mode": "",
         "relative_file_paths": [file],
         "files": [
-            {"path": file, "starting_time": begun, "duration": span, "message_count": messages}
+            # Copies: YAML would write one object in two places as an alias.
+            {
+                "path": file,
+                "starting_time": dict(begun),
+                "duration": dict(span),
+                "message_count": messages,
+            }
         ],
         "custom_data": None,
         "ros_distro": os.environ.get("ROS_DISTRO", "jazzy"),

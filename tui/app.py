@@ -15,14 +15,18 @@ from tui.actions import REGISTRY, Acting, Action, bindings, bound
 from tui.actions.app import (
     APP_ACTIONS,
 )
+from tui.actions.recording import RECORDING_ACTIONS
+from tui.actions.replay import REPLAY_ACTIONS
 from tui.brake import Brake
 from tui.feed import Feed, GraphReady
 from tui.i18n import LANGUAGES, NAMES, _, language, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
 from tui.orders import Order
+from tui.recording import Recording
 from tui.screens.opening import OpeningScreen
 from tui.sessions import Sessions
 from tui.themes import CYCLE, HIGH_CONTRAST, after
+from tui.widgets.replay_bar import ReplayBar
 
 if TYPE_CHECKING:
     from textual.command import Provider
@@ -53,7 +57,9 @@ class DeckApp(App[int], Acting):
     """One screen for the lessons."""
 
     TITLE = "Deck"
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*APP_ACTIONS)
+    BINDINGS: ClassVar[list[BindingType]] = bindings(
+        *APP_ACTIONS, *REPLAY_ACTIONS, *RECORDING_ACTIONS
+    )
     COMMANDS: ClassVar = {_commands}
     ENABLE_COMMAND_PALETTE = False
     """Textual's own key for it; ours speaks the language of the screen."""
@@ -70,6 +76,7 @@ class DeckApp(App[int], Acting):
         self.sessions = Sessions(self, pad, order)
         self.feed = Feed(self)
         self.brake = Brake(self)
+        self.recording = Recording(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
         self.register_theme(HIGH_CONTRAST)
 
@@ -132,6 +139,11 @@ class DeckApp(App[int], Acting):
         """Tell every screen, and the keys: a release is possible only when engaged."""
         self.feed.tell(lambda: EmergencyChanged(self.brake.state))
         self.refresh_bindings()
+
+    def replay_changed(self) -> None:
+        """Show at once where the recording is now."""
+        for bar in self.screen.query(ReplayBar):
+            bar.look()
 
     def keys_of(self, action: type[Action[Any]]) -> list[str]:
         """Return how the keys of `action` are written, those of the user's keymap."""

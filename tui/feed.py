@@ -20,6 +20,7 @@ from tui.screens.base import DeckScreen
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
+    from graph.replay import Replay
     from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, SessionInfo
     from tui.app import DeckApp
@@ -46,6 +47,11 @@ class Feed:
         self.history = LogHistory()
         self.ended = ""
         """Why the session before has ended."""
+
+    @property
+    def replay(self) -> Replay | None:
+        """The recording that is played in place of a robot, None for a robot."""
+        return getattr(self.link, "replay", None)
 
     @property
     def session(self) -> SessionInfo | None:
@@ -80,6 +86,8 @@ class Feed:
 
     async def disconnect(self, ended: str = "") -> None:
         """Let go of the session; stopping it is not done here."""
+        # The recorder has threads of its own, and a bag to be ended in order.
+        await self._app.recording.end()
         link, graph = self.link, self.graph
         self.link = self.graph = None
         self.ended = ended

@@ -18,11 +18,13 @@ from tui.orders import Lesson
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from graph.replay import Replay
     from launcher.catalog import ProfileEntry
     from launcher.client import SupervisorClient
     from launcher.client_start import StartingSupervisor
     from launcher.status import SessionInfo
-    from tui.orders import Order
+    from tui.orders import Order, ReplayOrder
+    from tui.replay import ReplayLink
     from tui.seams import GraphLink, SessionLink
 
 
@@ -33,6 +35,8 @@ class LivePad:
         self._starting = asyncio.Lock()
         self._ahead: StartingSupervisor | None = None
         """Imports what nodes need while a person chooses; it ends with this process."""
+        self._replay: Replay | None = None
+        """The recording that was opened last, if it was one."""
 
     async def lessons(self) -> list[Lesson]:
         """Return every profile there is, broken ones with their error."""
@@ -61,7 +65,12 @@ class LivePad:
                 self._ahead = await asyncio.to_thread(StartingSupervisor)
 
     async def open(self, order: Order) -> SessionLink:
-        """Start the profile, or attach to the session."""
+        """Start the profile, attach to the session, or open the recording."""
+        self._replay = None
+        if order.replay is not None:
+            recording = await asyncio.to_thread(_opened_bag, order.replay)
+            self._replay = recording.replay
+            return recording
         if order.profile is not None:
             await self._start_ahead()
         await _imported("launcher.client")
@@ -89,12 +98,27 @@ class LivePad:
         )
 
     def observe(self, session: SessionInfo) -> GraphLink:
-        """Return the graph of the session's domain."""
+        """Return the graph of the session's domain, or the recording that stands for it."""
+        if self._replay is not None:
+            return self._replay
         from graph.observer import Observer
         from launcher.discovery import hurry_discovery
 
         hurry_discovery(os.environ, session.discovery)
         return Observer(session.domain, session.discovery)
+
+
+def _opened_bag(order: ReplayOrder) -> ReplayLink:
+    from graph.bag_errors import BagError
+    from graph.replay import Replay
+    from launcher.errors import UsageError
+    from tui.replay import ReplayLink
+
+    try:
+        replay = Replay(order.bag, rate=order.rate, loop=order.loop, start_s=order.start_s)
+    except BagError as error:
+        raise UsageError(error.words) from error
+    return ReplayLink(replay)
 
 
 async def _imported(*modules: str) -> None:

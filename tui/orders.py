@@ -24,11 +24,21 @@ class Lesson(NamedTuple):
     """Why it cannot be started: `file:line:column: field: message`; empty if it can."""
 
 
+class ReplayOrder(NamedTuple):
+    """A recording to be played, and how."""
+
+    bag: Path
+    rate: float = 1.0
+    loop: bool = False
+    start_s: float = 0.0
+
+
 class Order(NamedTuple):
-    """What is to be opened: a profile to be started, or a session that runs already."""
+    """What is to be opened: a profile to be started, a session that runs, or a recording."""
 
     profile: Path | None = None
     attach: str | None = None
     hardware: str = "mock"
     overrides: tuple[str, ...] = ()
     domain: int | None = None
+    replay: ReplayOrder | None = None

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.errors import LauncherError
 from tui.i18n import said
+from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
-    from launcher.status import Stray
+    from launcher.status import SessionInfo, Stray
     from tui.app import DeckApp
     from tui.orders import Order
     from tui.seams import Launchpad
@@ -27,7 +28,7 @@ class Sessions:
         self.pad = pad
         self.order = order
         """What every order has: hardware, overrides, domain; and what was named to begin with."""
-        self.picking = order.profile is None and order.attach is None
+        self.picking = not _name_of(order)
         """Whether the picker is where one comes from, and goes back to."""
         self.opening = "" if self.picking else _name_of(order)
         """What is being opened, empty if nothing is."""
@@ -84,10 +85,21 @@ class Sessions:
             self.opening = ""
         app.brake.forget()
         app.feed.connect(link, self.pad.observe(link.session))
+        if app.feed.replay is not None:
+            await self._show_recording(link.session)
         app.brake.prepare()
         app.refresh_bindings()
         await app.feed.listen()
         app.refresh_bindings()
+
+    async def _show_recording(self, session: SessionInfo) -> None:
+        """Begin where there is something to see, and say what is missing of the recording."""
+        if not session.panels:
+            await self._app.show_screen("topics")
+        replay = self._app.feed.replay
+        if replay is not None and replay.state.cut:
+            words = plain(said(replay.state.cut), 600)
+            self._app.notify(words, severity="warning", timeout=20, markup=False)
 
     async def _refuse(self, error: LauncherError) -> None:
         """Say why nothing was opened: where it was picked, or by ending."""
@@ -166,4 +178,6 @@ def words_of(error: LauncherError) -> str:
 
 
 def _name_of(order: Order) -> str:
+    if order.replay is not None:
+        return order.replay.bag.resolve().stem
     return order.attach or (order.profile or Path()).stem

@@ -56,7 +56,20 @@ def states(app: DeckApp) -> Sequence[str]:
     if app.brake.state.blocked:
         reason = plain(app.brake.state.blocked, 400)
         return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
-    return _running(app, session)
+    return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
+
+
+def _replayed(session: SessionInfo) -> Sequence[str]:
+    name = plain(session.name)
+    return (_("recording {name}").format(name=name), name)
+
+
+def _recorded(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+    """Return what runs, after what is recorded of it."""
+    words = app.recording.words
+    if not words:
+        return _running(app, session)
+    return (*(f"{words} · {running}" for running in _running(app, session)), words)
 
 
 def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:

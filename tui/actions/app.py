@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tui.actions.action import Action
-from tui.i18n import N_
+from tui.i18n import N_, _
 
 if TYPE_CHECKING:
     from tui.app import DeckApp
@@ -37,7 +37,10 @@ class EmergencyStop(SessionAction):
     @classmethod
     async def run(cls, target: DeckApp) -> None:
         """Engage it; an engaged one is told again."""
-        target.brake.engage()
+        if target.feed.replay is None:
+            target.brake.engage()
+        else:
+            target.notify(_("This is a recording: there is nothing to stop."), markup=False)
 
 
 class EmergencyRelease(SessionAction):
@@ -53,7 +56,8 @@ class EmergencyRelease(SessionAction):
     @classmethod
     def possible(cls, target: DeckApp) -> bool | None:
         """Only while it is engaged."""
-        return target.feed.link is not None and target.brake.state.engaged
+        live = target.feed.link is not None and target.feed.replay is None
+        return live and target.brake.state.engaged
 
     @classmethod
     async def run(cls, target: DeckApp) -> None:

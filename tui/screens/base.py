@@ -10,6 +10,7 @@ from tui import title
 from tui.actions import Acting
 from tui.messages import EmergencyChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.key_bar import KeyBar
+from tui.widgets.replay_bar import ReplayBar
 from tui.widgets.title_bar import TitleBar
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class DeckScreen(Screen[None], Acting):
     """Which tab of the title bar is in front while this screen is."""
     about: ClassVar[str] = ""
     """What the screen shows, in a few sentences for the help page, marked by `N_`."""
-    period_s: ClassVar[float] = 0.25
+    period_s: float = 0.25
     """Seconds between two updates of the graph while this screen is in front."""
     measure_all: bool = False
     """Whether the rates of every topic are wanted while this screen is in front."""
@@ -62,6 +63,7 @@ class DeckScreen(Screen[None], Acting):
         """Put the frame around the body."""
         yield TitleBar()
         yield from self.compose_body()
+        yield ReplayBar()
         yield KeyBar()
 
     def compose_body(self) -> ComposeResult:
@@ -122,3 +124,5 @@ class DeckScreen(Screen[None], Acting):
         deck = self.deck
         for bar in self.query(TitleBar):
             bar.show(title.tabs(deck, self.tab), title.states(deck), title.look(deck))
+        for place in self.query(ReplayBar):
+            place.show(self.feed.replay)

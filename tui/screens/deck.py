@@ -83,12 +83,15 @@ class LessonDeck(DeckScreen):
         #command { display: none; padding: 0 1; border-top: none; background: $panel; }
         &.-driven #command { display: block; }
         &.-home.-shelved #shelf, &.-wide.-shelved #shelf { row-span: 2; }
+        &.-recorded.-shelved #shelf { row-span: 1; }
         &.-compact.-shelved #nodes { column-span: 2; }
         &.-compact.-shelved #board { grid-columns: 2fr 3fr; }
         #small { display: none; height: 1; width: 1fr; color: $text-warning; }
         &.-small #shelf { display: none; }
         &.-small #board { grid-size: 1; }
         &.-small.-shelved #small { display: block; }
+        &.-recorded #nodes, &.-recorded #talk { display: none; }
+        &.-recorded.-shelved #board { grid-size: 1; grid-columns: 1fr; }
     }
     """
 
@@ -217,6 +220,7 @@ class LessonDeck(DeckScreen):
         if self.pane.view.ring.entries:
             self.pane.view.clear()
         self.pane.save_folder = session.log_dir
+        self.set_class(self.feed.replay is not None, "-recorded")
         await self._put_up(session.panels)
         self._lay_out(self.size.height)
         self.topics_changed()
@@ -285,6 +289,9 @@ class LessonDeck(DeckScreen):
 
     def _lay_out(self, height: int) -> None:
         """Give the table of nodes the rows it needs, but never most of them."""
+        if self.feed.replay is not None:
+            self.query_one("#board").styles.grid_rows = "1fr"
+            return
         wanted = len(self.feed.nodes) + 1
         rows = max(2, min(wanted, height * 9 // 20))
         self.query_one("#board").styles.grid_rows = f"{rows} 1fr"

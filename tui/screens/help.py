@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 from textual.screen import ModalScreen
 
 from tui.actions import Acting, Action, bindings, bound
+from tui.actions.replay import ReplayAction
 from tui.i18n import N_, _
 from tui.screens.base import DeckScreen
 from tui.widgets.key_bar import KeyBar
@@ -82,7 +83,7 @@ class HelpScreen(ModalScreen[None], Acting):
             yield Entry()
             yield Entry(_(screen.about))
         yield from self._section(_("Keys of this screen"), list(bound(screen)))
-        yield from self._section(_("Keys of every screen"), list(bound(self.app)))
+        yield from self._section(_("Keys of every screen"), self._everywhere())
         yield Entry()
         yield Entry(
             _(
@@ -90,6 +91,12 @@ class HelpScreen(ModalScreen[None], Acting):
                 "letters, digits and space are typed: use Ctrl and the function keys there."
             )
         )
+
+    def _everywhere(self) -> list[type[Action[Any]]]:
+        """Return what the app can do; what is for recordings only beside one."""
+        replayed = cast("DeckApp", self.app).feed.replay is not None
+        actions = list(bound(self.app))
+        return [each for each in actions if replayed or not issubclass(each, ReplayAction)]
 
     def _section(self, heading: str, actions: list[type[Action[Any]]]) -> Iterable[Entry]:
         if actions:

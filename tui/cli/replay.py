@@ -1,0 +1,39 @@
+"""`deck replay`: the screen on a recording; no robot, no ROS."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.errors import UsageError
+from tui.cli.output import say_error
+from tui.cli.screen import has_terminal
+from tui.i18n import _
+from tui.orders import Order, ReplayOrder
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+
+def replay_command(options: Namespace) -> int:
+    """Show the screen on a bag until it is left; 2 for what is no bag."""
+    bag = Path(options.bag)
+    if not has_terminal():
+        _check(bag)
+        say_error(_("replay needs a terminal; `ros2 bag play` does without"))
+        return 2
+    from tui.live import run_live
+
+    order = ReplayOrder(bag, options.rate, options.loop, options.start)
+    return run_live(Order(replay=order), options.lang)
+
+
+def _check(bag: Path) -> None:
+    """Say what is wrong with the bag, before anything is said about the terminal."""
+    from graph.bag import open_bag
+    from graph.bag_errors import BagError
+
+    try:
+        open_bag(bag).close()
+    except BagError as error:
+        raise UsageError(error.words) from error
