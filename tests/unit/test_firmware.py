@@ -1,4 +1,4 @@
-"""The files of the Pico under MicroPython itself, with only the pins replaced and a clock by hand."""
+"""The files of the Pico under MicroPython, with only the pins replaced and a clock by hand."""
 
 from __future__ import annotations
 

@@ -1,0 +1,198 @@
+"""A robot that is not there, in a room that is not there: the same orders give the same drive.
+
+Time passes in steps of `STEP_S`. Each rear wheel follows what was asked of it with a lag, the
+steering turns at its own pace, the robot moves as a bicycle does, and stands where it touches
+something. No clock is read and no dice are thrown that were not seeded.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import dataclass, field
+
+from robot.kinematics import TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M
+from robot.odometry import Pose, advance
+from robot.words import DriveSetpoint
+from robot.world_room import LIVING_ROOM, Box, Room
+
+STEP_S = 0.01
+_AWAY_M = 0.02
+
+
+@dataclass(frozen=True)
+class Body:
+    """Measures of the robot. Its own point is the middle of the rear axle."""
+
+    wheelbase_m: float = WHEELBASE_M
+    track_m: float = TRACK_M
+    wheel_radius_m: float = WHEEL_RADIUS_M
+    length_m: float = 0.35
+    width_m: float = 0.20
+    behind_m: float = 0.05
+    """From the rear axle to the bumper behind it."""
+    motor_lag_s: float = 0.08
+    """A wheel makes 63 % of a change of speed in this time."""
+    braking_m_s2: float = 2.5
+    """A wheel that shall stand loses speed at least so fast."""
+    steering_rad_s: float = 5.0
+    max_wheel_rad_s: float = 20.0
+    max_steering_rad: float = 0.6
+
+    def outline(self, pose: Pose) -> Box:
+        """What it covers of the floor."""
+        ahead_m = self.length_m / 2 - self.behind_m
+        x_m = pose.x_m + ahead_m * math.cos(pose.heading_rad)
+        y_m = pose.y_m + ahead_m * math.sin(pose.heading_rad)
+        return Box(x_m, y_m, self.length_m, self.width_m, pose.heading_rad)
+
+
+@dataclass
+class Wheels:
+    """Two rear wheels and the steering; as asked for, or as they are."""
+
+    left_rad_s: float = 0.0
+    right_rad_s: float = 0.0
+    steering_rad: float = 0.0
+
+
+@dataclass(frozen=True)
+class Sonar:
+    """A distance sensor at a bumper: it looks forward, or backward."""
+
+    forward: bool = True
+    nearest_m: float = 0.2
+    farthest_m: float = 8.0
+    noise_m: float = 0.01
+    """Standard deviation."""
+    dropout: float = 0.01
+    """Share of readings that are no distance."""
+    rays_rad: tuple[float, ...] = (-0.02, 0.0, 0.02)
+    """Directions within its beam; the nearest counts."""
+
+    def true_m(self, room: Room, body: Body, pose: Pose) -> float:
+        """What a perfect sensor would measure, without limits."""
+        offset_m = body.length_m - body.behind_m if self.forward else -body.behind_m
+        x_m = pose.x_m + offset_m * math.cos(pose.heading_rad)
+        y_m = pose.y_m + offset_m * math.sin(pose.heading_rad)
+        heading = pose.heading_rad + (0.0 if self.forward else math.pi)
+        return min(room.distance(x_m, y_m, heading + ray) for ray in self.rays_rad)
+
+    def read(self, room: Room, body: Body, pose: Pose, dice: random.Random) -> float:
+        """A reading by REP-117: +inf nothing in range, -inf too close, nan no valid reading."""
+        noise_m, dropped = dice.gauss(0.0, self.noise_m), dice.random() < self.dropout
+        if dropped:
+            return math.nan
+        metres = self.true_m(room, body, pose) + noise_m
+        if metres < self.nearest_m:
+            return -math.inf
+        return metres if metres <= self.farthest_m else math.inf
+
+
+@dataclass
+class World:
+    """The room, the robot, and what has become of it so far."""
+
+    room: Room = LIVING_ROOM
+    body: Body = Body()
+    pose: Pose = field(default_factory=Pose)
+    seed: int = 0
+    front: Sonar = Sonar()
+    rear: Sonar = Sonar(forward=False)
+    asked: Wheels = field(default_factory=Wheels)
+    """What the wheels shall do; to be set from outside."""
+    stalled: tuple[bool, bool] = (False, False)
+    """Left and right: a motor that does not turn."""
+    wheels: Wheels = field(default_factory=Wheels)
+    steps: int = 0
+    collisions: int = 0
+    """How often the robot has run into something."""
+    travelled_m: float = 0.0
+    _dice: random.Random = field(init=False, repr=False)
+    _free_m: float = field(default=0.0, init=False, repr=False)
+    """The robot may move so far before it can touch anything."""
+    _rest_s: float = field(default=0.0, init=False, repr=False)
+    _since_hit_m: float = field(default=math.inf, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        self._dice = random.Random(self.seed)
+
+    @property
+    def now_s(self) -> float:
+        """Seconds since the beginning."""
+        return self.steps * STEP_S
+
+    @property
+    def speed_m_s(self) -> float:
+        """Of the rear axle, + forward."""
+        mean_rad_s = (self.wheels.left_rad_s + self.wheels.right_rad_s) / 2
+        return mean_rad_s * self.body.wheel_radius_m
+
+    def advance(self, seconds: float) -> None:
+        """Let so many whole steps pass; what is left over counts for the next time."""
+        self._rest_s += seconds
+        while self._rest_s >= STEP_S - 1e-9:
+            self._rest_s -= STEP_S
+            self.step()
+
+    def step(self) -> None:
+        """Let `STEP_S` pass."""
+        self.steps += 1
+        self._turn_wheels()
+        command = DriveSetpoint(self.speed_m_s, self.wheels.steering_rad)
+        if command.speed_m_s == 0.0:
+            return
+        pose = advance(self.pose, command, STEP_S, self.body.wheelbase_m)
+        moved_m = abs(command.speed_m_s) * STEP_S
+        if self._would_touch(pose, moved_m):
+            # Leaning on a wall is no new collision.
+            self.collisions += self._since_hit_m > _AWAY_M
+            self._since_hit_m = 0.0
+            self.wheels.left_rad_s = self.wheels.right_rad_s = 0.0
+            return
+        self._since_hit_m += moved_m
+        self.pose = pose
+        self.travelled_m += moved_m
+
+    def read_sonars(self) -> tuple[float, float]:
+        """Front and rear, metres by REP-117; every reading is thrown anew."""
+        front, rear = (
+            sonar.read(self.room, self.body, self.pose, self._dice)
+            for sonar in (self.front, self.rear)
+        )
+        return front, rear
+
+    def _turn_wheels(self) -> None:
+        wheels, asked, body = self.wheels, self.asked, self.body
+        wheels.left_rad_s = self._spin(wheels.left_rad_s, asked.left_rad_s, self.stalled[0])
+        wheels.right_rad_s = self._spin(wheels.right_rad_s, asked.right_rad_s, self.stalled[1])
+        most = body.steering_rad_s * STEP_S
+        goal = _within(asked.steering_rad, body.max_steering_rad)
+        wheels.steering_rad += _within(goal - wheels.steering_rad, most)
+
+    def _spin(self, now: float, asked: float, stalled: bool) -> float:
+        if stalled:
+            return 0.0
+        goal = _within(asked, self.body.max_wheel_rad_s)
+        fresh = now + (goal - now) * (1.0 - math.exp(-STEP_S / self.body.motor_lag_s))
+        if goal == 0.0:
+            # Friction brings it to a stand that a lag alone would only come near to.
+            loss = self.body.braking_m_s2 / self.body.wheel_radius_m * STEP_S
+            fresh = math.copysign(max(0.0, min(abs(fresh), abs(now) - loss)), now)
+        return fresh
+
+    def _would_touch(self, pose: Pose, moved_m: float) -> bool:
+        # No corner moves farther than the axle and the turn take it.
+        turned = abs(math.remainder(pose.heading_rad - self.pose.heading_rad, math.tau))
+        reach_m = math.hypot(self.body.length_m, self.body.width_m)
+        self._free_m -= moved_m + turned * reach_m
+        if self._free_m > 0.0:
+            return False
+        outline = self.body.outline(pose)
+        around_m = math.hypot(outline.length_m, outline.width_m) / 2
+        self._free_m = self.room.clearance(outline.x_m, outline.y_m) - around_m
+        return self._free_m <= 0.0 and self.room.touches(outline)
+
+
+def _within(value: float, most: float) -> float:
+    return max(-most, min(most, value)) if math.isfinite(value) else 0.0

@@ -1,0 +1,258 @@
+"""The simulated room and robot: rays, motion, collisions, and an hour through the gate."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot.kinematics import wheel_speeds
+from robot.odometry import Point, Pose
+from robot.safety import Reading, gate, look, where
+from robot.words import STOP, DriveSetpoint
+from robot.world import STEP_S, Body, Sonar, Wheels, World
+from robot.world_room import LIVING_ROOM, Box, Room
+
+EMPTY = Room(Box(0.0, 0.0, 10.0, 10.0))
+small = st.floats(-4.0, 4.0)
+angles = st.floats(-math.pi, math.pi)
+orders = st.lists(st.tuples(st.floats(-30, 30), st.floats(-30, 30), st.floats(-1, 1)), max_size=6)
+
+
+def drive(world: World, speed: float, steering: float = 0.0) -> None:
+    wheels = wheel_speeds(speed, steering)
+    radius = world.body.wheel_radius_m
+    world.asked = Wheels(wheels.left_m_s / radius, wheels.right_m_s / radius, steering)
+
+
+# ---------------------------------------------------------------- the room
+
+
+@given(small, small, angles)
+def test_a_ray_ends_at_a_wall(x: float, y: float, heading: float) -> None:
+    distance = EMPTY.distance(x, y, heading)
+    end = x + distance * math.cos(heading), y + distance * math.sin(heading)
+    assert max(map(abs, end)) == pytest.approx(5.0)
+    assert EMPTY.clearance(x, y) <= distance + 1e-9
+    assert EMPTY.clearance(x, y) == pytest.approx(5.0 - max(abs(x), abs(y)))
+
+
+def test_a_ray_sees_the_nearest_box() -> None:
+    room = Room(Box(0, 0, 10, 10), [Box(2, 0, 1, 1), Box(4, 0, 0.5, 0.5)])
+    assert room.distance(0, 0, 0) == pytest.approx(1.5)
+    assert room.distance(0, 0, math.pi) == pytest.approx(5.0)
+    assert room.distance(0, 0, math.pi / 4) == pytest.approx(5 * math.sqrt(2))
+    assert room.holds(Point(0, 0))
+    assert not room.holds(Point(2, 0.2))
+    assert not room.holds(Point(6, 0))
+
+
+@given(small, small, angles, st.floats(0.05, 3), st.floats(0.05, 3))
+def test_what_is_far_from_the_walls_does_not_touch_them(
+    x: float, y: float, heading: float, length: float, width: float
+) -> None:
+    box = Box(x, y, length, width, heading)
+    if EMPTY.clearance(x, y) > math.hypot(length, width) / 2 + 1e-6:
+        assert not EMPTY.touches(box)
+    outside = any(max(map(abs, corner)) > 5 + 1e-6 for corner in box.corners())
+    if outside:
+        assert EMPTY.touches(box)
+
+
+def test_a_box_inside_of_the_robot_touches_it() -> None:
+    assert Room(Box(0, 0, 10, 10), [Box(0, 0, 0.1, 0.1)]).touches(Box(0, 0, 1, 1))
+
+
+# ---------------------------------------------------------------- the robot
+
+
+def test_it_drives_straight_at_the_speed_asked_for_after_a_lag() -> None:
+    world = World(EMPTY)
+    drive(world, 0.3)
+    world.advance(world.body.motor_lag_s)
+    assert world.speed_m_s == pytest.approx(0.3 * (1 - math.exp(-1)), abs=0.01)
+    world.advance(5.0)
+    assert world.speed_m_s == pytest.approx(0.3, abs=1e-4)
+    assert world.pose.x_m == pytest.approx(0.3 * (5.0), abs=0.03)
+    assert world.pose.y_m == 0
+
+
+def test_it_turns_on_the_circle_of_the_differential() -> None:
+    world = World(EMPTY)
+    drive(world, 0.3, 0.5)
+    world.advance(2.0)
+    far = [world.pose]
+    for _ in range(2):
+        world.advance(2.0)
+        far.append(world.pose)
+    # Three points of a circle of R = 0.4576 m.
+    (ax, ay), (bx, by), (cx, cy) = ((pose.x_m, pose.y_m) for pose in far)
+    a, b, c = (
+        math.dist((bx, by), (cx, cy)),
+        math.dist((ax, ay), (cx, cy)),
+        math.dist((ax, ay), (bx, by)),
+    )
+    area = abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay)) / 2
+    assert a * b * c / (4 * area) == pytest.approx(0.4576, abs=0.001)
+
+
+def test_a_stop_stops_within_centimetres_and_for_good() -> None:
+    world = World(EMPTY)
+    drive(world, 0.5)
+    world.advance(2.0)
+    before = world.pose.x_m
+    drive(world, 0.0)
+    world.advance(0.4)
+    assert world.speed_m_s == 0
+    assert world.pose.x_m - before < 0.06
+
+
+def test_it_stands_at_the_wall_and_can_back_off() -> None:
+    world = World(EMPTY, pose=Pose(4.0, 0.0))
+    drive(world, 0.5)
+    world.advance(5.0)
+    assert world.collisions == 1
+    nose = world.pose.x_m + world.body.length_m - world.body.behind_m
+    assert nose == pytest.approx(5.0, abs=0.02)
+    drive(world, -0.3)
+    world.advance(1.0)
+    assert world.pose.x_m < 4.6
+    assert world.collisions == 1
+
+
+def test_a_stalled_motor_does_not_turn() -> None:
+    world = World(EMPTY, stalled=(True, False))
+    drive(world, 0.3)
+    world.advance(1.0)
+    assert world.wheels.left_rad_s == 0
+    assert world.wheels.right_rad_s > 5
+
+
+@given(orders, st.integers(0, 5))
+def test_the_same_orders_give_the_same_drive_however_time_is_cut(
+    sent: list[tuple[float, float, float]], seed: int
+) -> None:
+    results = []
+    for cuts in (1, 7):
+        world = World(seed=seed)
+        for left, right, steering in sent:
+            world.asked = Wheels(left, right, steering)
+            for _ in range(cuts):
+                world.advance(0.21 / cuts)
+        results.append((world.pose, world.steps, world.collisions, repr(world.read_sonars())))
+    assert results[0] == results[1]
+
+
+@given(orders)
+def test_it_is_never_inside_of_anything(sent: list[tuple[float, float, float]]) -> None:
+    world = World()
+    for left, right, steering in sent:
+        world.asked = Wheels(left, right, steering)
+        world.advance(1.0)
+        assert not world.room.touches(world.body.outline(world.pose))
+
+
+@given(st.tuples(st.floats(), st.floats(), st.floats()))
+def test_orders_that_are_no_numbers_do_no_harm(order: tuple[float, float, float]) -> None:
+    world = World()
+    world.asked = Wheels(*order)
+    world.advance(0.3)
+    assert world.pose.is_finite
+
+
+# ---------------------------------------------------------------- the sonars
+
+
+def test_a_sonar_tells_what_is_before_it_and_what_it_cannot() -> None:
+    dice, body = random.Random(1), Body()
+    exact = Sonar(noise_m=0, dropout=0)
+    assert exact.read(EMPTY, body, Pose(4, 0), dice) == pytest.approx(0.7)
+    assert replace(exact, forward=False).read(EMPTY, body, Pose(-4, 0), dice) == pytest.approx(0.95)
+    assert exact.read(EMPTY, body, Pose(4.6, 0), dice) == -math.inf
+    assert exact.read(EMPTY, body, Pose(-4, 0), dice) == math.inf
+    assert math.isnan(replace(exact, dropout=1.0).read(EMPTY, body, Pose(), dice))
+
+
+def test_noise_and_dropouts_are_as_many_as_asked_for() -> None:
+    dice, sonar = random.Random(2), Sonar(noise_m=0.02, dropout=0.1)
+    read = [sonar.read(EMPTY, Body(), Pose(2, 0), dice) for _ in range(2000)]
+    good = [metres for metres in read if not math.isnan(metres)]
+    assert len(good) == pytest.approx(1800, abs=60)
+    mean = sum(good) / len(good)
+    assert mean == pytest.approx(2.7, abs=0.003)
+    assert math.sqrt(sum((metres - mean) ** 2 for metres in good) / len(good)) == pytest.approx(
+        0.02, abs=0.002
+    )
+
+
+# ---------------------------------------------------------------- an hour through the gate
+
+
+CRITICAL_M, STALE_S = 0.3, 0.3
+CONTROL_STEPS = 5
+
+
+class Driver:
+    """Drives at random, sends nonsense now and then, and hears its sonars only as the gate does."""
+
+    def __init__(self, world: World, seed: int, gated: bool) -> None:
+        self.world, self.dice, self.gated = world, random.Random(seed), gated
+        self.asked = STOP
+        self.readings = [(math.nan, -1.0), (math.nan, -1.0)]
+        self.silent_until_s = 0.0
+        self.avoidable = 0
+
+    def round(self) -> None:
+        """One look, one command, and the time until the next."""
+        world, dice = self.world, self.dice
+        if dice.random() < 0.002:
+            self.silent_until_s = world.now_s + dice.uniform(0.1, 1.0)
+        if world.now_s >= self.silent_until_s:
+            self.readings = [(metres, world.now_s) for metres in world.read_sonars()]
+        if dice.random() < 0.02:
+            speed = dice.choice([0.5, 0.3, -0.3, -0.5, 0.0])
+            self.asked = DriveSetpoint(speed, dice.uniform(-0.5, 0.5))
+        noisy = DriveSetpoint(self.asked.speed_m_s + dice.gauss(0, 0.02), self.asked.steering_rad)
+        if dice.random() < 0.005:
+            noisy = DriveSetpoint(math.nan, 0.0)
+        sights = [
+            look(Reading(metres, world.now_s - then), CRITICAL_M, STALE_S)
+            for metres, then in self.readings
+        ]
+        command = gate(noisy, where(sights[0], sights[1], False)) if self.gated else noisy
+        if math.isfinite(command.speed_m_s):
+            drive(world, max(-0.5, min(0.5, command.speed_m_s)), command.steering_rad)
+        self._pass()
+
+    def _pass(self) -> None:
+        world = self.world
+        for _ in range(CONTROL_STEPS):
+            speed, before = world.speed_m_s, world.collisions
+            world.step()
+            if world.collisions > before:
+                sonar = world.front if speed > 0 else world.rear
+                # What it ran into stood before its sonar, and not beside the beam.
+                ahead_m = sonar.true_m(world.room, world.body, world.pose)
+                self.avoidable += ahead_m < 0.02 + abs(speed) * STEP_S
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_an_hour_among_boxes_has_no_collision_that_a_stop_could_have_avoided() -> None:
+    driver = Driver(World(LIVING_ROOM, seed=3), seed=4, gated=True)
+    for _ in range(int(3600 / STEP_S) // CONTROL_STEPS):
+        driver.round()
+    assert driver.world.now_s == pytest.approx(3600)
+    assert driver.world.travelled_m > 100
+    assert driver.avoidable == 0
+
+
+def test_without_the_gate_the_same_driver_does_run_into_things() -> None:
+    driver = Driver(World(LIVING_ROOM, seed=3), seed=4, gated=False)
+    for _ in range(2000):
+        driver.round()
+    assert driver.avoidable > 0
