@@ -48,7 +48,7 @@ class PublishOnce(PublishAction):
 
     id = "publish.once"
     key = "ctrl+s,f6"
-    title = N_("Publish")
+    title = N_("Once")
     tooltip = N_("Publish the message once, if nothing is wrong with it.")
 
     @classmethod

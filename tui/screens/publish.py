@@ -57,9 +57,9 @@ class PublishDialog(Dialog[None]):
     BINDINGS: ClassVar = bindings(*PUBLISH_ACTIONS)
     DEFAULT_CSS: ClassVar[str] = """
     PublishDialog {
-        align: center top;
+        align: center top; background: $background;
         TitleBar { dock: top; }
-        #dialog { width: 100; height: 1fr; max-height: 44; padding: 0 1; }
+        #dialog { width: 120; height: 1fr; max-height: 100%; padding: 0 1; }
         YamlForm { border-top: solid $panel; border-bottom: solid $panel; }
     }
     """
@@ -178,7 +178,7 @@ class PublishDialog(Dialog[None]):
         self.target.type.set(sample.type_name)
         self.form.load(sample.type_name, text)
         if is_cut(sample.value, LONGEST_ARRAY):
-            self.rate.tell(lambda: _("Its long arrays were cut: see the remarks."), "bad")
+            self.rate.tell(lambda: _("Its long arrays were cut: see the remarks."))
         else:
             self.rate.tell(lambda: _("Filled in from the newest message."))
 
@@ -219,8 +219,7 @@ class PublishDialog(Dialog[None]):
 
     @on(YamlForm.Checked)
     def _checked(self) -> None:
-        # What was said of an earlier text would stand beside a verdict on this one.
-        if self.rate.says_bad:
+        if self.form.error is None and self.rate.says_bad:
             self.rate.tell(lambda: "")
 
     async def _confirm_once(self, topic: str, future: Future[int]) -> None:

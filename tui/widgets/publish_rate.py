@@ -9,6 +9,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
+from graph.publications import LEAST_HZ, MOST_HZ
 from tui.i18n import _
 from tui.widgets.plain import plain
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
     from textual.app import ComposeResult
 
-SLOWEST_HZ, FASTEST_HZ = 0.01, 1000.0
 LONGEST = 300
 
 
@@ -72,9 +72,9 @@ class PublishRate(Horizontal):
             hz = float(self.field.value.replace(",", "."))
         except ValueError:
             hz = 0.0
-        if SLOWEST_HZ <= hz <= FASTEST_HZ:
+        if LEAST_HZ <= hz <= MOST_HZ:
             return hz
-        limits = {"least": f"{SLOWEST_HZ:g}", "greatest": f"{FASTEST_HZ:g}"}
+        limits = {"least": f"{LEAST_HZ:g}", "greatest": f"{MOST_HZ:g}"}
         self.tell(lambda: _("The rate is {least} to {greatest} Hz.").format(**limits), "bad")
         self.field.focus()
         return None

@@ -1,0 +1,262 @@
+"""The dialog that publishes: what it sends, what it refuses, and what it says of it."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from graph.data import Publication
+from graph.outbox import PublishError
+from tests.tui.app_runs import opened
+from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
+from tui.screens.publish import PublishDialog
+from tui.screens.topics import TopicsScreen
+from tui.widgets.publications import Publications
+from tui.widgets.title_bar import TitleBar
+
+if TYPE_CHECKING:
+    from textual.pilot import Pilot
+
+    from tui.app import DeckApp
+
+DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
+
+
+class Desk:
+    """The dialog over the recorded topics, under a pilot."""
+
+    def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
+        self.app, self.pilot, self.graph = app, pilot, graph
+
+    @property
+    def dialog(self) -> PublishDialog:
+        """The dialog."""
+        screen = self.app.screen
+        assert isinstance(screen, PublishDialog)
+        return screen
+
+    async def open(self, topic: str = "/drive", key: str = "n") -> None:
+        """Choose a topic, let its message come, and open the dialog."""
+        screen = self.app.screen
+        assert isinstance(screen, TopicsScreen)
+        screen.table.choose(topic)
+        await self.pilot.pause()
+        before = self.graph.update or lesson_update()
+        self.graph.show(replace(lesson_update(), publications=before.publications))
+        await self.pilot.pause()
+        await self.pilot.press(key)
+        await self.until(lambda: self.dialog.form.value is not None)
+
+    async def until(self, true: Any) -> None:
+        """Wait until this is so."""
+        for _round in range(500):
+            await self.pilot.pause(0.02)
+            if true():
+                return
+        pytest.fail("it did not come to that")
+
+    async def says(self, words: str) -> None:
+        """Wait until this is said beside the rate."""
+        for _round in range(500):
+            await self.pilot.pause(0.02)
+            if words in self.dialog.rate.said:
+                return
+        pytest.fail(f"it says {self.dialog.rate.said!r}")
+
+    def fill(self, old: str, new: str) -> None:
+        """Change what stands in the form."""
+        text = self.dialog.form.text
+        assert old in text
+        self.dialog.form.editor.replace_all(text.replace(old, new))
+
+
+@pytest.fixture
+def graph() -> RecordedGraph:
+    """The graph of the lesson."""
+    return RecordedGraph()
+
+
+@pytest.fixture
+async def desk(graph: RecordedGraph) -> AsyncIterator[Desk]:
+    """The screen of topics, the dialog not yet open."""
+    async with opened(RecordedPad(graph=graph), "topics") as (app, pilot):
+        yield Desk(app, pilot, graph)
+
+
+@pytest.mark.parametrize("key", ["n", "т"])
+async def test_a_message_goes_out_once_and_its_listeners_are_told(desk: Desk, key: str) -> None:
+    await desk.open(key=key)
+    assert desk.dialog.target.topic == "/drive"
+    assert desk.dialog.target.type.value == DRIVE
+    desk.fill(" speed: 0.0", " speed: 0.2")
+    await desk.pilot.press("ctrl+s")
+    await desk.says("Sent: 1 subscriber got it.")
+    ((topic, type_name, value, latched),) = desk.graph.published
+    assert (topic, type_name, latched) == ("/drive", DRIVE, False)
+    assert value["drive"]["speed"] == 0.2
+
+
+async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> None:
+    await desk.open()
+    desk.fill(" speed: 0.0", " speed: fast")
+    desk.dialog.rate.field.focus()
+    for key in ("ctrl+s", "ctrl+g"):
+        await desk.pilot.press(key)
+        await desk.says("Not sent")
+    assert (desk.graph.published, desk.graph.repeated) == ([], [])
+    assert "line 9: drive.speed: expected a number, got 'fast'" in desk.dialog.form.verdict
+    assert desk.dialog.focused is desk.dialog.form.editor
+    assert desk.dialog.form.editor.cursor_location == (8, 9)
+    desk.fill("fast", "1")
+    await desk.until(lambda: desk.dialog.rate.said == "")
+
+
+async def test_the_newest_message_fills_the_form(desk: Desk) -> None:
+    await desk.open()
+    await desk.pilot.press("ctrl+t")
+    await desk.until(lambda: "speed: 0.3" in desk.dialog.form.text)
+    assert "frame_id: base_link  # string" in desk.dialog.form.text
+    await desk.pilot.press("ctrl+s")
+    await desk.says("Sent")
+    assert desk.graph.published[0][2]["drive"]["steering_angle"] == 0.5
+
+
+async def test_a_picture_is_cut_and_that_is_said(desk: Desk) -> None:
+    await desk.open("/camera/color/image_raw")
+    await desk.pilot.press("ctrl+t")
+    await desk.says("Its long arrays were cut")
+    await desk.until(lambda: "# the first 1000 of" in desk.dialog.form.text)
+
+
+async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) -> None:
+    await desk.open()
+    desk.dialog.rate.field.value = "2,5"
+    await desk.pilot.press("ctrl+g")
+    await desk.says("Publishing to /drive at 2.5 Hz.")
+    assert [(topic, hz) for topic, _type, _value, hz in desk.graph.repeated] == [("/drive", 2.5)]
+    await desk.until(lambda: desk.dialog.query_one(Publications).chosen_number == 1)
+    assert desk.dialog.query_one(Publications).display
+    # Another on the same topic takes its place.
+    await desk.pilot.press("ctrl+g")
+    await desk.until(lambda: desk.graph.stopped_publications == [1])
+    await desk.until(lambda: desk.dialog.query_one(Publications).chosen_number == 2)
+    await desk.pilot.press("f12")
+    await desk.says("Stopped: /drive")
+    assert desk.graph.stopped_publications == [1, 2]
+    await desk.until(lambda: not desk.dialog.is_publishing)
+    assert not desk.dialog.query_one(Publications).display
+
+
+async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter(
+    desk: Desk,
+) -> None:
+    await desk.open()
+    await desk.pilot.press("ctrl+g")
+    await desk.says("Publishing to /drive")
+    await desk.pilot.press("escape")
+    assert isinstance(desk.app.screen, TopicsScreen)
+    assert desk.graph.stopped_publications == []
+    await desk.open("/ai_command")
+    await desk.until(lambda: desk.dialog.is_publishing)
+    desk.dialog.query_one(Publications).focus()
+    await desk.pilot.press("enter")
+    assert desk.graph.stopped_publications == [1]
+
+
+async def test_a_publication_that_ended_by_itself_says_why(desk: Desk) -> None:
+    await desk.open()
+    gone = Publication(7, "/drive", DRIVE, 10.0, 3, 0, "the type has changed")
+    desk.graph.show(replace(lesson_update(), publications=(gone,)))
+    listed = desk.dialog.query_one(Publications)
+    await desk.until(lambda: "the type has changed" in listed.render_line(1).text)
+
+
+@pytest.mark.parametrize("rate", ["0", "-1", "nan", "inf", "fast", "", "1e9"])
+async def test_a_rate_that_is_none_is_refused(desk: Desk, rate: str) -> None:
+    await desk.open()
+    desk.dialog.rate.field.value = rate
+    await desk.pilot.press("ctrl+g")
+    await desk.says("The rate is")
+    assert desk.graph.repeated == []
+    assert desk.dialog.focused is desk.dialog.rate.field
+
+
+async def test_a_new_topic_needs_a_type_which_is_completed(desk: Desk) -> None:
+    await desk.open()
+    target = desk.dialog.target
+    target.field.focus()
+    target.field.value = "my/new_one"
+    target.type.field.focus()
+    target.type.field.value = "float3"
+    await desk.until(lambda: target.type.is_listing)
+    assert target.type.fitting()[0] == "std_msgs/msg/Float32"
+    # What is only half typed is no type yet.
+    await desk.pilot.press("ctrl+s")
+    await desk.says("Choose the type of /my/new_one.")
+    await desk.pilot.press("down", "up", "enter")
+    await desk.until(lambda: desk.dialog.form.text == "data: 0.0  # float32\n")
+    assert desk.dialog.focused is desk.dialog.form.editor
+    await desk.pilot.press("ctrl+s")
+    await desk.says("Sent")
+    assert desk.graph.published[0][:2] == ("/my/new_one", "std_msgs/msg/Float32")
+
+
+async def test_another_topic_that_is_there_brings_its_type(desk: Desk) -> None:
+    await desk.open()
+    desk.dialog.target.field.value = "/ai_command"
+    await desk.until(lambda: desk.dialog.form.text == 'data: ""  # string\n')
+    assert desk.dialog.target.type.value == "std_msgs/msg/String"
+    # The message that is shown is not of this topic.
+    assert desk.dialog.newest is None
+
+
+async def test_a_type_that_is_not_installed_says_so_and_publishes_nothing(desk: Desk) -> None:
+    await desk.open()
+    desk.dialog.target.field.value = "/new"
+    desk.dialog.target.type.field.focus()
+    desk.dialog.target.type.field.value = "nope_msgs/msg/Thing"
+    await desk.pilot.press("enter")
+    await desk.until(lambda: "nope_msgs is not installed" in desk.dialog.form.verdict)
+    await desk.pilot.press("ctrl+s")
+    await desk.says("Not sent")
+    assert desk.graph.published == []
+
+
+@pytest.mark.parametrize("name", ["", "/", "/1x", "a b", "/a//b", "/привет", "~/x", "/a/"])
+async def test_what_is_no_name_of_a_topic_is_refused(desk: Desk, name: str) -> None:
+    await desk.open()
+    desk.dialog.target.field.value = name
+    await desk.pilot.press("ctrl+s")
+    await desk.says("No name of a topic")
+    assert desk.graph.published == []
+
+
+async def test_what_ros_refuses_is_said(desk: Desk) -> None:
+    desk.graph.publish_error = PublishError("/drive carries std_msgs/msg/Bool")
+    await desk.open()
+    for key in ("ctrl+s", "ctrl+g"):
+        await desk.pilot.press(key)
+        await desk.says("Not sent: /drive carries std_msgs/msg/Bool")
+
+
+async def test_the_emergency_stop_works_from_the_form_and_shows(desk: Desk) -> None:
+    await desk.open()
+    desk.dialog.form.editor.focus()
+    before = desk.dialog.form.text
+    await desk.pilot.press("ctrl+x")
+    await desk.until(lambda: desk.dialog.query_one(TitleBar).has_class("-stop"))
+    assert "EMERGENCY STOP" in desk.dialog.query_one(TitleBar).text
+    assert desk.dialog.form.text == before
+    topic, _type, value, _latched = desk.graph.published[0]
+    assert (topic, value) == ("/emergency_stop", {"data": True})
+
+
+async def test_without_a_session_nothing_is_sent(desk: Desk) -> None:
+    await desk.open()
+    await desk.app.feed.disconnect("it has ended")
+    await desk.pilot.press("ctrl+s")
+    await desk.says("no lesson is running")
+    assert desk.graph.published == []
