@@ -72,8 +72,7 @@ class Calls:
             future.set_result(_failed(service, words, started_s))
             return
         try:
-            busy = {call.client for call in self._calls}
-            client = self._clients.get(service, type_name, busy)
+            client = self.prepare(service, type_name)
             made = to_message(load_service(type_name).Request, request)
         except UnknownTypeError as error:
             future.set_result(_failed(service, error.reason, started_s))
@@ -88,6 +87,13 @@ class Calls:
             return
         self._calls.append(_Call(service, client, made, future, started_s, timeout_s))
         self.step()
+
+    def prepare(self, service: str, type_name: str) -> Client:
+        """Make the client now, so that its first call need not wait for it.
+
+        Raises UnknownTypeError, and what rclpy raises for a name that is none.
+        """
+        return self._clients.get(service, type_name, {call.client for call in self._calls})
 
     def step(self) -> bool:
         """Send, take answers, give up; tell whether any call is still under way."""

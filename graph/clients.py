@@ -37,6 +37,8 @@ class Clients:
         if client is None:
             client = self._node.create_client(load_service(type_name), service)
             self._close_some(busy)
+            # Its time begins now, though it may be asked something later.
+            self.is_ready(client)
         self._clients[key] = client
         return client
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from graph.data import CallResult, ParameterRow, ParametersResult, SetResult
-from graph.parameters_talk import read, write
+from graph.parameters_talk import SERVICES, read, write
 from graph.words import say
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class Parameters:
         patience_s = talking.timeout_s + FOUND_WITHIN_S
         self._calls.begin(
             name,
-            question.type_name,
+            SERVICES[question.service],
             question.request,
             self._service(name),
             talking.answer,
@@ -151,6 +151,9 @@ class Parameters:
         node = self._node(talking.node)
         talking.was_there = talking.was_there or node is not None
         if node and self._service(f"{talking.node}/{talking.question.service}"):
+            for name, type_name in SERVICES.items():
+                # All at once, so that each need not wait anew until the node has found it.
+                self._calls.prepare(f"{talking.node}/{name}", type_name)
             return None
         if time.monotonic() - talking.asked_s < min(talking.timeout_s, FOUND_WITHIN_S):
             return ""

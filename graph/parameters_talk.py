@@ -15,6 +15,13 @@ from graph.words import say
 if TYPE_CHECKING:
     from graph.data import ParameterRow, Value
 
+SERVICES = {
+    "list_parameters": "rcl_interfaces/srv/ListParameters",
+    "describe_parameters": "rcl_interfaces/srv/DescribeParameters",
+    "get_parameters": "rcl_interfaces/srv/GetParameters",
+    "set_parameters": "rcl_interfaces/srv/SetParameters",
+}
+"""What a node is asked by, and the types."""
 AT_ONCE = 200
 """Parameters in one question: a node with thousands of them must fit into its messages."""
 
@@ -24,7 +31,6 @@ class Question(NamedTuple):
 
     service: str
     """`list_parameters`, under the node's name."""
-    type_name: str
     request: Mapping[str, Value]
 
 
@@ -33,10 +39,10 @@ Talk = Generator[Question, Mapping[str, Any], None]
 
 def read(rows: list[ParameterRow]) -> Talk:
     """Learn all parameters; they are in `rows`, in the order of their names, when it ends."""
-    listed = yield Question("list_parameters", "rcl_interfaces/srv/ListParameters", {"depth": 0})
+    listed = yield Question("list_parameters", {"depth": 0})
     names = sorted(set(listed["result"]["names"]))
     descriptors = yield from _describe(names)
-    values = yield from _of_each("get_parameters", "GetParameters", "values", names)
+    values = yield from _of_each("get_parameters", "values", names)
     rows += [
         row(name, descriptors[name], values.get(name)) for name in names if name in descriptors
     ]
@@ -55,7 +61,6 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Talk:
     for some in _parts(list(made)):
         answer = yield Question(
             "set_parameters",
-            "rcl_interfaces/srv/SetParameters",
             {"parameters": [made[name] for name in some]},
         )
         results = answer["results"]
@@ -90,11 +95,11 @@ def _made_anew(value: Value) -> tuple[str, dict[str, Value] | None]:
 
 
 def _describe(names: list[str]) -> Generator[Question, Mapping[str, Any], dict[str, Any]]:
-    return (yield from _of_each("describe_parameters", "DescribeParameters", "descriptors", names))
+    return (yield from _of_each("describe_parameters", "descriptors", names))
 
 
 def _of_each(
-    service: str, kind: str, field: str, names: list[str]
+    service: str, field: str, names: list[str]
 ) -> Generator[Question, Mapping[str, Any], dict[str, Any]]:
     """Ask for something of each parameter; those that the node does not have are left out."""
     found: dict[str, Any] = {}
@@ -102,7 +107,7 @@ def _of_each(
     while parts:
         some = parts.pop(0)
         request = {"names": some}
-        answers = (yield Question(service, f"rcl_interfaces/srv/{kind}", request))[field]
+        answers = (yield Question(service, request))[field]
         if len(answers) == len(some):
             found.update(zip(some, answers, strict=True))
         elif len(some) > 1:
