@@ -135,6 +135,9 @@ def _check_length(kind: FieldType, length: int, path: str) -> None:
 
 
 def _text(kind: FieldType, value: Value, path: str) -> str:
+    if isinstance(value, (bool, int, float)):
+        words = say("expected a text, got {value}: put it into quotes", value=_shown(value))
+        raise FieldError(path, words)
     if not isinstance(value, str):
         raise FieldError(path, say("expected a text, got {value}", value=_shown(value)))
     if kind.text_limit is not None and len(value) > kind.text_limit:

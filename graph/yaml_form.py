@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from graph.data import Value
 
 
+MOST_NAMES = 6
+"""Fields of an element that are named where a list of messages is empty."""
+
+
 def form_class(type_name: str) -> type[Any]:
     """Return the class of a message, of a service's request or of an action's goal.
 
@@ -88,12 +92,25 @@ def _remarks(
         path = f"{prefix}{name}"
         value = tree[name]
         if kind.is_message and len(value):
-            nested = load_message(ros_name(text).partition("[")[0].replace("/", "/msg/"))
+            nested = load_message(_element(text))
             parts = [("", value)]
             if kind.is_many:
                 parts = [(f"[{index}]", each) for index, each in enumerate(value[:most])]
-                yield path, ros_name(text)
+                yield path, _many(text, nested)
             for index, each in parts:
                 yield from _remarks(nested, each, f"{path}{index}.", most)
+        elif kind.is_message:
+            yield path, _many(text, load_message(_element(text)))
         else:
             yield path, ros_name(text)
+
+
+def _element(text: str) -> str:
+    return parse(text).element.replace("/", "/msg/")
+
+
+def _many(text: str, element: type[Any]) -> str:
+    """Say what a list of messages holds: `geometry_msgs/Point32[] of {x, y, z}`."""
+    names = [name for name, _kind in fields_of(element)]
+    shown = ", ".join(names[:MOST_NAMES]) + (", …" if len(names) > MOST_NAMES else "")
+    return f"{ros_name(text)} of {{{shown}}}"

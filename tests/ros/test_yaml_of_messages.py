@@ -66,6 +66,8 @@ def test_a_form_says_what_may_be_filled_in() -> None:
         "  jerk: 0.0  # float32\n"
     )
     assert prefilled("std_msgs/msg/Empty") == "{}\n"
+    polygon = prefilled("geometry_msgs/msg/Polygon")
+    assert polygon == "points: []  # geometry_msgs/Point32[] of {x, y, z}\n"
     assert prefilled("example_interfaces/srv/AddTwoInts") == "a: 0  # int64\nb: 0  # int64\n"
     assert prefilled("deck_interfaces/action/DriveToPoint").startswith("x: 0.0  # float64\n")
     assert 'nested_type_name: ""  # string<=255\n' in prefilled(
@@ -76,7 +78,7 @@ def test_a_form_says_what_may_be_filled_in() -> None:
 @pytest.mark.parametrize(
     ("type_name", "text", "line", "column", "words"),
     [
-        ("std_msgs/msg/String", "\n\ndata: on", 3, 7, "data: expected a text, got True"),
+        ("std_msgs/msg/String", "\n\ndata: on", 3, 7, "got True: put it into quotes"),
         ("std_msgs/msg/Header", "stamp:\n  sec: a", 2, 8, "stamp.sec: expected a whole number"),
         ("std_msgs/msg/Header", "stamp:\n  sce: 1", 2, 3, "did you mean sec?"),
         ("geometry_msgs/msg/Polygon", "points:\n- x: 1\n- {y: b}", 3, 7, "points[1].y: expected"),

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from textual.app import ComposeResult
+    from textual.events import Click
     from textual.timer import Timer
     from textual.worker import Worker
 
@@ -178,6 +179,11 @@ class YamlForm(Vertical, Acting):
         self._loading = False
         self.editor.replace_all(form if text is None else text)
         await self._check()
+
+    def on_click(self, event: Click) -> None:
+        """The verdict leads to what is wrong."""
+        if isinstance(event.widget, Static):
+            self.go_to_problem()
 
     @on(TextArea.Changed)
     def _text_changed(self, event: TextArea.Changed) -> None:
