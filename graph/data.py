@@ -93,7 +93,8 @@ class TopicRow:
 
     QOS_MISMATCH: of the first pair `policy` (as in `graph.qos_fit.Mismatch`), `publisher`,
     `subscriber` (nodes), `offered`, `requested`; `more`, the number of further pairs, if there are
-    any. UNKNOWN_TYPE: `type`, `package`, `reason`. QUIET: `seconds`. NO_PUBLISHER: none.
+    any. UNKNOWN_TYPE: `type`, `package`, `reason`, and if the package is missing its names for
+    `pip` (where PyPI has it), `apt` and `pixi`. QUIET: `seconds`. NO_PUBLISHER: none.
     A remark: `types`, with the one that is shown in `shown`.
     """
     published_by: tuple[EndpointInfo, ...] = ()
@@ -113,6 +114,10 @@ class Sample:
     """Between its arrival at the middleware and being taken, as far as is known, else 0."""
     size_bytes: int
     value: Mapping[str, Value]
+    sent_s: float | None = None
+    """When its publisher handed it to the middleware, unix time by the publisher's clock; None
+    where that is not told. On one machine it orders messages of different topics better than their
+    arrival does: who receives them is not always awake."""
 
 
 @dataclass(frozen=True)

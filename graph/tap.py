@@ -12,7 +12,8 @@ from graph.losses import Losses
 from graph.qos import Qos, profile
 from graph.rates import Arrival, RateMeter
 from graph.stamps import delay_reader
-from graph.types import load_message
+from graph.stand_in import stand_in
+from graph.types import UnknownTypeError, load_message
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -49,6 +50,7 @@ class Tap:
     ) -> None:
         """Subscribe; `meter` goes on where an earlier tap ended.
 
+        A type that is not installed is measured where the middleware lets us, and not decoded.
         Raises UnknownTypeError, and what rclpy raises.
         """
         from rclpy.event_handler import SubscriptionEventCallbacks
@@ -61,11 +63,13 @@ class Tap:
         self.since_s = time.time()
         self.broken = ""
         """Why the newest message could not be decoded."""
-        self._cls = load_message(type_name)
-        self._decode = decoder(type_name)
-        self._delay = delay_reader(self._cls)
+        self.unknown: UnknownTypeError | None
+        """Why none ever will be."""
+        self._cls, self.unknown = _class_for(type_name)
+        self._decode = decoder(type_name) if self.unknown is None else None
+        self._delay = delay_reader(self._cls) if self.unknown is None else None
         self._node = node
-        self._last: tuple[bytes, float] | None = None
+        self._last: tuple[bytes, float, float] | None = None
         self._numbered = True
         self._hears = False
         """Whether a message has come since this subscription was made."""
@@ -94,9 +98,7 @@ class Tap:
         self._numbered = batch[-1].sequence is not None
         self.meter.add(batch, overflowed=full, one_publisher=one_publisher, lost=lost)
         now_s = time.time()
-        return tuple(
-            sample for raw, stamp_s in kept if (sample := self._sample(raw, stamp_s, now_s))
-        )
+        return tuple(sample for one in kept if (sample := self._sample(*one, now_s)))
 
     def newest(self) -> tuple[Sample, ...]:
         """Return the newest message that ever came, for somebody who begins to look now."""
@@ -124,9 +126,9 @@ class Tap:
         self._losses.close()
         self._node.destroy_subscription(self._subscription)
 
-    def _take_all(self, decode: int) -> tuple[list[Arrival], deque[tuple[bytes, float]]]:
+    def _take_all(self, decode: int) -> tuple[list[Arrival], deque[tuple[bytes, float, float]]]:
         batch: list[Arrival] = []
-        kept: deque[tuple[bytes, float]] = deque(maxlen=decode)
+        kept: deque[tuple[bytes, float, float]] = deque(maxlen=decode)
         handle = self._subscription.handle
         with handle:
             # A publisher faster than this loop must not hold it for ever.
@@ -139,7 +141,7 @@ class Tap:
                 delay_s = self._delay(raw, stamp_s) if self._delay else None
                 number = info["publication_sequence_number"]
                 batch.append(Arrival(stamp_s, len(raw), number, delay_s))
-                self._last = (raw, stamp_s)
+                self._last = (raw, stamp_s, info["source_timestamp"] * NANOSECONDS)
                 kept.append(self._last)
         return batch, kept
 
@@ -153,7 +155,9 @@ class Tap:
         self.meter.lost = (self.meter.lost or 0) + lost
         return lost
 
-    def _sample(self, raw: bytes, stamp_s: float, now_s: float) -> Sample | None:
+    def _sample(self, raw: bytes, stamp_s: float, sent_s: float, now_s: float) -> Sample | None:
+        if self._decode is None:
+            return None
         try:
             value = self._decode(raw)
         except Exception as error:  # noqa: BLE001
@@ -162,12 +166,23 @@ class Tap:
             return None
         self.broken = ""
         age_s = max(0.0, now_s - stamp_s)
-        return Sample(self.topic, self.type_name, now_s, age_s, len(raw), value)
+        return Sample(self.topic, self.type_name, now_s, age_s, len(raw), value, sent_s or None)
 
 
 def first_depth(type_name: str) -> int:
     """Return the depth for a topic whose messages have not been seen yet."""
     return SHALLOW if type_name in LARGE_TYPES else DEEP
+
+
+def _class_for(type_name: str) -> tuple[type[Any], UnknownTypeError | None]:
+    """Return what to subscribe with, and why its messages cannot be decoded if so."""
+    try:
+        return load_message(type_name), None
+    except UnknownTypeError as error:
+        cls = stand_in(type_name)
+        if cls is None:
+            raise
+        return cls, error
 
 
 def _never_called(message: Any) -> None:  # noqa: ANN401
