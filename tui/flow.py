@@ -1,12 +1,14 @@
 """What happened when somebody spoke: steps across nodes, gathered into chains. Plain data.
 
-A step is a message or a log line. Its time is the stamp of the message's arrival at Deck's own
-reader (the middleware's, not the moment of decoding), or the stamp that the node itself wrote into
-its log line; both are of this machine's clock. Delays are good to about a millisecond between
-topics, and so is the order of what lies closer together than that. A log line without a stamp of
-its own has the time at which it was read, which may be tens of milliseconds late; messages from
-another machine carry the network's delay. Service calls are not visible to anybody but the two
-who talk: of the head's service the log and /head_state are shown.
+A step is a message or a log line. The time of a message is the middleware's: when its publisher
+handed it over, by the publisher's clock; where that is not told, or is by the clock of another
+machine, when it arrived at Deck's own reader. A log line has the stamp that the node itself wrote
+into it. On one machine all are of one clock, so delays and their order are good to a few tenths of
+a millisecond; a log line is written a moment before or after what it tells. By arrivals they are
+good to a millisecond on an idle machine and to some ten on a busy one. A log line without a stamp
+of its own has the time at which it was read, which may be tens of milliseconds late. Service calls
+are not visible to anybody but the two who talk: of the head's service the log and /head_state are
+shown.
 """
 
 from __future__ import annotations

@@ -25,6 +25,8 @@ SPOKEN_LEVEL = 3
 """Of the eight columns of loudness: a quieter sound is no voice (about -38 dB)."""
 PASSED_ON_S = 0.05
 """What repeats itself passes on a command that it has been given within this time."""
+SAME_CLOCK_S = 1.0
+"""A message that was longer on its way than this was stamped by another clock."""
 STILL_RAD = math.radians(0.2)
 LONGEST = 300
 
@@ -54,11 +56,11 @@ class FlowReader:
     ) -> list[Step]:
         """Read samples; `said_by` has the publishers of each topic."""
         came = [one for topic in TOPICS & samples.keys() for one in samples[topic]]
-        came.sort(key=_arrived_s)
+        came.sort(key=_sent_s)
         return [step for one in came for step in self._read(one, said_by.get(one.topic, ""))]
 
     def _read(self, sample: Sample, said_by: str) -> Iterator[Step]:
-        topic, value, time_s = sample.topic, sample.value, _arrived_s(sample)
+        topic, value, time_s = sample.topic, sample.value, _sent_s(sample)
         if topic in {MIC, SPEAKER}:
             text = _sound(value)
             if text is not None:
@@ -127,8 +129,12 @@ def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Ste
     ]
 
 
-def _arrived_s(sample: Sample) -> float:
-    return sample.received_s - sample.age_s
+def _sent_s(sample: Sample) -> float:
+    """When it was sent, unless that is by a clock which is not this machine's."""
+    arrived_s = sample.received_s - sample.age_s
+    if sample.sent_s is not None and 0 <= arrived_s - sample.sent_s <= SAME_CLOCK_S:
+        return sample.sent_s
+    return arrived_s
 
 
 def _sound(value: Mapping[str, Value]) -> str | None:

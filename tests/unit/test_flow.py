@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -193,6 +194,13 @@ def test_the_same_command_again_is_seen_passing_to_the_wheels() -> None:
         wheels(9.0, 9.0, 5.5),
     )
     assert [one.source for one in steps] == ["/drive", "/drive_safe", "/wheel_commands"]
+
+
+def test_the_stamp_of_the_sender_counts_unless_it_is_of_another_clock() -> None:
+    late = word("left", 0.5)
+    for sent_s, expected_s in ((0.498, 0.498), (-60.0, 0.5), (0.6, 0.5)):
+        (step,) = read(FlowReader(), replace(late, sent_s=NOW_S + sent_s))
+        assert step.time_s - NOW_S == pytest.approx(expected_s, abs=1e-5)
 
 
 def test_a_movement_of_the_head_is_its_beginning_and_its_end() -> None:

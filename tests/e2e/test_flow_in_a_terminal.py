@@ -1,0 +1,53 @@
+"""The timeline with real nodes: a typed command and a voice, followed to the wheels."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from itertools import pairwise
+
+from tests.e2e.conftest import Deck
+
+ROW = re.compile(r"^\s*([\d.]+) ms\s+(/?\w[\w/]*)", re.MULTILINE)
+
+
+def steps_of(screen: str, words: str) -> list[tuple[float, str]]:
+    """Delay in ms and source of each step of the chain whose headline has these words."""
+    _before, _headline, after = screen.partition(f"“{words}")
+    block = re.split(r"[▾▸] \d\d:\d\d:\d\d", after)[0]
+    return [(float(delay), source) for delay, source in ROW.findall(block.split("─" * 20)[0])]
+
+
+def has(*sources: str, words: str) -> Callable[[str], bool]:
+    return lambda screen: {*sources} <= {source for _delay, source in steps_of(screen, words)}
+
+
+def in_rising_order(steps: list[tuple[float, str]], *sources: str) -> None:
+    delays = [delay for delay, _source in steps]
+    assert all(early <= late for early, late in pairwise(delays)), steps
+    first = [next(delay for delay, source in steps if source == name) for name in sources]
+    assert first == sorted(first), steps
+
+
+def test_a_typed_command_and_a_voice_are_followed_to_the_wheels(deck: Deck) -> None:
+    terminal = deck.open("09-brain", "--lang", "en", columns=200, rows=60)
+    terminal.wait_for("8/8")
+    terminal.press("6")
+    voice = ("/audio/mic_raw", "ai_brain", "/ai_command", "/drive", "/audio/speaker_raw")
+    screen = terminal.wait_until(has(*voice, words="VOICE"), "a voice")
+    in_rising_order(steps_of(screen, "VOICE"), "/audio/mic_raw", "/ai_command", "/drive")
+    terminal.press("1")
+    terminal.wait_for("Sonar")
+    terminal.press("c")
+    terminal.wait_for("^x STOP")
+    terminal.type("left\r")
+    terminal.wait_for('Heard "left"')
+    terminal.press("escape")
+    terminal.wait_for("space STOP")
+    terminal.press("6")
+    driven = ("/ai_command", "/drive", "/drive_safe", "/wheel_commands")
+    screen = terminal.wait_until(has(*driven, words="left”"), "a typed command")
+    in_rising_order(steps_of(screen, "left”"), *driven)
+    assert "a person" in screen
+    terminal.press("q")
+    assert terminal.wait_exit() == 0
