@@ -19,6 +19,7 @@ MEASUREMENTS = {
     "screen": "The screen on lesson 9, at 120x40",
     "topics_live": "Topics open, under ten Float32 at 50 Hz and one image at 30 Hz",
     "observer": "The observer alone, under the same load",
+    "recording": "Recording 10 MB/s",
     "log_view": "The log view alone, under 10 000 lines/s",
     "node_ends": "From a signal to the end of a node",
 }

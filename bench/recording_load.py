@@ -1,0 +1,52 @@
+"""10 MB/s for a recorder: one topic of 80 kB and ten of 2 kB, each at 100 Hz.
+
+`python -m bench.recording_load DOMAIN` publishes for ten seconds at each line on stdin, once
+somebody listens to every topic, and answers with the number of messages.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
+from std_msgs.msg import UInt8MultiArray
+
+LARGE = "/load/large"
+SIZES = {LARGE: 80_000, **{f"/load/small_{number}": 2_000 for number in range(10)}}
+"""Topic to the bytes of a message."""
+HZ = 100
+SECONDS = 10
+
+
+def main() -> None:
+    """Publish until stdin ends."""
+    context = Context()
+    context.init(args=[], domain_id=int(sys.argv[1]))
+    node = Node("load", context=context, enable_rosout=False, start_parameter_services=False)
+    publishers = [
+        (
+            node.create_publisher(UInt8MultiArray, topic, QoSProfile(depth=200)),
+            serialize_message(UInt8MultiArray(data=bytes(size))),
+        )
+        for topic, size in SIZES.items()
+    ]
+    print("ready", flush=True)
+    for _line in sys.stdin:
+        while not all(publisher.get_subscription_count() for publisher, _raw in publishers):
+            time.sleep(0.05)
+        begun_s = time.monotonic()
+        for turn in range(HZ * SECONDS):
+            time.sleep(max(0.0, begun_s + turn / HZ - time.monotonic()))
+            for publisher, raw in publishers:
+                publisher.publish(raw)
+        print(HZ * SECONDS * len(publishers), flush=True)
+    node.destroy_node()
+    context.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
