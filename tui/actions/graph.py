@@ -144,6 +144,32 @@ class LoadParameters(ParametersAction):
         target.load_parameters()
 
 
+class Ask(GraphAction):
+    """The call, or the goal, from wherever the focus is."""
+
+    id = "graph.ask"
+    key = "ctrl+s"
+    title = N_("Call")
+    tooltip = N_("Call the service, or send the goal, with what is filled in.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: GraphScreen) -> bool | None:
+        """Only where there is a form."""
+        return target.ask_pane is not None and not target.draws
+
+    @classmethod
+    def label(cls, target: GraphScreen) -> str:
+        """By what would be asked."""
+        return cls.title if target.ask_pane is None else target.ask_pane.submit_title
+
+    @classmethod
+    async def run(cls, target: GraphScreen) -> None:
+        """Ask."""
+        if target.ask_pane is not None:
+            target.ask_pane.form.submit()
+
+
 class Cancel(GraphAction):
     """What is under way."""
 
@@ -221,6 +247,7 @@ GRAPH_ACTIONS = (
     Parameters,
     SaveParameters,
     LoadParameters,
+    Ask,
     Cancel,
     ForgetGoal,
     Housekeeping,

@@ -1,0 +1,54 @@
+"""A person looks into the graph of lesson 9: calls the head's service, reads parameters, walks."""
+
+from __future__ import annotations
+
+from tests.e2e.conftest import Deck
+from tests.e2e.terminal import Terminal
+
+BRAIN = ("09-brain", "--lang", "en")
+
+
+def at_the_graph(deck: Deck) -> Terminal:
+    terminal = deck.open(*BRAIN)
+    terminal.wait_for("8/8")
+    terminal.press("5")
+    terminal.wait_for("Nodes 8")
+    return terminal
+
+
+def wait_for_words(terminal: Terminal, words: str) -> None:
+    """Wait until these words are on the screen, with as many blanks as may be."""
+    terminal.wait_until(lambda text: words in " ".join(text.split()), repr(words))
+
+
+def test_the_head_is_turned_by_a_call_from_the_graph(deck: Deck) -> None:
+    terminal = at_the_graph(deck)
+    terminal.press("right")
+    terminal.wait_for("fits example_interfaces/srv/AddTwoInts")
+    terminal.press("enter", "ctrl+s")
+    terminal.wait_for("Answer in")
+    wait_for_words(terminal, "sum: 1")
+
+
+def test_a_parameter_is_read_and_set_and_a_refusal_is_told(deck: Deck) -> None:
+    terminal = at_the_graph(deck)
+    terminal.press("/")
+    terminal.type("sonar")
+    terminal.wait_for("1 of ")
+    terminal.press("enter")
+    terminal.wait_for("p Parameters")
+    terminal.press("p")
+    terminal.wait_for("read in")
+    terminal.press("home", "enter")
+    terminal.wait_for("Enter sets it")
+    terminal.type("nonsense")
+    terminal.press("enter")
+    terminal.wait_for("Refused:")
+
+
+def test_the_map_shows_who_talks_to_the_brain(deck: Deck) -> None:
+    terminal = at_the_graph(deck)
+    terminal.press("m")
+    terminal.wait_for("┌─")
+    terminal.wait_for("/set_head_position()")
+    terminal.wait_for("head_controller")
