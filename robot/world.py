@@ -154,6 +154,13 @@ class World:
         self.pose = pose
         self.travelled_m += moved_m
 
+    def place(self, pose: Pose) -> bool:
+        """Carry the robot elsewhere, False if it would touch something there."""
+        if self.room.touches(self.body.outline(pose)):
+            return False
+        self.pose, self._free_m, self._since_hit_m = pose, 0.0, math.inf
+        return True
+
     def read_sonars(self) -> tuple[float, float]:
         """Front and rear, metres by REP-117; every reading is thrown anew."""
         front, rear = (
