@@ -114,7 +114,7 @@ class Taps:
         if tap and tap.type_name == type_name:
             depth = tap.better_depth(one_publisher=self._one_publisher(topic))
             if tap.qos == qos and tap.depth == depth:
-                return None
+                return tap.unknown
             meter = tap.meter
         self._close(topic)
         key = (topic, type_name, qos)
@@ -127,7 +127,8 @@ class Taps:
             except Exception as error:  # noqa: BLE001 - a second type under one name, for one
                 reason = f"{topic} cannot be subscribed as {type_name}: {error}"
                 self._refused[key] = UnknownTypeError(type_name, type_name.split("/")[0], reason)
-        return self._refused.get(key)
+        made = self._taps.get(topic)
+        return made.unknown if made else self._refused[key]
 
     def _close(self, topic: str) -> None:
         tap = self._taps.pop(topic, None)

@@ -37,7 +37,12 @@ def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | Non
         return Finding(
             Trouble.UNKNOWN_TYPE,
             unknown.reason,
-            {"type": unknown.type_name, "package": unknown.package, "reason": unknown.reason},
+            {
+                "type": unknown.type_name,
+                "package": unknown.package,
+                "reason": unknown.reason,
+                **unknown.install,
+            },
         )
     if not ends.everyone_publishing:
         return Finding(Trouble.NO_PUBLISHER, "nobody publishes this topic")

@@ -5,7 +5,12 @@ from __future__ import annotations
 import importlib
 from difflib import get_close_matches
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from graph.type_packages import how_to_install, install_names
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 NAME_PARTS = 3
 """`std_msgs/msg/Float32`."""
@@ -14,9 +19,15 @@ NAME_PARTS = 3
 class UnknownTypeError(Exception):
     """No such type is installed here; str() says what to do about it."""
 
-    def __init__(self, type_name: str, package: str, reason: str) -> None:
-        """Say why `type_name` cannot be had; `package` is where it should have come from."""
+    def __init__(
+        self, type_name: str, package: str, reason: str, install: Mapping[str, str] | None = None
+    ) -> None:
+        """Say why `type_name` cannot be had; `package` is where it should have come from.
+
+        `install` has the names that would bring it, by `pip`, `apt` and `pixi`.
+        """
         super().__init__(reason)
+        self.install = install or {}
         self.type_name = type_name
         self.package = package
         self.reason = reason
@@ -65,6 +76,9 @@ def _load(type_name: str, kind: str) -> type[Any]:
         if found is not None:
             _import_type_support(found)
     except ModuleNotFoundError as error:
+        if error.name == package:
+            words, names = how_to_install(package), install_names(package)
+            raise UnknownTypeError(type_name, package, words, names) from error
         raise UnknownTypeError(type_name, package, _missing(error, package, kind)) from error
     except Exception as error:
         # A broken package may raise anything, and must not take the observer along.
@@ -82,12 +96,6 @@ def _import_type_support(found: Any) -> None:  # noqa: ANN401 - generated, witho
 
 
 def _missing(error: ModuleNotFoundError, package: str, kind: str) -> str:
-    if error.name == package:
-        dashed = package.replace("_", "-")
-        return (
-            f"package {package} is not installed: 'apt install ros-jazzy-{dashed}' or "
-            f"'pip install ros-jazzy-{dashed}', or build it and source its workspace"
-        )
     if error.name == f"{package}.{kind}":
         what = {"msg": "messages", "srv": "services", "action": "actions"}[kind]
         return f"package {package} is installed and has no {what}"

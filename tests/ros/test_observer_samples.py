@@ -13,6 +13,7 @@ from tests.ros.observing import Peer, Watcher, let_updates_come
 from tests.waiting import wait_until
 
 FLOAT = "std_msgs/msg/Float32"
+CDR_OF_EMPTY_ODOMETRY = 708
 STRING = "std_msgs/msg/String"
 
 
@@ -178,7 +179,12 @@ def test_a_type_that_is_not_installed_is_shown_as_such(
     row = watcher.wait_for("/strange", lambda row: row.trouble is Trouble.UNKNOWN_TYPE, "unknown")
     assert row.facts["package"] == "nav_msgs"
     assert row.detail.startswith("package nav_msgs is not installed: 'apt install ros-jazzy-nav")
-    assert not row.measured
+    assert row.facts["pip"] == row.facts["apt"] == row.facts["pixi"] == "ros-jazzy-nav-msgs"
+    peer.repeat("/strange", value={}, hz=20)
+    row = watcher.wait_for("/strange", lambda row: row.hz and abs(row.hz - 20) < 2, "its rate")
+    assert row.bytes_per_s == pytest.approx(20 * CDR_OF_EMPTY_ODOMETRY, rel=0.2)
+    assert row.trouble is Trouble.UNKNOWN_TYPE
+    assert "/strange" not in watcher.samples
     wait_until(lambda: watcher.of("/known") == [7.0], "the other topic is not harmed")
 
 

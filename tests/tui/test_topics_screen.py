@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import sys
+import threading
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import cv2
+import numpy as np
 import pytest
 from textual.events import Key
 from textual.widgets import Static
 
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
-from tests.tui.recorded import TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from graph.pictures import Picture, read_picture
+from tests.tui.recorded import NOW_S, TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from tests.tui.recorded_image import colour_bars
 from tests.tui.snapshots import Look, settle
+from tui.screens import topics_pictures
 from tui.screens.topics import TopicsScreen
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.topic_detail import TopicHead
@@ -200,6 +207,21 @@ async def test_an_unknown_type_names_its_package(room: Room) -> None:
     assert "install the package my_msgs" in " ".join(room.echo().split())
 
 
+async def test_a_package_that_can_be_had_is_told_by_its_names(room: Room) -> None:
+    facts = {
+        "type": "nav_msgs/msg/Path", "package": "nav_msgs", "reason": "not installed",
+        "apt": "ros-jazzy-nav-msgs", "pixi": "ros-jazzy-nav-msgs",
+    }  # fmt: skip
+    await room.choose(SONAR)
+    without = row(SONAR, trouble=Trouble.UNKNOWN_TYPE, hz=9.0, age_s=0.1, facts=facts)
+    await room.show(with_row(without))
+    words = " ".join(room.echo().split())
+    assert "install nav_msgs by `apt install ros-jazzy-nav-msgs` or `pixi add ros-" in words
+    assert "pip" not in words
+    await room.show(with_row(replace(without, facts={**facts, "pip": "ros-jazzy-nav-msgs"})))
+    assert "by `pip install ros-jazzy-nav-msgs`, `apt" in " ".join(room.echo().split())
+
+
 async def test_a_quiet_topic_keeps_its_last_message_and_says_for_how_long(room: Room) -> None:
     await room.choose(SONAR)
     await room.show(lesson_update())
@@ -311,3 +333,112 @@ async def test_any_size_is_survived(room: Room, size: tuple[int, int]) -> None:
     await room.show(lesson_update())
     await room.choose(SONAR)
     await room.show(lesson_update())
+
+
+def depth_message() -> dict[str, Any]:
+    """A slope from half a metre to four, without a reading at the left."""
+    numbers = np.repeat(np.linspace(520, 3970, 64)[None, :], 48, axis=0).astype("<u2")
+    numbers[:, :6] = 0
+    size = {"width": 64, "height": 48, "step": 128, "encoding": "16UC1", "is_bigendian": 0}
+    return {**size, "data": numbers.tobytes()}
+
+
+def jpeg_message(cut_to: int | None = None) -> dict[str, Any]:
+    """The recorded camera's picture as JPEG, or its beginning only."""
+    pixels = np.frombuffer(colour_bars(), np.uint8).reshape(480, 640, 3)
+    return {"format": "jpeg", "data": cv2.imencode(".jpg", pixels)[1].tobytes()[:cut_to]}
+
+
+def with_camera(type_name: str, value: dict[str, Any]) -> GraphUpdate:
+    """The lesson with a camera that says this."""
+    return with_row(
+        row(CAMERA, type_names=(type_name,)), **{CAMERA: (sample(CAMERA, type_name, value),)}
+    )
+
+
+async def test_depth_has_a_scale_in_metres(room: Room) -> None:
+    await room.choose(CAMERA)
+    await room.show(with_camera("sensor_msgs/msg/Image", depth_message()))
+    view = room.screen.detail.picture
+    assert view.caption == "16UC1 64×48 · 10.0 Hz"
+    scale = view.render_line(view.size.height - 2).text
+    assert scale.strip().startswith("near 0.5 m")
+    assert scale.strip().endswith("4 m far")
+
+
+async def test_a_compressed_image_is_decoded_and_shown(room: Room) -> None:
+    await room.choose(CAMERA)
+    await room.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message()))
+    await room.app.workers.wait_for_complete()
+    assert room.screen.detail.picture.caption == "jpeg 640×480 · 10.0 Hz"
+
+
+async def test_a_compressed_image_that_is_cut_short_says_so(room: Room) -> None:
+    await room.choose(CAMERA)
+    await room.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message(5000)))
+    await room.app.workers.wait_for_complete()
+    headline, detail = room.screen.detail.picture.words
+    assert headline == "this picture cannot be shown"
+    assert detail == "the JPEG data are cut short: no end in 5000 bytes"
+
+
+async def test_late_pictures_are_left_out_while_one_is_decoded(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    release = threading.Event()
+    seen: list[object] = []
+
+    def slow(type_name: str, value: Any, fit: Any) -> Picture:
+        seen.append(value["number"])
+        assert release.wait(30)
+        return read_picture(type_name, value, fit)
+
+    monkeypatch.setattr(topics_pictures, "read_picture", slow)
+    await room.choose(CAMERA)
+    for number in range(5):
+        value = {**jpeg_message(), "number": number}
+        await room.show(with_camera("sensor_msgs/msg/CompressedImage", value))
+    release.set()
+    await room.app.workers.wait_for_complete()
+    assert seen == [0, 4]
+
+
+async def test_a_picture_asks_for_ten_updates_a_second_and_rates_stay_as_they_are(
+    room: Room,
+) -> None:
+    await room.choose(CAMERA)
+    assert room.graph.period_s == 0.25
+    await room.show(lesson_update())
+    assert room.graph.period_s == 0.1
+    faster = [replace(one, hz=99.0) for one in TOPICS]
+    await room.show(lesson_update(time_s=NOW_S + 0.1, topics=tuple(faster)))
+    assert room.screen.table.chosen_row.hz == 10.0  # type: ignore[union-attr]
+    await room.show(lesson_update(time_s=NOW_S + 0.2, topics=tuple(faster)))
+    assert room.screen.table.chosen_row.hz == 99.0  # type: ignore[union-attr]
+    for key in ("p", "e", "i"):
+        await room.pilot.press(key)
+        await room.pilot.pause()
+        assert room.graph.period_s == 0.25, key
+        await room.pilot.press(key)
+        await room.pilot.pause()
+        assert room.graph.period_s == 0.1, key
+    await room.choose(SONAR)
+    assert room.graph.period_s == 0.25
+
+
+async def test_five_megabytes_are_shown_with_few_objects_and_cut(room: Room) -> None:
+    cloud = {
+        "height": 1, "width": 312_500, "point_step": 16, "row_step": 5_000_000,
+        "data": bytes(5_000_000), "ranges": np.zeros(1_250_000, np.float32),
+    }  # fmt: skip
+    await room.choose(SONAR)
+    said = sample(SONAR, "sensor_msgs/msg/PointCloud2", cloud, 5_000_000)
+    before = sys.getallocatedblocks()
+    room.screen.detail.show_message(said)
+    assert sys.getallocatedblocks() - before < 5000
+    assert "(5000000 bytes)" in room.echo()
+    assert "(1250000 items)" in room.echo()
+    tree = room.screen.detail.echo
+    tree.focus()
+    await room.pilot.press("end", "enter")
+    assert "… 1249800 more items" in tree.lines[-1].text

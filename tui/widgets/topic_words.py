@@ -15,7 +15,7 @@ from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text
 from tui.widgets.trouble import no_data_words, trouble_words
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from graph.data import EndpointInfo, TopicRow
 
@@ -43,11 +43,24 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
             nodes=names(row.published_by) or row.publishers
         )
     if trouble is Trouble.UNKNOWN_TYPE and "package" in facts:
-        words = _("{type}: install the package {package}, or source the workspace that has it.")
-        return words.format(**facts)
+        return _how_to_install(facts).format(**facts)
     if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
         return misfit_words(facts)
     return row.detail
+
+
+def _how_to_install(facts: Mapping[str, str]) -> str:
+    if "pip" in facts:
+        return _(
+            "{type}: install {package} by `pip install {pip}`, `apt install {apt}` or `pixi add "
+            "{pixi}`, or source the workspace that has it."
+        )
+    if "apt" in facts:
+        return _(
+            "{type}: install {package} by `apt install {apt}` or `pixi add {pixi}`, or source the "
+            "workspace that has it."
+        )
+    return _("{type}: install the package {package}, or source the workspace that has it.")
 
 
 def _what_deck_sent(row: TopicRow) -> str:
