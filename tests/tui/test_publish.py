@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import AsyncIterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -252,6 +253,32 @@ async def test_the_emergency_stop_works_from_the_form_and_shows(desk: Desk) -> N
     assert desk.dialog.form.text == before
     topic, _type, value, _latched = desk.graph.published[0]
     assert (topic, value) == ("/emergency_stop", {"data": True})
+
+
+async def test_a_click_on_a_tab_leaves_the_dialog_where_it_is(desk: Desk) -> None:
+    await desk.open()
+    for x in range(1, 60, 6):
+        await desk.pilot.click(TitleBar, offset=(x, 0))
+    assert desk.dialog.form.value is not None
+
+
+async def test_the_verdict_leads_to_what_is_wrong(desk: Desk) -> None:
+    await desk.open()
+    desk.fill("nanosec: 0", "nanosec: -1")
+    desk.dialog.rate.field.focus()
+    await desk.until(lambda: desk.dialog.form.error is not None)
+    await desk.pilot.click("YamlForm > Static")
+    assert desk.dialog.form.editor.cursor_location == (3, 13)
+
+
+async def test_the_longest_form_does_not_make_typing_slow(desk: Desk) -> None:
+    await desk.open("/ai_command")
+    desk.dialog.form.editor.replace_all('data: "' + "\\n" * 30_000 + '"')
+    await desk.until(lambda: desk.dialog.form.value is not None)
+    begun = time.process_time()
+    for _ in range(5):
+        await desk.pilot.press("x")
+    assert (time.process_time() - begun) / 5 < 0.5
 
 
 async def test_without_a_session_nothing_is_sent(desk: Desk) -> None:

@@ -9,15 +9,13 @@ from textual import on
 from textual.containers import Vertical
 from textual.content import Content
 
-from graph.making import FieldError
-from graph.types import UnknownTypeError
 from graph.yaml_form import filled
-from graph.yaml_text import YamlError, is_cut
+from graph.yaml_text import is_cut
 from tui import title
 from tui.actions import bindings
 from tui.actions.app import EmergencyStop
 from tui.actions.publish import PUBLISH_ACTIONS
-from tui.i18n import _, ngettext, said
+from tui.i18n import _, ngettext
 from tui.screens.dialog import Dialog
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.publications import Publications
@@ -26,7 +24,7 @@ from tui.widgets.publish_target import PublishTarget
 from tui.widgets.title_bar import TitleBar
 from tui.widgets.type_field import TypeField
 from tui.widgets.yaml_form import YamlForm
-from tui.widgets.yaml_words import wrong_words
+from tui.widgets.yaml_words import reason_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -91,6 +89,8 @@ class PublishDialog(Dialog[None]):
 
     def on_mount(self) -> None:
         """Show the chosen topic, and keep looking at what is published."""
+        # A tab would put its screen in this one's place, above the topics.
+        self.query_one(TitleBar).disabled = True
         self.redraw()
         self._look()
         self.set_interval(LOOK_S, self._look)
@@ -256,7 +256,7 @@ class PublishDialog(Dialog[None]):
             words = _("ROS did not take it within {n} s").format(n=f"{DONE_WITHIN_S:g}")
             self.rate.tell(lambda: words, "bad")
         except Exception as error:  # noqa: BLE001 - whatever it was, it is told
-            reason = _reason(error)
+            reason = reason_words(error)
             self.rate.tell(lambda: _("Not sent: {reason}").format(reason=reason), "bad")
         return None
 
@@ -297,9 +297,3 @@ class PublishDialog(Dialog[None]):
                 self.refresh_bindings()
         bar = self.query_one(TitleBar)
         bar.show(title.tabs(self.deck, "topics"), title.states(self.deck), title.look(self.deck))
-
-
-def _reason(error: Exception) -> str:
-    if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
-        return wrong_words(error)
-    return said(getattr(error, "words", str(error))) or type(error).__name__

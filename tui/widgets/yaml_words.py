@@ -30,3 +30,11 @@ def wrong_words(error: Wrong) -> str:
     field = error.field if isinstance(error, FieldError) else ""
     message = error.reason if isinstance(error, UnknownTypeError) else error.message
     return plain(": ".join(part for part in (line, field, said(message)) if part), LONGEST)
+
+
+def reason_words(error: Exception) -> str:
+    """Why something was not sent, whatever was raised."""
+    if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
+        return wrong_words(error)
+    words = getattr(error, "words", None)
+    return plain(said(words) if words else str(error) or type(error).__name__, LONGEST)
