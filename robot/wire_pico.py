@@ -110,7 +110,8 @@ class Telemetry:
         return bool(self.flags & STANDING_FLAGS)
 
 
-Message = Hello | Drive | Halt | Release | Welcome | Telemetry
+FromPico = Welcome | Telemetry
+Message = Hello | Drive | Halt | Release | FromPico
 
 
 def encode(message: Message) -> bytes:

@@ -1,0 +1,158 @@
+"""The Pico of the simulated robot: the firmware's rules, over the wheels of a `World`.
+
+What it does and what `firmware/pico2/control.py` does are held together by a test.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robot.wire_pico import (
+    PROTOCOL,
+    SEQUENCES,
+    STANDING_FLAGS,
+    WATCHDOG_S,
+    Drive,
+    FromPico,
+    Halt,
+    Hello,
+    PicoDecoder,
+    Release,
+    Telemetry,
+    Welcome,
+    encode,
+)
+from robot.world import STEP_S, Wheels
+
+if TYPE_CHECKING:
+    from robot.world import World
+
+FIRMWARE = "simulated"
+_STEP_MS, _WATCHDOG_MS = round(STEP_S * 1000), round(WATCHDOG_S * 1000)
+_TELEMETRY_MS, _QUIET_MS = 20, 1000
+_LOW_V, _BACK_V, _LOW_FOR_MS = 6.0, 6.3, 500
+_NEEDS_RELEASE = frozenset("ELRUH")
+
+
+class SimulatedPico:
+    """Obeys lines; let its time pass together with that of its world."""
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.battery_v = 7.4
+        self.faults: frozenset[str] = frozenset()
+        """Motor drivers in trouble: any of `L` and `R`."""
+        self.flags = set("WHA")
+        self._decoder = PicoDecoder()
+        self._now_ms = self._drove_ms = self._told_ms = self._well_ms = 0
+        self._heard_ms: int | None = None
+        self._asked = Wheels()
+        self._steering_rad = 0.0
+        self._obeyed = 0
+        self._counts = False
+        """Whether a drive line came since the hello: the next one must be ahead of it."""
+        self._late = 0
+        self._sequence = 0
+        self._out = b""
+
+    def feed(self, data: bytes) -> None:
+        """Take bytes of the computer's."""
+        for message in self._decoder.feed(data):
+            self._heard_ms = self._now_ms
+            if isinstance(message, Drive):
+                self._drive(message)
+            elif isinstance(message, Hello):
+                self._hello(message)
+            elif isinstance(message, Halt):
+                self._stop_anew("E")
+            elif isinstance(message, Release):
+                self.flags.discard("E")
+                self._stop_anew()
+        self._obey()
+
+    def step(self) -> bytes:
+        """Let `STEP_S` pass; the bytes for the computer come back."""
+        self._now_ms += _STEP_MS
+        if self._now_ms - self._drove_ms > _WATCHDOG_MS:
+            self.flags.add("W")
+        self._look_for_faults()
+        self._obey()
+        listening = self._heard_ms is not None and self._now_ms - self._heard_ms < _QUIET_MS
+        if listening and self._now_ms - self._told_ms >= _TELEMETRY_MS:
+            self._told_ms = self._now_ms
+            self._say(self._telemetry())
+        out, self._out = self._out, b""
+        return out
+
+    @property
+    def refused(self) -> int:
+        """Lines that were of no use."""
+        return self._decoder.errors + self._late
+
+    def _hello(self, message: Hello) -> None:
+        self._counts = False
+        if message.protocol == PROTOCOL:
+            self.flags.discard("H")
+            self._stop_anew()
+        else:
+            self._stop_anew("H")
+        self._say(Welcome(self._sequence, PROTOCOL, FIRMWARE))
+
+    def _drive(self, message: Drive) -> None:
+        if self._counts:
+            ahead = (message.seq - self._obeyed) % SEQUENCES
+            if not 0 < ahead < SEQUENCES // 2:
+                self._late += 1
+                return
+        self._obeyed, self._counts = message.seq, True
+        if message.left_rad_s == message.right_rad_s == 0 and not self.flags & _NEEDS_RELEASE:
+            self.flags.discard("A")
+        self.flags.discard("W")
+        self._drove_ms = self._now_ms
+        self._asked = Wheels(message.left_rad_s, message.right_rad_s)
+        if not self.flags & set("HEA"):
+            self._steering_rad = message.steering_rad
+
+    def _stop_anew(self, *flags: str) -> None:
+        self.flags.update(flags, "A")
+        self._asked = Wheels()
+
+    def _look_for_faults(self) -> None:
+        self.flags -= set("LR")
+        if self.faults:
+            self.flags |= self.faults | {"A"}
+        if self.battery_v >= _LOW_V:
+            self._well_ms = self._now_ms
+        if self._now_ms - self._well_ms > _LOW_FOR_MS:
+            self.flags |= set("UA")
+        elif self.battery_v >= _BACK_V:
+            self.flags.discard("U")
+
+    def _obey(self) -> None:
+        stands = bool(self.flags & STANDING_FLAGS)
+        asked = Wheels() if stands else self._asked
+        self.world.asked = Wheels(asked.left_rad_s, asked.right_rad_s, self._steering_rad)
+
+    def _telemetry(self) -> Telemetry:
+        wheels = self.world.wheels
+        left_a, right_a = (
+            0.2 + 0.05 * abs(speed) if speed else 0.0
+            for speed in (self._asked.left_rad_s, self._asked.right_rad_s)
+        )
+        return Telemetry(
+            self._sequence,
+            self._now_ms % 2**32,
+            self._obeyed,
+            wheels.left_rad_s,
+            wheels.right_rad_s,
+            self._steering_rad,
+            self.battery_v,
+            left_a,
+            right_a,
+            self.refused,
+            frozenset(self.flags),
+        )
+
+    def _say(self, message: FromPico) -> None:
+        self._out += encode(message)
+        self._sequence = (self._sequence + 1) % SEQUENCES
