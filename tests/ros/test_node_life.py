@@ -30,6 +30,7 @@ NODES = {
     "ai_brain": "ai_brain",
     "llm_parser": "llm_parser",
     "drive_to_point": "drive_to_point",
+    "mock_robot": "mock_robot",
 }
 """Module to the name in the graph that the course gave it."""
 BOTH = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -49,9 +50,13 @@ def assert_ended_well(process: NodeProcess) -> None:
 
 @BOTH
 def test_every_node_ends_with_code_0_and_no_traceback(
-    peer: Peer, module_domain: int, number: signal.Signals
+    peer: Peer, module_domain: int, number: signal.Signals, tmp_path: Path
 ) -> None:
-    params = {"safety_stop": {"gate": True}, "mock_sonar": {"rate": 100}}
+    params = {
+        "safety_stop": {"gate": True},
+        "mock_sonar": {"rate": 100},
+        "mock_robot": {"folder": tmp_path},
+    }
     started = [
         NodeProcess(f"nodes.{module}", module_domain, params=params.get(module, {}))
         for module in NODES

@@ -1,0 +1,75 @@
+"""A serial device that is not there: a pseudo-terminal behind a name that stays."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pty
+import tty
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_MOST = 4096
+
+
+class PseudoSerial:
+    """One device; plugged in from the start. Reads and writes never wait."""
+
+    def __init__(self, path: Path) -> None:
+        """`path` becomes a symbolic link; raises OSError if it cannot, or is something else."""
+        self.path = path
+        self._ends: tuple[int, int] | None = None
+        self.plug()
+
+    @property
+    def plugged(self) -> bool:
+        """Whether it can be opened."""
+        return self._ends is not None
+
+    def plug(self) -> None:
+        """Be there."""
+        if self._ends is not None:
+            return
+        ours, theirs = pty.openpty()
+        tty.setraw(theirs)
+        os.set_blocking(ours, False)
+        # Keeping the other end open spares an error whenever a program closes it.
+        self._ends = ours, theirs
+        fresh = self.path.with_name(f".{self.path.name}.{os.getpid()}")
+        with contextlib.suppress(FileNotFoundError):
+            fresh.unlink()
+        fresh.symlink_to(os.ttyname(theirs))
+        if self.path.exists() and not self.path.is_symlink():
+            fresh.unlink()
+            self.unplug()
+            raise FileExistsError(f"{self.path} is there already, and no device of ours")
+        fresh.replace(self.path)
+
+    def unplug(self) -> None:
+        """Be gone, as if the cable was pulled."""
+        if self._ends is None:
+            return
+        ours, theirs = self._ends
+        self._ends = None
+        with contextlib.suppress(OSError):
+            if self.path.is_symlink() and str(self.path.readlink()) == os.ttyname(theirs):
+                self.path.unlink()
+        os.close(theirs)
+        os.close(ours)
+
+    def read(self) -> bytes:
+        """What has come, most often nothing."""
+        if self._ends is None:
+            return b""
+        try:
+            return os.read(self._ends[0], _MOST)
+        except OSError:
+            return b""
+
+    def write(self, data: bytes) -> None:
+        """Send; what nobody has read for long gets lost, as on a real wire."""
+        if self._ends is not None and data:
+            with contextlib.suppress(OSError):
+                os.write(self._ends[0], data)

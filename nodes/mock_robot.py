@@ -1,0 +1,197 @@
+"""A robot that is not there: its serial devices, and the room that it drives in.
+
+In `folder` appear pico, tof_front, tof_rear and lsc16: pseudo-terminals that speak the bytes of
+the real devices. The drivers (chassis, tof_sonar, head_controller) take them for real ones. Behind
+them is a simulated room with walls and boxes. Trouble is made by parameters, at any time:
+`pico:=unplugged` pulls a cable, `pico:=fine` puts it back. /mock/pose tells where the robot really
+is, which a real one could not.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+import time
+from pathlib import Path
+
+from geometry_msgs.msg import PoseStamped
+
+from nodes._device_fault import FAULTS, FINE, FaultyLine
+from nodes._life import run
+from nodes._node import LessonNode, UsageError
+from nodes._parameters import Choice, Number, Setting, Text, Whole
+from nodes._pty import PseudoSerial
+from nodes._speech import Phrase
+from nodes._topics import DEPTH
+from robot.geometry import quaternion_from_rpy
+from robot.wire_tfluna import TofFrame, encode
+from robot.world import STEP_S, Sonar, World
+from robot.world_pico import SimulatedPico
+from robot.world_servos import SimulatedServos
+
+POSE = "/mock/pose"
+DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
+_BEHIND_S = 0.5
+"""A computer that slept for longer does not catch up."""
+_POSE_EVERY = 5
+
+_STARTED = Phrase(
+    "The simulated robot is in {folder}: {devices}",
+    "Имитатор робота — в {folder}: {devices}",
+)
+_NO_FOLDER = Phrase(
+    "cannot make devices in {folder}: {problem}; set the parameter folder",
+    "не могу создать устройства в {folder}: {problem}; задайте параметр folder",
+)
+_FAULT = Phrase("{device} is now: {fault}", "{device}: теперь {fault}")
+_COLLISION = Phrase(
+    "The robot ran into something (number {count})", "Робот во что-то врезался (раз: {count})"
+)
+
+
+def default_folder() -> Path:
+    """`devices` in the folder where Deck keeps what belongs to a run."""
+    chosen, runtime = os.environ.get("DECK_RUN_DIR"), os.environ.get("XDG_RUNTIME_DIR")
+    if chosen:
+        return Path(chosen) / "devices"
+    if runtime and Path(runtime).is_dir():
+        return Path(runtime) / "deck" / "devices"
+    return Path(f"/tmp/deck-{os.getuid()}/devices")
+
+
+def _fault(device: str, about: str) -> Setting:
+    return Choice(device, FINE, about, choices=FAULTS)
+
+
+class MockRobot(LessonNode):
+    """Lets the world go on, and carries bytes between it and the pseudo-terminals."""
+
+    NAME = "mock_robot"
+    SETTINGS = (
+        Text("folder", "", "Where the devices appear; empty: Deck's own", True, may_be_empty=True),
+        _fault("pico", "Trouble of the Pico"),
+        _fault("tof_front", "Trouble of the sonar in front"),
+        _fault("tof_rear", "Trouble of the sonar behind"),
+        _fault("lsc16", "Trouble of the servo controller"),
+        Choice(
+            "stalled",
+            "none",
+            "Motors that do not turn",
+            choices=("none", "left", "right", "both"),
+        ),
+        Choice(
+            "driver_fault",
+            "none",
+            "Motor drivers that report a fault",
+            choices=("none", "left", "right", "both"),
+        ),
+        Number("battery", 7.4, "Voltage of the battery", low=0.0, high=30.0, unit="V"),
+        Number("noise", 0.01, "Standard deviation of the sonars", high=1.0, unit="m", fixed=True),
+        Number("dropout", 0.01, "Share of readings without a distance", high=1.0, fixed=True),
+        Whole("seed", 0, "Of the dice that are thrown", high=2**31, fixed=True),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        noise_m, dropout = self.number("noise"), self.number("dropout")
+        self._world = World(
+            seed=int(self.number("seed")),
+            front=Sonar(noise_m=noise_m, dropout=dropout),
+            rear=Sonar(forward=False, noise_m=noise_m, dropout=dropout),
+        )
+        self._pico, self._servos = SimulatedPico(self._world), SimulatedServos()
+        folder = Path(self.text("folder") or default_folder()).expanduser()
+        self._lines = self._make_lines(folder)
+        self._told: dict[str, str] = dict.fromkeys(DEVICES, FINE)
+        self._collisions = 0
+        self._publisher = self.create_publisher(PoseStamped, POSE, DEPTH)
+        self.parameters_changed()
+        self._now_s = time.monotonic()
+        self.every(STEP_S, self._tick)
+        self.say.info(_STARTED, folder=folder, devices=", ".join(DEVICES))
+
+    def parameters_changed(self) -> None:
+        """Make or mend the trouble."""
+        for device in DEVICES:
+            fault = self.text(device)
+            if fault != self._told[device]:
+                self._told[device] = fault
+                self._lines[device].set_fault(fault)
+                self.say.warn(_FAULT, device=device, fault=fault)
+        sides = {"none": "", "left": "L", "right": "R", "both": "LR"}
+        stalled = sides[self.text("stalled")]
+        self._world.stalled = "L" in stalled, "R" in stalled
+        self._pico.faults = frozenset(sides[self.text("driver_fault")])
+        self._pico.battery_v = self._servos.battery_v = self.number("battery")
+
+    def before_end(self) -> None:
+        """Take the devices away."""
+        for line in self._lines.values():
+            line.close()
+
+    def _make_lines(self, folder: Path) -> dict[str, FaultyLine]:
+        try:
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            return {
+                device: FaultyLine(PseudoSerial(folder / device), seed)
+                for seed, device in enumerate(DEVICES)
+            }
+        except OSError as error:
+            raise UsageError(
+                _NO_FOLDER, folder=folder, problem=error.strerror or str(error)
+            ) from None
+
+    def _tick(self) -> None:
+        self._pico.feed(self._lines["pico"].read())
+        for device in ("tof_front", "tof_rear"):
+            self._lines[device].read()
+        now_s = time.monotonic()
+        if now_s - self._now_s > _BEHIND_S:
+            self._now_s = now_s - _BEHIND_S
+        while now_s - self._now_s >= STEP_S:
+            self._now_s += STEP_S
+            self._step()
+        self._lines["lsc16"].write(self._servos.feed(self._lines["lsc16"].read()), now_s)
+        if self._world.collisions > self._collisions:
+            self._collisions = self._world.collisions
+            self.say.warn(_COLLISION, count=self._collisions)
+
+    def _step(self) -> None:
+        self._lines["pico"].write(self._pico.step(), self._now_s)
+        self._world.step()
+        self._servos.advance(STEP_S)
+        for device, metres in zip(
+            ("tof_front", "tof_rear"), self._world.read_sonars(), strict=True
+        ):
+            self._lines[device].write(encode(_tof_frame(metres)), self._now_s)
+        if self._world.steps % _POSE_EVERY == 0:
+            self._publish_pose()
+
+    def _publish_pose(self) -> None:
+        message = PoseStamped()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.header.frame_id = "odom"
+        place, turn = message.pose.position, message.pose.orientation
+        place.x, place.y = self._world.pose.x_m, self._world.pose.y_m
+        rotation = quaternion_from_rpy(0.0, 0.0, self._world.pose.heading_rad)
+        turn.x, turn.y, turn.z, turn.w = rotation.x, rotation.y, rotation.z, rotation.w
+        self._publisher.publish(message)
+
+
+def _tof_frame(metres: float) -> TofFrame:
+    """As a TF-Luna tells it."""
+    if metres == math.inf:
+        return TofFrame(0, 50, 30.0)
+    if math.isnan(metres):
+        return TofFrame(0, 65535, 30.0)
+    return TofFrame(10 if metres < 0 else round(metres * 100), 1000, 30.0)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(MockRobot, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,136 @@
+"""The robot that is not there: its devices speak as the real ones, and fail when asked to."""
+
+from __future__ import annotations
+
+import signal
+from typing import TYPE_CHECKING
+
+import pytest
+import serial
+from geometry_msgs.msg import PoseStamped
+
+from robot.wire_lsc16 import Battery, BatteryRequest, ServoDecoder
+from robot.wire_lsc16 import encode as encode_servo
+from robot.wire_pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode
+from robot.wire_tfluna import Model, TofDecoder
+from tests.ros.devices import mock_robot, set_parameter
+from tests.ros.peer import Peer
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from tests.ros.node_process import NodeProcess
+
+NAMES = ("pico", "tof_front", "tof_rear", "lsc16")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("robot") / "devices"
+
+
+@pytest.fixture(scope="module")
+def robot(module_domain: int, folder: Path) -> Iterator[NodeProcess]:
+    with mock_robot(module_domain, folder, noise=0.0, dropout=0.0) as robot:
+        robot.wait_for_words("The simulated robot is in")
+        yield robot
+
+
+@pytest.fixture(scope="module")
+def peer(module_domain: int) -> Iterator[Peer]:
+    with Peer(module_domain) as peer:
+        yield peer
+
+
+def open_port(folder: Path, name: str, baud: int = 115200) -> serial.Serial:
+    return serial.Serial(str(folder / name), baud, timeout=0.05, exclusive=True)
+
+
+@pytest.mark.usefixtures("robot")
+def test_the_pico_answers_drives_and_stops_by_itself(folder: Path, peer: Peer) -> None:
+    poses = peer.hear("/mock/pose", PoseStamped)
+    decoder, told = PicoDecoder(), []
+    with open_port(folder, "pico") as port:
+
+        def hear(seq: int, speed: float) -> Telemetry | None:
+            port.write(encode(Drive(seq, speed, speed, 0.0)))
+            told.extend(decoder.feed(port.read(400)))
+            return next((m for m in reversed(told) if isinstance(m, Telemetry)), None)
+
+        port.write(encode(Hello(0)))
+        sequence = iter(range(1, 60_000))
+        wait_until(lambda: (now := hear(next(sequence), 0)) and not now.flags, "armed")
+        assert any(isinstance(message, Welcome) for message in told)
+        wait_until(lambda: (now := hear(next(sequence), 5)) and now.left_rad_s > 4.5, "turning")
+        wait_until(lambda: poses and poses[-1].pose.position.x > 0.01, "a robot that moves")
+    decoder = PicoDecoder()
+    wait_until(
+        lambda: len(poses) > 3 and poses[-1].pose.position.x == poses[-3].pose.position.x,
+        "standing after the silence",
+    )
+    assert decoder.errors == 0
+
+
+@pytest.mark.usefixtures("robot")
+def test_the_sonars_see_the_room(folder: Path) -> None:
+    for name, nearest in (("tof_front", 1.0), ("tof_rear", 0.5)):
+        decoder, frames = TofDecoder(), []
+        with open_port(folder, name) as port:
+            wait_until(
+                lambda: frames.extend(decoder.feed(port.read(90))) or len(frames) > 20,  # noqa: B023
+                "frames",
+            )
+        assert nearest < frames[-1].distance_m(Model.LUNA) < 2.5
+
+
+@pytest.mark.usefixtures("robot")
+def test_the_servo_controller_tells_its_battery(folder: Path) -> None:
+    decoder, frames = ServoDecoder(), []
+    with open_port(folder, "lsc16", 9600) as port:
+        port.write(encode_servo(BatteryRequest()))
+        wait_until(lambda: frames.extend(decoder.feed(port.read(16))) or frames, "an answer")
+    assert frames == [Battery(7400)]
+
+
+@pytest.mark.usefixtures("robot")
+def test_a_cable_is_pulled_and_put_back_under_the_same_name(folder: Path, peer: Peer) -> None:
+    port = open_port(folder, "tof_front")
+    set_parameter(peer, "mock_robot", "tof_front", "unplugged")
+    assert not (folder / "tof_front").exists()
+    with pytest.raises((OSError, serial.SerialException)):
+        wait_until(lambda: port.read(9) and False, "an end of it")
+    port.close()
+    set_parameter(peer, "mock_robot", "tof_front", "fine")
+    with open_port(folder, "tof_front") as again:
+        wait_until(lambda: again.read(9), "bytes")
+
+
+@pytest.mark.usefixtures("robot")
+def test_noise_and_silence_are_to_be_had(folder: Path, peer: Peer) -> None:
+    decoder = TofDecoder()
+    with open_port(folder, "tof_rear") as port:
+        set_parameter(peer, "mock_robot", "tof_rear", "noise")
+        wait_until(lambda: decoder.feed(port.read(90)) is None or decoder.errors > 5, "noise")
+        set_parameter(peer, "mock_robot", "tof_rear", "silent")
+        wait_until(lambda: not port.read(90), "silence")
+        set_parameter(peer, "mock_robot", "tof_rear", "fine")
+        wait_until(lambda: decoder.feed(port.read(90)), "frames again")
+
+
+def test_it_takes_its_devices_with_it(module_domain: int, tmp_path: Path) -> None:
+    with mock_robot(module_domain, tmp_path / "here") as robot:
+        robot.wait_for_words("The simulated robot is in")
+        assert {path.name for path in (tmp_path / "here").iterdir()} == set(NAMES)
+        robot.send(signal.SIGTERM)
+        assert robot.wait() == 0
+        assert list((tmp_path / "here").iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_is_told_in_one_line(module_domain: int, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with mock_robot(module_domain, tmp_path / "file" / "x") as robot:
+        assert robot.wait() == 2
+        assert "set the parameter folder" in robot.output
+        assert robot.output.count("\n") == 1
