@@ -51,8 +51,8 @@ class Player:
             self._take_latched(latched, begin_ns)
         self._coming = bag.messages(begin_ns)
         self._fetch()
-        self.ended = False
         self._take_until(target_ns, float("inf"))
+        self.ended = self._next is None and target_ns >= bag.end_ns
 
     def advance(self, span_s: float) -> None:
         """Move the playhead by so many seconds of the bag, as far as can be read in time."""

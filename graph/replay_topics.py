@@ -83,7 +83,7 @@ class ReplayTopic:
             self._still,
             hz=meter.hz(now_s),
             bytes_per_s=meter.bytes_per_s(now_s),
-            age_s=meter.age_s(now_s),
+            age_s=self._age_s(now_s),
             jitter_s=meter.jitter_s(now_s),
             count=meter.count,
         )
@@ -92,12 +92,19 @@ class ReplayTopic:
             self._row = row
         return self._row
 
+    def _age_s(self, now_s: float) -> float | None:
+        """Return the age of the newest message, which may be from before the last jump."""
+        age_s = self._meter.age_s(now_s)
+        if age_s is None and self.newest is not None:
+            return max(0.0, now_s - self.newest.stamp_ns * NANOSECONDS)
+        return age_s
+
     def _with_trouble(self, row: TopicRow, now_s: float, begun_s: float) -> TopicRow:
         if self._broken:
             return replace(row, trouble=Trouble.UNKNOWN_TYPE, detail=self._broken)
         if self.is_latched:
             return row
-        if row.age_s is None and self.newest is None and now_s - begun_s > QUIET_S:
+        if row.age_s is None and now_s - begun_s > QUIET_S:
             finding = quiet(now_s - begun_s, ever=False)
         elif row.age_s is not None and self._meter.is_quiet(now_s):
             finding = quiet(row.age_s, ever=True)

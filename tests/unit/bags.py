@@ -78,3 +78,39 @@ def write_bag(
         for count in range(int(seconds * hz) + 1):
             put(numbers, number(data=float(count)), "std_msgs/msg/Float32", count / hz)
     return folder
+
+
+def write_robot_bag(folder: Path) -> Path:
+    """A bag of ten seconds in which a robot drives: sonar, wheels, and a text."""
+    types = store()
+    made = types.types
+    joint, header, stamp = (
+        made[name]
+        for name in (
+            "sensor_msgs/msg/JointState",
+            "std_msgs/msg/Header",
+            "builtin_interfaces/msg/Time",
+        )
+    )
+    with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+
+        def channel(topic: str, kind: str) -> Connection:
+            return writer.add_connection(topic, kind, typestore=types)
+
+        sonar = channel("/sensor/sonar_front", "std_msgs/msg/Float32")
+        wheels = channel("/wheel_commands", "sensor_msgs/msg/JointState")
+        for turn in range(101):
+            at_ns = BEGIN_NS + turn * SECOND_NS // 10
+            metres = made["std_msgs/msg/Float32"](data=2.0 - turn * 0.015)
+            raw = types.serialize_cdr(metres, "std_msgs/msg/Float32")
+            writer.write(sonar, at_ns, bytes(raw))
+            turned = joint(
+                header=header(stamp=stamp(sec=at_ns // SECOND_NS, nanosec=0), frame_id=""),
+                name=["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"],
+                position=np.array([0.0, 0.0, 0.2]),
+                velocity=np.array([8.0, 9.0, 0.0]),
+                effort=np.array([]),
+            )
+            raw = types.serialize_cdr(turned, "sensor_msgs/msg/JointState")
+            writer.write(wheels, at_ns, bytes(raw))
+    return folder

@@ -61,8 +61,8 @@ class ReplayBar(Widget):
         super().__init__()
         self._replay: Replay | None = None
         self._state: ReplayState | None = None
-        self._track = (0, 0)
-        """Column where the track begins, and its width."""
+        self.track = (0, 0)
+        """Column where it begins, and its width."""
 
     def on_mount(self) -> None:
         """Look where the recording is, now and then."""
@@ -92,7 +92,7 @@ class ReplayBar(Widget):
 
     def on_click(self, event: Click) -> None:
         """Jump to the place that was clicked."""
-        begin, width = self._track
+        begin, width = self.track
         state = self._state
         if self._replay is not None and state is not None and begin <= event.x < begin + width:
             share = (event.x - begin) / max(1, width - 1)
@@ -101,7 +101,7 @@ class ReplayBar(Widget):
 
     def on_mouse_move(self, event: MouseMove) -> None:
         """Tell the time under the pointer."""
-        begin, width = self._track
+        begin, width = self.track
         state = self._state
         self.tooltip = None
         if state is not None and begin <= event.x < begin + width:
@@ -121,7 +121,7 @@ class ReplayBar(Widget):
             if room - keys.cell_length - key.cell_length <= TRACK:
                 break
             keys = keys.append(key)
-        self._track = (left.cell_length, max(LEAST_TRACK, room - keys.cell_length - 1))
+        self.track = (left.cell_length, max(LEAST_TRACK, room - keys.cell_length - 1))
         return Content("").join([left, self._drawn_track(state), right, keys])
 
     def _left(self, state: ReplayState) -> Content:
@@ -150,7 +150,7 @@ class ReplayBar(Widget):
         return Content.assemble(*parts)
 
     def _drawn_track(self, state: ReplayState) -> Content:
-        _begin, width = self._track
+        _begin, width = self.track
         share = state.position_s / state.length_s if state.length_s else 1.0
         at = min(width - 1, round(share * (width - 1)))
         done = self.get_visual_style("replay-bar--done")

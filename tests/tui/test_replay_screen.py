@@ -1,0 +1,155 @@
+"""A recording on the screen: its bar, its keys, its panels, and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from graph.replay import Replay
+from tests.tui.replayed import BagPad, replayed
+from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
+from tests.unit.bags import write_bag, write_robot_bag
+from tui.app import DeckApp
+from tui.i18n import set_language
+from tui.orders import Order, ReplayOrder
+from tui.widgets.replay_bar import ReplayBar
+
+
+@pytest.fixture
+def drive(tmp_path: Path) -> Path:
+    return write_robot_bag(tmp_path / "drive")
+
+
+async def until(pilot: Pilot[int], condition: object) -> None:
+    """Let the app work until the condition holds."""
+    assert callable(condition)
+    for _round in range(600):
+        if condition():
+            return
+        await pilot.pause(0.02)
+    pytest.fail("it has not come")
+
+
+def shown(look: Look, bag: Path, screen: str, position_s: float = 6.2) -> DeckApp:
+    set_language(look.language)
+    return DeckApp(BagPad(position_s=position_s), Order(replay=ReplayOrder(bag)), screen)
+
+
+async def there(pilot: Pilot[int], position_s: float = 6.2) -> None:
+    """Wait until the bag stands at its place and has been drawn."""
+    app = pilot.app
+    assert isinstance(app, DeckApp)
+
+    def stands() -> bool:
+        replay = app.feed.replay
+        return (
+            replay is not None and replay.state.position_s == position_s and bool(app.feed.update)
+        )
+
+    await until(pilot, stands)
+    await pilot.pause(0.3)
+    app.replay_changed()
+    await pilot.pause()
+
+
+@every_look
+def test_replay_looks(look: Look, drive: Path, snap_compare: SnapCompare) -> None:
+    """Panels over the whole width, no table of nodes; above the keys where the recording is."""
+    app = shown(look, drive, "deck")
+    assert snap_compare(app, terminal_size=look.size, run_before=there)
+
+
+@each_size
+def test_replayed_topics_look(look: Look, tmp_path: Path, snap_compare: SnapCompare) -> None:
+    """Topics of the bag with rates as they were; the battery is of a package nobody has."""
+    app = shown(look, write_bag(tmp_path / "walk"), "topics")
+    assert snap_compare(app, terminal_size=look.size, run_before=there)
+
+
+@each_size
+def test_a_cut_recording_looks(look: Look, tmp_path: Path, snap_compare: SnapCompare) -> None:
+    """The bar says that it is cut short, a toast says what is missing."""
+    bag = write_bag(tmp_path / "walk", seconds=2000, hz=10)
+    file = bag / "walk.mcap"
+    file.write_bytes(file.read_bytes()[:-200_000])
+
+    async def ready(pilot: Pilot[int]) -> None:
+        await there(pilot, 300.0)
+        # Its path is another in each run.
+        pilot.app.clear_notifications()
+        await pilot.pause()
+
+    app = shown(look, bag, "topics", 300.0)
+    assert snap_compare(app, terminal_size=look.size, run_before=ready)
+
+
+def state_is(replay: Replay, **wanted: object) -> bool:
+    return all(getattr(replay.state, name) == value for name, value in wanted.items())
+
+
+async def test_keys_play_pause_step_jump_and_change_the_rate(drive: Path) -> None:
+    async with replayed(drive) as (_app, pilot, replay):
+        await pilot.press("f7")
+        await until(pilot, lambda: replay.state.position_s == pytest.approx(0.1))
+        await pilot.press("shift+right")
+        await until(pilot, lambda: replay.state.position_s == pytest.approx(5.1))
+        await pilot.press("shift+left")
+        await until(pilot, lambda: replay.state.position_s == pytest.approx(0.1))
+        await pilot.press("right_square_bracket")
+        await until(pilot, lambda: state_is(replay, rate=2.0))
+        await pilot.press("х", "х")
+        await until(pilot, lambda: state_is(replay, rate=0.5))
+        await pilot.press("L")
+        await until(pilot, lambda: state_is(replay, loop=True))
+        await pilot.press("f6")
+        await until(pilot, lambda: state_is(replay, paused=False))
+        await until(pilot, lambda: replay.state.position_s > 0.2)
+
+
+async def test_a_click_on_the_track_jumps_there(drive: Path) -> None:
+    async with replayed(drive) as (app, pilot, replay):
+        bar = app.screen.query_one(ReplayBar)
+        await until(pilot, lambda: bar.track[1])
+        begin, width = bar.track
+        await pilot.click(ReplayBar, offset=(begin + width - 1, 0))
+        await until(pilot, lambda: state_is(replay, position_s=10.0))
+        await pilot.click(ReplayBar, offset=(1, 0))
+        await until(pilot, lambda: state_is(replay, paused=False))
+        assert replay.state.position_s < 5.0, "at the end it begins anew"
+
+
+async def test_the_emergency_stop_has_nothing_to_stop(drive: Path) -> None:
+    async with replayed(drive) as (app, pilot, _replay):
+        await pilot.press("space")
+        await pilot.pause()
+        told = [notice.message for notice in app._notifications]
+        assert told == ["This is a recording: there is nothing to stop."]
+        assert not app.brake.state.engaged
+
+
+async def test_a_bag_without_panels_opens_on_its_topics(tmp_path: Path) -> None:
+    async with replayed(write_bag(tmp_path / "walk")) as (app, pilot, _replay):
+        await until(pilot, lambda: getattr(app.screen, "tab", "") == "topics")
+
+
+async def test_the_panels_show_what_was_recorded(drive: Path) -> None:
+    async with replayed(drive, size=(80, 24), position_s=10.0) as (app, pilot, _replay):
+        await until(pilot, lambda: "0.26" in app.export_screenshot())
+
+
+async def test_what_is_no_bag_ends_with_a_word_and_two(tmp_path: Path) -> None:
+    app = DeckApp(BagPad(), Order(replay=ReplayOrder(tmp_path / "nothing")), "deck")
+    async with app.run_test() as pilot:
+        await until(pilot, lambda: app.sessions.parting_words)
+    assert app.return_code == 2
+    assert "there is no such file or folder" in app.sessions.parting_words
+
+
+async def test_leaving_lets_go_of_the_bag(drive: Path) -> None:
+    async with replayed(drive) as (app, pilot, replay):
+        await pilot.press("q")
+        await until(pilot, lambda: app._exit)
+        assert replay._thread is not None
+        assert not replay._thread.is_alive()
