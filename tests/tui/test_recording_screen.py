@@ -1,0 +1,133 @@
+"""Recording from the screen: the key, the title, the folder, and the end with the session."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from graph import recording
+from graph.bag_errors import not_made
+from graph.recording import RecordedTopic, RecordingStatus
+from tests.tui.app_runs import opened
+from tests.tui.snapshots import Look, SnapCompare, each_size
+from tui.app import DeckApp
+from tui.widgets.title_bar import TitleBar
+
+ROW = RecordedTopic("/number", "std_msgs/msg/Float32", 240, 3_400_000)
+GOING = RecordingStatus("", 0.0, 12.0, 240, 3_400_000, (ROW,))
+
+
+class Recorder:
+    """Stands in for the real one, which the tests with ROS record by: says what it is told to."""
+
+    made: list[Recorder]
+    refusal: Exception | None
+
+    def __init__(self, domain: int, discovery: object, folder: Path) -> None:
+        self.asked = (domain, discovery)
+        self.status = replace(GOING, folder=str(folder))
+        self.stopped = False
+
+    def start(self) -> None:
+        if Recorder.refusal is not None:
+            raise Recorder.refusal
+        Recorder.made.append(self)
+
+    def stop(self) -> RecordingStatus:
+        self.stopped = True
+        return self.status
+
+
+@pytest.fixture(autouse=True)
+def _stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    Recorder.made, Recorder.refusal = [], None
+    monkeypatch.setattr(recording, "Recorder", Recorder)
+
+
+async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
+    for _round in range(600):
+        if condition():
+            return
+        await pilot.pause(0.02)
+    pytest.fail("it has not come")
+
+
+def title(app: DeckApp) -> str:
+    return app.screen.query_one(TitleBar).text
+
+
+def told(app: DeckApp) -> list[str]:
+    return [notice.message for notice in app._notifications]
+
+
+async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("f6")
+        await until(pilot, lambda: "● rec 12 s 3.4 MB" in title(app))
+        (recorder,) = Recorder.made
+        assert app.feed.session is not None
+        assert recorder.asked == (app.feed.session.domain, app.feed.session.discovery)
+        assert recorder.status.folder.startswith(str(tmp_path / "logs" / "bags" / "09-brain"))
+        assert f"Recording into {recorder.status.folder}; f6 ends it." in told(app)
+        await pilot.press("f6")
+        await until(pilot, lambda: recorder.stopped)
+        await until(pilot, lambda: "rec" not in title(app))
+        await until(pilot, lambda: any("240 messages" in words for words in told(app)))
+
+
+async def test_it_ends_with_the_session() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("f6")
+        await until(pilot, lambda: app.recording.active)
+        await app.feed.disconnect()
+        assert Recorder.made[0].stopped
+
+
+async def test_it_ends_before_the_screen_is_left() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("f6")
+        await until(pilot, lambda: app.recording.active)
+        await pilot.press("q")
+        await until(pilot, lambda: app._exit)
+        assert Recorder.made[0].stopped
+
+
+async def test_what_goes_wrong_is_said_and_ends_it() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("f6")
+        await until(pilot, lambda: app.recording.active)
+        (recorder,) = Recorder.made
+        recorder.status = replace(recorder.status, error="the disk is full", dropped=3, lost=3)
+        await until(pilot, lambda: not app.recording.active)
+        await until(pilot, lambda: "the disk is full" in told(app))
+        assert any(words.startswith("3 messages are missing") for words in told(app))
+
+
+async def test_a_folder_that_cannot_be_made_is_said() -> None:
+    Recorder.refusal = not_made(Path("/full"), OSError(28, "No space left on device"))
+    async with opened() as (app, pilot):
+        await pilot.press("f6")
+        await until(pilot, lambda: "/full cannot be made: No space left on device" in told(app))
+        assert not app.recording.active
+
+
+@each_size
+def test_recording_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """The title tells for how long and how much; the lesson's name gives way to it."""
+
+    async def record(pilot: Pilot[Any]) -> None:
+        app = pilot.app
+        assert isinstance(app, DeckApp)
+        await look.settle(pilot)
+        await pilot.press("f6")
+        await until(pilot, lambda: app.recording.active)
+        # The folder is named by the time.
+        app.clear_notifications()
+        await pilot.pause()
+
+    assert snap_compare(look.app(), terminal_size=look.size, run_before=record)
