@@ -26,8 +26,8 @@ MEASURE_S = 10.0
 ROUNDS = 3
 
 
-def open_topics(folder: Path) -> Terminal:
-    """The program with the Topics screen in front."""
+def open_topics(folder: Path, topic: str = "/load/image", domain: str = DOMAIN) -> Terminal:
+    """The program with the Topics screen in front, once this topic is on it."""
     profile = folder / "nothing.yaml"
     profile.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
     env = {
@@ -37,11 +37,11 @@ def open_topics(folder: Path) -> Terminal:
         "XDG_STATE_HOME": str(folder / "state"),
         "LANG": "C.UTF-8",
     }
-    argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]
+    argv = [sys.executable, "-m", "tui", str(profile), "--domain", domain, "--lang", "en"]
     terminal = Terminal(argv, 120, 40, env)
     terminal.wait_for("1/1")
     terminal.press("f3")
-    terminal.wait_for("/load/image")
+    terminal.wait_for(topic)
     return terminal
 
 
