@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
-from rclpy.task import Future
 
 from graph.making import to_message
 from graph.types import load_action
@@ -19,7 +19,6 @@ class Served:
 
     def __init__(self, node: Node, name: str, reject: bool, refuse_cancel: bool) -> None:
         self.handles: list[Any] = []
-        self.ends: list[Any] = []
         self.cancels = 0
         self.rejects = reject
         self.refuses_cancel = refuse_cancel
@@ -28,8 +27,9 @@ class Served:
             node,
             self.kind,
             name,
-            self._execute,
+            lambda _: None,
             goal_callback=self._asked,
+            handle_accepted_callback=self._accepted,
             cancel_callback=self._asked_to_cancel,
         )
 
@@ -40,11 +40,15 @@ class Served:
         self.cancels += 1
         return CancelResponse.REJECT if self.refuses_cancel else CancelResponse.ACCEPT
 
-    async def _execute(self, handle: Any) -> Any:
+    def _accepted(self, handle: Any) -> None:
+        """Have it executed by nobody: a coroutine for each goal would starve the executor."""
+        handle._update_state(_rclpy.GoalEvent.EXECUTE)
         self.handles.append(handle)
-        end: Any = Future()
-        self.ends.append(end)
-        return await end
+
+    def end(self, goal: int, how: str, result: Any) -> None:
+        handle = self.handles[goal]
+        getattr(handle, how)()
+        self.server.notify_execute(handle, lambda _: result)
 
 
 class ActionOrders:
@@ -73,8 +77,7 @@ class ActionOrders:
     def finish(self, topic: str, goal: int, how: str, **result: Any) -> None:
         """End a goal: `succeed`, `abort` or `canceled`, with these fields in its result."""
         served = self.served_actions[topic]
-        getattr(served.handles[goal], how)()
-        served.ends[goal].set_result(to_message(served.kind.Result, result))
+        served.end(goal, how, to_message(served.kind.Result, result))
 
     def withdraw_action(self, topic: str) -> None:
         self.served_actions.pop(topic).server.destroy()
