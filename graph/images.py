@@ -42,18 +42,18 @@ def to_rgb(value: Mapping[str, Value]) -> Rgb:
 
     Raises ImageError.
     """
-    width, height, step = (_whole(value, name) for name in ("width", "height", "step"))
+    width, height, step = (whole(value, name) for name in ("width", "height", "step"))
     encoding, data = value.get("encoding"), value.get("data")
     if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
         raise ImageError("this is no sensor_msgs/Image")
     if encoding in COLOURS:
         pixel_bytes, order = COLOURS[encoding]
-        pixels = _rows(data, width, height, step, pixel_bytes)
-        return _in_order(pixels.reshape(height, width, pixel_bytes), order)
+        pixels = pixel_rows(data, width, height, step, pixel_bytes)
+        return in_order(pixels.reshape(height, width, pixel_bytes), order)
     if encoding in DEPTHS:
         kind = (">" if value.get("is_bigendian") else "<") + DEPTHS[encoding]
-        rows = _rows(data, width, height, step, int(kind[-1]))
-        return _grey(rows.copy().view(kind))
+        rows = pixel_rows(data, width, height, step, int(kind[-1]))
+        return grey(rows.copy().view(kind))
     known = ", ".join([*COLOURS, *DEPTHS])
     raise ImageError(f"encoding '{encoding}' is not shown; known are {known}")
 
@@ -73,14 +73,15 @@ def shrink(rgb: Rgb, width: int, height: int) -> Rgb:
     return mean
 
 
-def _whole(value: Mapping[str, Value], name: str) -> int:
+def whole(value: Mapping[str, Value], name: str) -> int:
+    """Return a field that is a whole number; raises ImageError."""
     number = value.get(name)
     if not isinstance(number, int):
         raise ImageError(f"this is no sensor_msgs/Image: {name} is missing")
     return number
 
 
-def _rows(
+def pixel_rows(
     data: bytes | bytearray | memoryview, width: int, height: int, step: int, pixel_bytes: int
 ) -> Rgb:
     """Return the bytes of the pixels, shape (height, width * pixel_bytes), padding cut off."""
@@ -102,7 +103,8 @@ def _rows(
     return rows[:, : width * pixel_bytes]
 
 
-def _in_order(pixels: Rgb, order: tuple[int, ...]) -> Rgb:
+def in_order(pixels: Rgb, order: tuple[int, ...]) -> Rgb:
+    """Return pixels of shape (height, width, bytes) with red, green and blue in their places."""
     if order == (2, 1, 0):
         return pixels[:, :, 2::-1]
     if order == (0, 1, 2):
@@ -110,7 +112,7 @@ def _in_order(pixels: Rgb, order: tuple[int, ...]) -> Rgb:
     return pixels.repeat(3, axis=2)
 
 
-def _grey(numbers: NDArray[np.generic]) -> Rgb:
+def grey(numbers: NDArray[np.generic]) -> Rgb:
     """Return grey from the least to the greatest finite number; what is not finite is black."""
     import numpy as np
 

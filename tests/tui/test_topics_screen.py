@@ -60,6 +60,13 @@ class Room:
         await self.pilot.pause()
         await self.pilot.pause()
 
+    async def decoded(self) -> None:
+        """Wait until no picture is being decoded."""
+        under_way = [worker for worker in self.app.workers if worker.group == "pictures"]
+        if under_way:
+            await self.app.workers.wait_for_complete(under_way)
+        await self.pilot.pause()
+
     def head(self) -> str:
         """The lines above the message."""
         return self.screen.query_one(TopicHead).render().plain
@@ -369,14 +376,14 @@ async def test_depth_has_a_scale_in_metres(room: Room) -> None:
 async def test_a_compressed_image_is_decoded_and_shown(room: Room) -> None:
     await room.choose(CAMERA)
     await room.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message()))
-    await room.app.workers.wait_for_complete()
+    await room.decoded()
     assert room.screen.detail.picture.caption == "jpeg 640×480 · 10.0 Hz"
 
 
 async def test_a_compressed_image_that_is_cut_short_says_so(room: Room) -> None:
     await room.choose(CAMERA)
     await room.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message(5000)))
-    await room.app.workers.wait_for_complete()
+    await room.decoded()
     headline, detail = room.screen.detail.picture.words
     assert headline == "this picture cannot be shown"
     assert detail == "the JPEG data are cut short: no end in 5000 bytes"
@@ -399,7 +406,7 @@ async def test_late_pictures_are_left_out_while_one_is_decoded(
         value = {**jpeg_message(), "number": number}
         await room.show(with_camera("sensor_msgs/msg/CompressedImage", value))
     release.set()
-    await room.app.workers.wait_for_complete()
+    await room.decoded()
     assert seen == [0, 4]
 
 

@@ -9,30 +9,26 @@ from textual import on
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
-from graph import images
 from graph.yaml_text import is_cut, to_yaml
 from tui.actions import bindings
 from tui.actions.publish import OpenPublish
 from tui.actions.topics import TOPICS_ACTIONS
 from tui.i18n import N_, _, ngettext
-from tui.screens.topics_plotting import PlotPlace, TopicsPlotting
+from tui.screens.topics_pictures import TopicsPictures
+from tui.screens.topics_plotting import PlotPlace
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.topic_detail import TopicDetail
 from tui.widgets.topic_plot import TopicPlot
 from tui.widgets.topic_words import size_text
 from tui.widgets.topics_table import TopicsTable
-from tui.widgets.topics_table_columns import hz_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from textual.app import ComposeResult
     from textual.timer import Timer
 
-    from graph.data import Sample, TopicRow, Value
+    from graph.data import TopicRow
     from tui.messages import GraphChanged, LanguageChanged, SessionChanged
 
-IMAGE = "sensor_msgs/msg/Image"
 LONGEST_ARRAY = 2000
 """Elements of an array that are copied: a clipboard of a terminal (OSC 52) takes little."""
 SETTLED_S = 0.12
@@ -40,7 +36,7 @@ SETTLED_S = 0.12
 the arrow keys asks for none of those passed by."""
 
 
-class TopicsScreen(TopicsPlotting):
+class TopicsScreen(TopicsPictures):
     """A table of topics and, of the chosen one, the newest message as a tree or a picture."""
 
     tab: ClassVar[str] = "topics"
@@ -107,13 +103,14 @@ class TopicsScreen(TopicsPlotting):
             return
         if update.error:
             self.table.show_words(_("ROS cannot be observed"), update.error)
-        self._listed = tuple(row for row in update.topics if self._is_listed(row))
-        self.table.show(self._listed)
-        self.detail.show_topic(self.table.chosen_row)
-        self._count()
+        if self.is_time_for_rates(update.time_s):
+            self._listed = tuple(row for row in update.topics if self._is_listed(row))
+            self.table.show(self._listed)
+            self.detail.show_topic(self.table.chosen_row)
+            self._count()
         samples = update.samples.get(self.table.chosen or "", ())
         if samples:
-            self._show_message(samples[-1])
+            self.show_message(samples[-1])
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget the topics of a session that has ended."""
@@ -135,6 +132,7 @@ class TopicsScreen(TopicsPlotting):
     def _chosen(self) -> None:
         self.detail.show_topic(self.table.chosen_row)
         self.mark_plotted()
+        self.keep_pace()
         self.refresh_bindings()
         if self._settling is not None:
             self._settling.stop()
@@ -152,6 +150,7 @@ class TopicsScreen(TopicsPlotting):
     @on(EchoTree.PauseChanged)
     def _pause_changed(self) -> None:
         self.detail.relabel()
+        self.keep_pace()
         self.refresh_bindings()
 
     @on(Input.Changed, "#topics-filter")
@@ -179,22 +178,10 @@ class TopicsScreen(TopicsPlotting):
         order = self.table.order
         self.table.reorder(replace(order, housekeeping=not order.housekeeping))
 
-    @property
-    def shows_image(self) -> bool:
-        """Whether the chosen topic carries images."""
-        row = self.table.chosen_row if self.is_mounted else None
-        return row is not None and IMAGE in row.type_names
-
-    def toggle_picture(self) -> None:
-        """Show an image as a picture, or as a tree."""
-        if self.detail.as_endpoints:
-            self.toggle_endpoints()
-            return
-        self.detail.show_as_picture(not self.detail.as_picture)
-
     def toggle_endpoints(self) -> None:
         """Show who is on the chosen topic and by which QoS, or its message."""
         self.detail.show_as_endpoints(not self.detail.as_endpoints)
+        self.keep_pace()
         self.refresh_bindings()
 
     def copy_message(self) -> None:
@@ -213,31 +200,6 @@ class TopicsScreen(TopicsPlotting):
     def _is_listed(self, row: TopicRow) -> bool:
         """Leave out what only Deck has asked for; the chosen one stays when all have left it."""
         return bool(row.publishers or row.subscribers) or row.name == self.table.chosen
-
-    def _show_message(self, sample: Sample) -> None:
-        first = self.detail.sample is None
-        self.detail.show_message(sample)
-        if sample.type_name != IMAGE:
-            return
-        if first:
-            self.detail.show_as_picture(True)
-        if self.detail.front is self.detail.picture and not self.detail.echo.paused:
-            self._show_picture(sample.value)
-
-    def _show_picture(self, value: Mapping[str, Value]) -> None:
-        encoding = str(value.get("encoding"))
-        try:
-            rgb = images.to_rgb(value)
-        except images.ImageError as error:
-            known = encoding in images.COLOURS or encoding in images.DEPTHS
-            headline = _("this picture cannot be shown")
-            if not known:
-                headline = _("pictures of the encoding {encoding} cannot be shown")
-            self.detail.show_no_picture(headline.format(encoding=encoding), str(error))
-            return
-        row = self.table.chosen_row
-        rate = f"{hz_text(row.hz if row else None)} {_('Hz')}"
-        self.detail.show_picture(rgb, f"{encoding} {rgb.shape[1]}×{rgb.shape[0]} · {rate}")
 
     def _label(self) -> None:
         self.filter.placeholder = _("filter: words of a name or a type")

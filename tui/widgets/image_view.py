@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rich.cells import cell_len
+from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
 from textual.geometry import Region
@@ -22,6 +23,20 @@ if TYPE_CHECKING:
 
 CAPTION_FROM = 4
 """Rows from which on one of them is given to the caption."""
+SCALE_FROM = 8
+"""Rows from which on one of them is given to a scale, if there is one."""
+WIDEST_SCALE = 48
+UNPLACED = (200, 60)
+"""Columns and rows to count with while there are none."""
+
+
+class Scale(NamedTuple):
+    """What the colours of a picture stand for: from the first to the last."""
+
+    first: str
+    last: str
+    colours: Pixels
+    """Shape (n, 3)."""
 
 
 class ImageView(Widget):
@@ -42,18 +57,21 @@ class ImageView(Widget):
         self._source: Pixels | None = None
         self._shown: Pixels | None = None
         self._caption = ""
+        self._scale: Scale | None = None
         self._headline = ""
         self._detail = ""
 
-    def show(self, rgb: Pixels, caption: str = "") -> None:
+    def show(self, rgb: Pixels, caption: str = "", scale: Scale | None = None) -> None:
         """Show a picture of shape (height, width, 3) at any size, with a line of text under it.
 
+        A scale stands between picture and text.
         Raises `ValueError` when the array has another shape.
         """
         if rgb.shape[2:] != (3,) or not rgb.size:
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
         self._source = rgb
         self._headline = self._detail = ""
+        self._set_scale(scale)
         self._draw()
         self._set_caption(caption)
 
@@ -63,6 +81,7 @@ class ImageView(Widget):
             return
         self._source = self._shown = None
         self._headline, self._detail, self._caption = headline, detail, ""
+        self._scale = None
         self.refresh()
 
     @property
@@ -75,6 +94,20 @@ class ImageView(Widget):
         """Width and height in pixels that there is room for: no larger picture is of use."""
         width, height = self.size
         return width, 2 * max(0, height - self._caption_rows(height))
+
+    def wanted(self, width: int, height: int) -> tuple[int, int]:
+        """Of a picture of this size, width and height of which each pixel that is shown is made.
+
+        Twice as many as are shown each way: a pixel on the screen is the mean of four.
+        """
+        from tui.widgets import half_blocks
+
+        columns, rows = self.pixel_size[0], self.pixel_size[1] // 2
+        if columns < 1 or rows < 1:
+            # It is not on the screen yet, and this may be the only picture that ever comes.
+            columns, rows = UNPLACED
+        wide, high = half_blocks.fitting_size(width, height, columns, rows)
+        return 2 * wide, 2 * high
 
     @property
     def caption(self) -> str:
@@ -93,6 +126,8 @@ class ImageView(Widget):
             return self._words_strip(y, width, height)
         if y == height - 1 and self._caption_rows(height):
             return self._caption_strip(width)
+        if self._scale is not None and y == height - 2 and self._caption_rows(height) > 1:
+            return self._scale_strip(self._scale, width)
         top, left = self._margins(self._shown, width, height)
         if not 0 <= y - top < self._shown.shape[0] // 2:
             return Strip.blank(width, self.rich_style)
@@ -133,7 +168,18 @@ class ImageView(Widget):
             self._caption = caption
             self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
 
+    def _set_scale(self, scale: Scale | None) -> None:
+        if (scale is None) != (self._scale is None):
+            # There is a row more for the picture, or less.
+            self._shown = None
+            self.refresh()
+        elif scale and self._scale and scale[:2] != self._scale[:2]:
+            self.refresh(Region(0, max(0, self.size.height - 2), self.size.width, 1))
+        self._scale = scale
+
     def _caption_rows(self, height: int) -> int:
+        if height >= SCALE_FROM and self._scale is not None:
+            return 2
         return 1 if height >= CAPTION_FROM else 0
 
     def _margins(self, picture: Pixels, width: int, height: int) -> tuple[int, int]:
@@ -146,6 +192,19 @@ class ImageView(Widget):
         text = strip.text.strip()
         left = (width - cell_len(text)) // 2
         return in_row(Strip([Segment(text, style)]), left, width, style)
+
+    def _scale_strip(self, scale: Scale, width: int) -> Strip:
+        base = self.rich_style
+        room = width - cell_len(scale.first) - cell_len(scale.last) - 2
+        cells = min(WIDEST_SCALE, max(0, room))
+        colours = scale.colours[[n * len(scale.colours) // max(1, cells) for n in range(cells)]]
+        ramp = [
+            Segment(" ", Style.from_color(None, Color.from_rgb(*colour)))
+            for colour in colours.tolist()
+        ]
+        words = [Segment(f"{scale.first} ", base), *ramp, Segment(f" {scale.last}", base)]
+        strip = cut(words, min(width, sum(segment.cell_length for segment in words)), base)
+        return in_row(strip, (width - strip.cell_length) // 2, width, base)
 
     def _words_strip(self, y: int, width: int, height: int) -> Strip:
         words = (self._headline, self._detail)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from graph.data import Sample, TopicRow
     from tui.widgets.half_blocks import Pixels
+    from tui.widgets.image_view import Scale
 
 
 class TopicHead(Widget):
@@ -137,9 +138,9 @@ class TopicDetail(Vertical):
             self._say()
         self.echo.show(sample.topic, sample.value)
 
-    def show_picture(self, rgb: Pixels, caption: str) -> None:
+    def show_picture(self, rgb: Pixels, caption: str, scale: Scale | None = None) -> None:
         """Show the newest message as a picture."""
-        self.picture.show(rgb, caption)
+        self.picture.show(rgb, caption, scale)
 
     def show_no_picture(self, headline: str, detail: str = "") -> None:
         """Say why the newest message is no picture."""
