@@ -31,6 +31,7 @@ NODES = {
     "llm_parser": "llm_parser",
     "drive_to_point": "drive_to_point",
     "mock_robot": "mock_robot",
+    "tof_sonar": "tof_sonar_front",
 }
 """Module to the name in the graph that the course gave it."""
 BOTH = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -52,7 +53,7 @@ def assert_ended_well(process: NodeProcess) -> None:
 def test_every_node_ends_with_code_0_and_no_traceback(
     peer: Peer, module_domain: int, number: signal.Signals, tmp_path: Path
 ) -> None:
-    params = {
+    params: dict[str, dict[str, object]] = {
         "safety_stop": {"gate": True},
         "mock_sonar": {"rate": 100},
         "mock_robot": {"folder": tmp_path},

@@ -1,0 +1,156 @@
+"""A ToF sonar on a serial port: Benewake TF-Luna, TFmini-S or TFmini Plus.
+
+Publishes metres as Float32 on `topic` and as Range on `topic`/range, by REP-117: +inf nothing in
+range, -inf too close to measure, nan no valid reading. While the port is not there or is silent it
+publishes nan ten times a second, so that nobody believes in a distance of the past. It connects
+again by itself. How it is goes to /diagnostics once a second.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from typing import TYPE_CHECKING
+
+from sensor_msgs.msg import Range
+from std_msgs.msg import Float32
+
+from nodes._diagnostics import tell_every_second
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._parameters import Choice, Number, Text, Whole
+from nodes._serial_link import SerialLink
+from nodes._speech import Phrase
+from nodes._topics import DEPTH, SONAR_FRONT
+from robot.wire_tfluna import BAUD, Model, TofDecoder
+
+if TYPE_CHECKING:
+    from diagnostic_msgs.msg import DiagnosticStatus
+
+_LOOK_EVERY_S = 0.1
+
+_STARTED = Phrase("The sonar at {port} publishes {topic}", "Сонар на {port} публикует {topic}")
+_SILENT = Phrase(
+    "No distance from {port} for {seconds:g} s: is it a {model}, and is it wired?",
+    "Нет расстояний от {port} уже {seconds:g} с: это {model}? подключён ли он?",
+)
+_GARBLED = Phrase(
+    "Bytes from {port} make no sense: wrong port, wrong baud, or a bad cable?",
+    "Байты от {port} не понять: не тот порт, не та скорость или плохой кабель?",
+)
+
+
+class TofSonar(LessonNode):
+    """Reads frames on a thread of its own and publishes them from there."""
+
+    NAME = "tof_sonar_front"
+    SETTINGS = (
+        Text("port", "/dev/ttyUSB0", "Where it is; best a name of /dev/serial/by-id", fixed=True),
+        Whole("baud", BAUD, "Speed of the port", fixed=True, low=9600, high=921_600),
+        Choice(
+            "model",
+            Model.LUNA.value,
+            "Which sensor it is",
+            fixed=True,
+            choices=tuple(model.value for model in Model),
+        ),
+        Text("topic", SONAR_FRONT, "Where the distance is published", fixed=True),
+        Text("frame_id", "sonar_front_link", "Frame of the readings", fixed=True),
+        Whole("every", 2, "Of so many readings one is published", low=1, high=1000),
+        Number(
+            "silent_after_s", 0.5, "Without a reading it is silent", low=0.1, high=10.0, unit="s"
+        ),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._model = Model(self.text("model"))
+        self._decoder = TofDecoder()
+        self._skipped = 0
+        self._seen_s = time.monotonic()
+        topic = self.text("topic")
+        self._distances = self.create_publisher(Float32, topic, DEPTH)
+        self._ranges = self.create_publisher(Range, f"{topic}/range", DEPTH)
+        self._link = SerialLink(
+            self, int(self.number("baud")), self._hear, self._begin, self._publish_nothing
+        )
+        tell_every_second(self, self._status)
+        self.every(_LOOK_EVERY_S, self._look)
+        self.say.info(_STARTED, port=self._link.port, topic=topic)
+        self._link.start()
+
+    def before_end(self) -> None:
+        """Give the port back."""
+        self._link.close()
+
+    # ---------------------------------------------------------------- the reader's thread
+
+    def _begin(self) -> None:
+        self._seen_s = time.monotonic()
+
+    def _hear(self, data: bytes) -> None:
+        for frame in self._decoder.feed(data):
+            self._seen_s = time.monotonic()
+            self._skipped += 1
+            if self._skipped >= self.number("every"):
+                self._skipped = 0
+                self._publish(frame.distance_m(self._model))
+
+    def _publish_nothing(self) -> None:
+        self._publish(math.nan)
+
+    def _publish(self, metres: float) -> None:
+        if not self.context.ok():
+            return
+        self._distances.publish(Float32(data=metres))
+        message = Range(
+            radiation_type=Range.INFRARED,
+            field_of_view=self._model.view_rad,
+            min_range=self._model.range_m[0],
+            max_range=self._model.range_m[1],
+            range=metres,
+        )
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.header.frame_id = self.text("frame_id")
+        self._ranges.publish(message)
+
+    # ---------------------------------------------------------------- the node's thread
+
+    @property
+    def _silent(self) -> bool:
+        return time.monotonic() - self._seen_s > self.number("silent_after_s")
+
+    def _look(self) -> None:
+        if not self._silent:
+            return
+        self._publish_nothing()
+        if not self._link.connected:
+            return
+        if self._decoder.skipped > self._decoder.frames + 100:
+            self.say.warn(_GARBLED, every_s=10.0, port=self._link.port)
+        else:
+            self.say.warn(_SILENT, every_s=10.0, **self._who())
+
+    def _who(self) -> dict[str, object]:
+        return {
+            "port": self._link.port,
+            "seconds": self.number("silent_after_s"),
+            "model": self._model.value,
+        }
+
+    def _status(self) -> DiagnosticStatus:
+        status = self._link.status(self.get_name(), self._decoder.errors)
+        if self._link.connected and self._silent:
+            status.level = status.ERROR
+            status.message = self.say.text(_SILENT, **self._who())
+        return status
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(TofSonar, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
