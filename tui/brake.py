@@ -56,7 +56,8 @@ class Brake:
         sending = asyncio.ensure_future(self._send(engaged=True))
         if reached and await sending:
             return
-        self._set(self.state.fallen_back(emergency.NO_GRAPH if reached else _unheard(feed.update)))
+        unheard = emergency.NO_GRAPH if reached else _unheard(feed.update)
+        self._set(self.state.fallen_back(emergency.NOT_OURS if feed.watching else unheard))
         if feed.link is not None:
             await feed.link.stop()
         await sending

@@ -20,6 +20,7 @@ SAFETY_TOPIC = "/safety_state"
 FOLLOWED = frozenset({TOPIC, SAFETY_TOPIC})
 
 NO_LISTENER = N_("nobody listens to /emergency_stop: all nodes are being stopped")
+NOT_OURS = N_("it may have reached nobody, and Deck has started no node that it could stop")
 NO_GRAPH = N_("ROS cannot be reached: all nodes are being stopped")
 
 

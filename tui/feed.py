@@ -16,7 +16,10 @@ from tui.emergency import FOLLOWED
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
 from tui.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
+from tui.rosout import TOPIC as ROSOUT
+from tui.rosout import RosoutReader
 from tui.screens.base import DeckScreen
+from tui.watching import WATCH
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
@@ -45,6 +48,7 @@ class Feed:
         self.update: GraphUpdate | None = None
         """The newest of the graph; None until the first."""
         self.history = LogHistory()
+        self._rosout = RosoutReader()
         self.ended = ""
         """Why the session before has ended."""
 
@@ -52,6 +56,11 @@ class Feed:
     def replay(self) -> Replay | None:
         """The recording that is played in place of a robot, None for a robot."""
         return getattr(self.link, "replay", None)
+
+    @property
+    def watching(self) -> bool:
+        """Whether what runs was started by others, and is only looked at."""
+        return self.link is not None and self.link.session.run_id == WATCH
 
     @property
     def session(self) -> SessionInfo | None:
@@ -79,6 +88,7 @@ class Feed:
         self.link, self.graph = link, graph
         self.update, self.ended = None, ""
         self.history.clear()
+        self._rosout = RosoutReader()
         self.tell(SessionChanged)
         self._tell_status(frozenset(link.nodes))
         self.ask_for_topics()
@@ -138,11 +148,23 @@ class Feed:
         if update is None or self.graph is None:
             return None
         self.update = update
+        self._note_rosout(update)
         front = self.front
         for screen in self._screens:
             if screen is front or not update.samples.keys().isdisjoint(screen.follow_topics()):
                 screen.post_message(GraphChanged(update))
         return update
+
+    @property
+    def _hears_rosout(self) -> bool:
+        """Whether nodes have no other way to be heard."""
+        return self.watching or self.replay is not None
+
+    def _note_rosout(self, update: GraphUpdate) -> None:
+        """Nodes that others have started can be heard on /rosout only."""
+        samples = update.samples.get(ROSOUT, ()) if self._hears_rosout else ()
+        if samples:
+            self.note(self._rosout.lines(samples))
 
     def catch_up(self, screen: DeckScreen) -> None:
         """Tell a screen that has just been opened how things stand, and keep telling it."""
@@ -168,7 +190,8 @@ class Feed:
         graph, front = self.graph, self.front
         if graph is None:
             return
-        followed = set(FOLLOWED).union(*(screen.follow_topics() for screen in self._screens))
+        own = {*FOLLOWED, ROSOUT} if self._hears_rosout else FOLLOWED
+        followed = set(own).union(*(screen.follow_topics() for screen in self._screens))
         graph.watch(set() if front is None else front.watch_topics())
         graph.follow(followed)
         graph.measure(front is not None and front.measure_all)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from tui.i18n import language
 from tui.orders import Lesson
+from tui.watching import watched
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,6 +50,12 @@ class LivePad:
 
         return await asyncio.to_thread(running)
 
+    def domain(self, asked: int | None) -> int:
+        """The ROS domain to look at: the one asked for, ROS_DOMAIN_ID, or the user's own."""
+        from launcher.domain import choose_domain
+
+        return choose_domain(asked, None, os.environ)
+
     async def prepare(self) -> None:
         """Import, here and in a supervisor, what is the same for every profile."""
         await self._start_ahead()
@@ -65,12 +72,15 @@ class LivePad:
                 self._ahead = await asyncio.to_thread(StartingSupervisor)
 
     async def open(self, order: Order) -> SessionLink:
-        """Start the profile, attach to the session, or open the recording."""
+        """Start the profile, attach to the session, open the recording, or look at the domain."""
         self._replay = None
         if order.replay is not None:
             recording = await asyncio.to_thread(_opened_bag, order.replay)
             self._replay = recording.replay
             return recording
+        if order.watch is not None:
+            await _imported("graph.observer")
+            return watched(*order.watch)
         if order.profile is not None:
             await self._start_ahead()
         await _imported("launcher.client")

@@ -33,8 +33,16 @@ class ReplayOrder(NamedTuple):
     start_s: float = 0.0
 
 
+class WatchOrder(NamedTuple):
+    """A domain in which others have started nodes."""
+
+    domain: int
+    discovery: str = "localhost"
+    """`localhost` for this machine only, `subnet` for the network too."""
+
+
 class Order(NamedTuple):
-    """What is to be opened: a profile to be started, a session that runs, or a recording."""
+    """What is to be opened: a profile to be started, or what is there without being started."""
 
     profile: Path | None = None
     attach: str | None = None
@@ -42,3 +50,4 @@ class Order(NamedTuple):
     overrides: tuple[str, ...] = ()
     domain: int | None = None
     replay: ReplayOrder | None = None
+    watch: WatchOrder | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tui.panel_needs import panels_for
 from tui.watching import WatchLink
 
 if TYPE_CHECKING:
@@ -11,14 +12,6 @@ if TYPE_CHECKING:
 
 REPLAY = "replay"
 """What stands in place of the hardware."""
-PANELS = {
-    "sonar": {"/sensor/sonar_front", "/sensor/sonar_rear"},
-    "wheels": {"/wheel_commands", "/joint_states"},
-    "camera": {"/camera/color/image_raw"},
-    "head": {"/head_state"},
-    "voice": {"/audio/mic_raw", "/audio/speaker_raw"},
-}
-"""Panel to the topics of which it needs one."""
 
 
 class ReplayLink(WatchLink):
@@ -38,7 +31,7 @@ class ReplayLink(WatchLink):
                 name=bag.name,
                 title={"en": bag.name},
                 hardware=REPLAY,
-                panels=tuple(panel for panel, needed in PANELS.items() if needed & topics),
+                panels=panels_for(topics),
                 foreground=False,
             )
         )

@@ -129,6 +129,9 @@ class Launchpad(Protocol):
     async def running(self) -> list[SessionInfo]:
         """Return the sessions that run in the background."""
 
+    def domain(self, asked: int | None) -> int:
+        """The ROS domain that `watch` means; raises a `LauncherError` if it is out of range."""
+
     async def prepare(self) -> None:
         """Make ready what can be, so that `open` is quick; to be called while a person chooses."""
 

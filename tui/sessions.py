@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.errors import LauncherError
 from tui.i18n import said
+from tui.watching import WATCH
 from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
@@ -180,4 +181,6 @@ def words_of(error: LauncherError) -> str:
 def _name_of(order: Order) -> str:
     if order.replay is not None:
         return order.replay.bag.resolve().stem
+    if order.watch is not None:
+        return WATCH
     return order.attach or (order.profile or Path()).stem

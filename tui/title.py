@@ -15,7 +15,7 @@ from tui.actions.app import (
     ShowTopics,
 )
 from tui.emergency import stop_words
-from tui.i18n import _, pick, said
+from tui.i18n import _, ngettext, pick, said
 from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
@@ -59,6 +59,16 @@ def states(app: DeckApp) -> Sequence[str]:
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
 
 
+def _watched(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+    """Return the domain, and how many nodes others have started in it."""
+    update = app.feed.update
+    count = 0 if update is None else len(update.nodes)
+    found = ngettext("{n} node", "{n} nodes", count).format(n=count)
+    domain = _("domain {domain}").format(domain=session.domain)
+    watching = _("watching {domain}").format(domain=domain)
+    return (f"{watching} · {found}", watching, domain)
+
+
 def _replayed(session: SessionInfo) -> Sequence[str]:
     name = plain(session.name)
     return (_("recording {name}").format(name=name), name)
@@ -73,6 +83,8 @@ def _recorded(app: DeckApp, session: SessionInfo) -> Sequence[str]:
 
 
 def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+    if app.feed.watching:
+        return _watched(app, session)
     nodes = app.feed.nodes.values()
     well = sum(node.state.value in WELL for node in nodes)
     count = f"{'●' if well == len(nodes) else '◔'} {well}/{len(nodes)}"

@@ -56,7 +56,7 @@ async def test_enter_starts_lesson_nine() -> None:
 async def test_another_lesson_is_chosen_by_keys_and_told_about() -> None:
     pad = RecordedPad()
     async with opened(pad, order=PICK) as (app, pilot):
-        await pilot.press("home")
+        await pilot.press("home", "down")
         await pilot.pause()
         assert "Starts 1 node: hello_node" in about(app.screen)
         await pilot.press("enter")
@@ -67,11 +67,11 @@ async def test_another_lesson_is_chosen_by_keys_and_told_about() -> None:
 async def test_one_click_chooses_a_lesson_and_two_open_it() -> None:
     pad = RecordedPad()
     async with opened(pad, order=PICK) as (app, pilot):
-        await pilot.click(Rows, offset=(10, 2))
+        await pilot.click(Rows, offset=(10, 4))
         await pilot.pause()
         assert "Topics: sonar" in about(app.screen)
         assert pad.orders == []
-        await pilot.click(Rows, offset=(10, 2), times=2)
+        await pilot.click(Rows, offset=(10, 4), times=2)
         await pilot.pause()
         assert pad.orders[0].profile == Path("profiles/02-sonar-safety.yaml")
 

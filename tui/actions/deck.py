@@ -22,7 +22,9 @@ class _AskNode(DeckAction):
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:
-        """Only with a node chosen, in a session that is there."""
+        """Only with a node chosen, in a session that has any of its own."""
+        if target.feed.watching:
+            return False
         return True if target.chosen_node else None
 
     @classmethod
@@ -71,8 +73,8 @@ class _AskAll(DeckAction):
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:
-        """Only in a session that is there."""
-        return target.feed.link is not None
+        """Only where there are nodes that Deck has started."""
+        return bool(target.feed.nodes)
 
     @classmethod
     async def run(cls, target: LessonDeck) -> None:

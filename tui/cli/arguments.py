@@ -26,11 +26,12 @@ COMMANDS = {
     "logs": N_("the log of a node that runs in the background"),
     "attach": N_("the screen of what runs in the background"),
     "down": N_("stop what runs in the background"),
+    "watch": N_("the screen of what others have started in a ROS domain"),
     "record": N_("record topics of what runs into a folder that `ros2 bag` reads"),
     "replay": N_("the screen on a recording, with no robot at all"),
     "doctor": N_("what is installed, which ROS, which ports, and how to mend what is missing"),
 }
-WITH_VALUE = ("--hardware", "--set", "--domain", "--lang")
+WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--lang")
 """Options that may stand before the command word."""
 
 
@@ -169,6 +170,22 @@ def _add_running(parser: Parser) -> None:
     )
 
 
+def _add_watch(parser: Parser) -> None:
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain; by default ROS_DOMAIN_ID, else one of your own"),
+    )
+    parser.add_argument(
+        "--discovery",
+        choices=("localhost", "subnet"),
+        default="localhost",
+        help=_("look on this machine only, the default, or on the network too"),
+    )
+    parser.epilog = _("Deck starts nothing here, and leaves running what runs.")
+
+
 def _add_record(parser: Parser) -> None:
     parser.add_argument(
         "topics", nargs="*", metavar="TOPIC", help=_("what to record; without it all topics")
@@ -224,6 +241,7 @@ _ADD = {
     "logs": _add_logs,
     "attach": _add_running,
     "down": _add_running,
+    "watch": _add_watch,
     "record": _add_record,
     "replay": _add_replay,
     "doctor": _add_doctor,

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 HANDLERS = {
     "open": ("tui.cli.screen", "open_command"),
     "attach": ("tui.cli.screen", "attach_command"),
+    "watch": ("tui.cli.watch", "watch_command"),
     "run": ("tui.cli.run", "run_command"),
     "list": ("tui.cli.listing", "list_command"),
     "check": ("tui.cli.listing", "check_command"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from importlib import import_module
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on, work
@@ -17,12 +16,15 @@ from tui.actions import bindings
 from tui.actions.deck import DECK_ACTIONS
 from tui.i18n import N_, _, said
 from tui.messages import SessionChanged
+from tui.panel_needs import panels_for
+from tui.panels.made import PANELS, make_panel
 from tui.panels.panel import row_of
 from tui.screens.base import DeckScreen
 from tui.widgets.command_line import CommandLine
 from tui.widgets.log_view_pane import LogPane
 from tui.widgets.nodes_table import NodesTable
 from tui.widgets.plain import plain
+from tui.widgets.watched import watched_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from textual.binding import BindingType
     from textual.events import Resize
 
+    from graph.data import GraphUpdate
     from tui.messages import (
         GraphChanged,
         LanguageChanged,
@@ -42,17 +45,6 @@ if TYPE_CHECKING:
     from tui.panels.shelf import Shelf
     from tui.widgets.log_filter import LogFilter
     from tui.widgets.rows import Rows
-
-PANELS = {
-    "sonar": ("tui.panels.sonar", "SonarFeed"),
-    "wheels": ("tui.panels.wheels", "WheelsFeed"),
-    "camera": ("tui.panels.camera", "CameraFeed"),
-    "head": ("tui.panels.head", "HeadFeed"),
-    "voice": ("tui.panels.voice", "VoiceFeed"),
-    "composer": ("tui.panels.llm", "LlmFeed"),
-}
-"""What a profile's `panels` may name; imported when a session that has them is opened."""
-
 
 DRIVER = "nodes.ai_driver"
 COMMANDS, COMMANDS_TYPE = "/ai_command", "std_msgs/msg/String"
@@ -91,6 +83,10 @@ class LessonDeck(DeckScreen):
         &.-small #board { grid-size: 1; }
         &.-small.-shelved #small { display: block; }
         &.-recorded #nodes, &.-recorded #talk { display: none; }
+        #watched { display: none; height: auto; padding: 0 1; color: $text-muted; }
+        &.-watching #watched { display: block; }
+        &.-watching #nodes { display: none; }
+        &.-watching.-shelved #shelf { row-span: 1; }
         &.-recorded.-shelved #board { grid-size: 1; grid-columns: 1fr; }
     }
     """
@@ -98,10 +94,13 @@ class LessonDeck(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self._shelf: Shelf | None = None
+        self._put: set[str] = set()
+        """Panels that were brought for topics that others publish."""
 
     def compose_body(self) -> ComposeResult:
         """The nodes above the log; panels come with the session."""
         yield Static(id="small", markup=False)
+        yield Static(id="watched", markup=False)
         with Container(id="board"):
             yield NodesTable(id="nodes")
             with Vertical(id="talk"):
@@ -155,6 +154,9 @@ class LessonDeck(DeckScreen):
     @property
     def driven(self) -> bool:
         """Whether there is a node that takes commands in words."""
+        if self.feed.watching:
+            row = None if self.feed.update is None else row_of(self.feed.update, COMMANDS)
+            return row is not None and row.subscribers > 0
         return any(node.command == DRIVER for node in self.feed.nodes.values())
 
     def write_command(self) -> None:
@@ -221,6 +223,8 @@ class LessonDeck(DeckScreen):
             self.pane.view.clear()
         self.pane.save_folder = session.log_dir
         self.set_class(self.feed.replay is not None, "-recorded")
+        self.set_class(self.feed.watching, "-watching")
+        self._put.clear()
         await self._put_up(session.panels)
         self._lay_out(self.size.height)
         self.topics_changed()
@@ -236,11 +240,13 @@ class LessonDeck(DeckScreen):
         """Append the lines."""
         self.pane.view.append(message.lines, message.skipped)
 
-    def on_graph_changed(self, message: GraphChanged) -> None:
+    async def on_graph_changed(self, message: GraphChanged) -> None:
         """Feed the panels; a dead graph is told where they are."""
         if message.update.error:
             self.notify(plain(message.update.error), severity="error", markup=False)
             return
+        if self.feed.watching:
+            await self._look_at_others(message.update)
         for panel in self._panels:
             panel.show(message.update)
         row = row_of(message.update, COMMANDS)
@@ -268,12 +274,25 @@ class LessonDeck(DeckScreen):
         message.stop()
         self.filter_log(self.log_filter.alone(message.key))
 
+    async def _look_at_others(self, update: GraphUpdate) -> None:
+        """Say who runs, and bring the panels for which topics have come; none is taken away."""
+        self.set_class(self.driven, "-driven")
+        self.query_one("#watched", Static).update(
+            watched_words(update, self.feed.session.domain if self.feed.session else 0)
+        )
+        wanted = panels_for({row.name for row in update.topics if row.publishers})
+        if not self._put.issuperset(wanted):
+            self._put |= set(wanted)
+            await self._put_up([name for name in PANELS if name in self._put])
+            self._lay_out(self.size.height)
+            self.topics_changed()
+
     async def _put_up(self, names: Iterable[str]) -> None:
         """Take away the panels of the session before and put up those of this one."""
         if self._shelf is not None:
             await self._shelf.remove()
             self._shelf = None
-        panels = [_panel(name) for name in names if name in PANELS]
+        panels = [make_panel(name) for name in names if name in PANELS]
         self.set_class(bool(panels), "-shelved")
         if panels:
             from tui.panels.shelf import Shelf
@@ -289,7 +308,7 @@ class LessonDeck(DeckScreen):
 
     def _lay_out(self, height: int) -> None:
         """Give the table of nodes the rows it needs, but never most of them."""
-        if self.feed.replay is not None:
+        if self.feed.replay is not None or self.feed.watching:
             self.query_one("#board").styles.grid_rows = "1fr"
             return
         wanted = len(self.feed.nodes) + 1
@@ -303,9 +322,3 @@ class LessonDeck(DeckScreen):
     def _file_of(self, node: str) -> str:
         session = self.feed.session
         return f"{session.log_dir}/{node}.log" if session and session.log_dir else ""
-
-
-def _panel(name: str) -> Panel:
-    module, made = PANELS[name]
-    panel: Panel = getattr(import_module(module), made)()
-    return panel

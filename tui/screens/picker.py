@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual import work
@@ -10,8 +11,10 @@ from textual.content import Content
 from textual.screen import Screen
 from textual.widgets import Static
 
+from launcher.errors import LauncherError
 from tui.actions import Acting, Action, bindings
 from tui.i18n import N_, _, ngettext, pick, said
+from tui.orders import WatchOrder
 from tui.screens.base import BREAKPOINTS, HEIGHTS
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.plain import plain
@@ -30,6 +33,8 @@ if TYPE_CHECKING:
 FIRST = "09-brain"
 """The lesson that is ready to be started by Enter."""
 RUNNING = "running:"
+WATCHED = "watch:"
+"""The row for what others have started."""
 
 PANELS = {
     "sonar": N_("sonar"),
@@ -88,6 +93,8 @@ class PickerScreen(Screen[None], Acting):
         self._lessons: list[Lesson] = []
         self._sessions: list[SessionInfo] = []
         self._offered = ""
+        self._domain: int | None = None
+        """What is looked at without a lesson; None if the one that is set cannot be."""
 
     @property
     def deck(self) -> DeckApp:
@@ -117,6 +124,8 @@ class PickerScreen(Screen[None], Acting):
     @work(exclusive=True)
     async def look(self) -> None:
         """Ask for the lessons and for what runs."""
+        with suppress(LauncherError):
+            self._domain = self.deck.sessions.pad.domain(self.deck.sessions.order.domain)
         self._lessons = await self.deck.sessions.pad.lessons()
         self._offer()
         self._sessions = await self.deck.sessions.pad.running()
@@ -149,6 +158,9 @@ class PickerScreen(Screen[None], Acting):
             rows.append(_heading(_("Running in the background")))
             rows += [self._running_row(session) for session in self._sessions]
             rows.append(_heading(""))
+        if self._domain is not None:
+            words = _("Look at what runs in domain {domain}").format(domain=self._domain)
+            rows += [Row(WATCHED, (Cell("⌕"), Cell(words))), _heading("")]
         rows.append(_heading(_("Lessons") if self._lessons else _("Looking for lessons…")))
         rows += [self._lesson_row(lesson) for lesson in self._lessons]
         self.query_one(Rows).show([Column("", 4, right=True), Column("")], rows)
@@ -157,6 +169,8 @@ class PickerScreen(Screen[None], Acting):
     def order(self) -> Order | None:
         """Return what Enter would open; None where that is nothing."""
         session, lesson = self._chosen_session(), self._chosen_lesson()
+        if self._chosen == WATCHED and self._domain is not None:
+            return self.deck.sessions.order._replace(watch=WatchOrder(self._domain))
         if session is not None:
             return self.deck.sessions.order._replace(attach=session.name)
         if lesson is not None and not lesson.error:
@@ -217,6 +231,8 @@ class PickerScreen(Screen[None], Acting):
             words = _about_session(session)
         elif lesson is not None:
             words = _about_lesson(lesson)
+        elif self._chosen == WATCHED:
+            words = _about_watching(self._domain)
         else:
             words = Content("")
         self.query_one("#about-text", Static).update(words)
@@ -246,6 +262,24 @@ def _about_session(session: SessionInfo) -> Content:
             _field(_("Domain"), str(session.domain)),
             _field(_("Hardware"), plain(session.hardware)),
             _field(_("File"), plain(session.profile)),
+        ]
+    )
+
+
+def _about_watching(domain: int | None) -> Content:
+    return Content("\n").join(
+        [
+            Content.styled(_("A robot that runs already"), "bold $accent"),
+            Content(""),
+            Content(
+                _(
+                    "Starts nothing. Shows nodes, topics, services and logs of whatever was started"
+                    " in the domain: by `ros2 run`, by `ros2 launch`, in another window."
+                )
+            ),
+            Content(""),
+            _field(_("Domain"), str(domain)),
+            _field(_("Also"), "deck watch --domain N --discovery subnet"),
         ]
     )
 

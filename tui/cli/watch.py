@@ -1,0 +1,27 @@
+"""`deck watch`: the screen on what runs in a domain; Deck starts nothing and stops nothing."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from tui.cli.output import say_error
+from tui.cli.screen import has_terminal
+from tui.i18n import _
+from tui.orders import Order, WatchOrder
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+
+def watch_command(options: Namespace) -> int:
+    """Show the screen until it is left."""
+    from launcher.domain import choose_domain
+
+    domain = choose_domain(options.domain, None, os.environ)
+    if not has_terminal():
+        say_error(_("watch needs a terminal; `deck record` does without"))
+        return 2
+    from tui.live import run_live
+
+    return run_live(Order(watch=WatchOrder(domain, options.discovery)), options.lang)

@@ -1,0 +1,57 @@
+"""What nodes say on /rosout, as lines of the log: nodes that others have started have no other."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from graph.data import Sample
+    from launcher.status import LogLine, Severity
+
+TOPIC = "/rosout"
+LONGEST = 4000
+"""Characters of a line."""
+
+
+class RosoutReader:
+    """Numbers the lines of each node, as a supervisor does."""
+
+    def __init__(self) -> None:
+        self._numbers: dict[str, int] = {}
+
+    def lines(self, samples: Iterable[Sample]) -> tuple[LogLine, ...]:
+        """Read messages of rcl_interfaces/msg/Log; what is none of them is left out."""
+        return tuple(self._line(one) for one in samples if "msg" in one.value)
+
+    def _line(self, sample: Sample) -> LogLine:
+        from launcher.status import LogLine
+
+        value: Any = sample.value
+        node = plain(str(value.get("name", "")), 200) or "?"
+        number = self._numbers[node] = self._numbers.get(node, 0) + 1
+        text = plain(str(value["msg"]), LONGEST)
+        time_s = _seconds(value.get("stamp")) or sample.received_s
+        severity = _severity(value.get("level"))
+        return LogLine(node, number, time_s, severity, text, logger=node, source="rosout")
+
+
+def _severity(level: object) -> Severity:
+    """Rcutils' levels are 10 for DEBUG to 50 for FATAL; a node may have others in between."""
+    from launcher.status import Severity
+
+    rank = int(level) // 10 - 1 if isinstance(level, int) else 1
+    return tuple(Severity)[max(0, min(len(Severity) - 1, rank))]
+
+
+def _seconds(stamp: Any) -> float:  # noqa: ANN401
+    """Unix time, 0 where there is none."""
+    try:
+        seconds = float(stamp["sec"]) + float(stamp["nanosec"]) * 1e-9
+    except (TypeError, ValueError, KeyError):
+        return 0.0
+    return seconds if math.isfinite(seconds) and seconds > 0 else 0.0

@@ -1,0 +1,28 @@
+"""Who runs in a domain in which Deck has started nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tui.i18n import _, ngettext
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+
+MOST_NAMES = 12
+
+
+def watched_words(update: GraphUpdate, domain: int) -> str:
+    """The nodes that are there, and that they are not Deck's to start or stop."""
+    names = [plain(node.name.lstrip("/"), 60) for node in update.nodes]
+    if not names:
+        words = _(
+            "Nobody is here yet. Start a node with ROS_DOMAIN_ID={domain}, or look elsewhere:"
+            " deck watch --domain N, and --discovery subnet for other machines."
+        )
+        return words.format(domain=domain)
+    more = f" +{len(names) - MOST_NAMES}" if len(names) > MOST_NAMES else ""
+    count = ngettext("{n} node runs here", "{n} nodes run here", len(names)).format(n=len(names))
+    ours = _("Deck has started nothing here and stops nothing when it leaves.")
+    return f"{ours} {count}: {', '.join(names[:MOST_NAMES])}{more}"
