@@ -39,7 +39,7 @@ def test_every_lesson_is_listed_and_no_other(readme: str) -> None:
 
 def test_every_command_shown_exists(readme: str) -> None:
     shown = set(re.findall(r"^deck ([a-z]+) ", readme, re.MULTILINE))
-    assert shown == {"run", "list", "check", "up", "doctor"}
+    assert shown == {"run", "list", "check", "up", "record", "replay", "doctor"}
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
 
@@ -59,6 +59,8 @@ def test_every_file_linked_is_there(readme: str) -> None:
         ("f4", "screen.composer"),
         ("f5", "screen.logs"),
         ("f1", "app.help"),
+        ("f6", "recording.toggle"),
+        ("f6", "replay.toggle"),
         ("f8", "session.close"),
         ("f9", "app.language"),
         ("f10", "app.theme"),
