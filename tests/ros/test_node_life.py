@@ -32,6 +32,7 @@ NODES = {
     "drive_to_point": "drive_to_point",
     "mock_robot": "mock_robot",
     "tof_sonar": "tof_sonar_front",
+    "chassis": "chassis",
 }
 """Module to the name in the graph that the course gave it."""
 BOTH = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

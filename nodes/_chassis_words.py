@@ -1,0 +1,80 @@
+"""What the chassis says, and how it tells its state."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+from nodes._speech import Phrase
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from nodes._pico_client import PicoClient
+    from nodes._speech import Speech
+
+STARTED = Phrase("The chassis at {port} obeys {topic}", "Шасси на {port} исполняет команды {topic}")
+COMMAND_OLD = Phrase(
+    "No wheel command for {seconds:g} s: stop", "Нет команд колёсам дольше {seconds:g} с: стоп"
+)
+NO_NUMBER = Phrase(
+    "The wheel command is no number ({left}, {right} rad/s, {steering} rad): stop",
+    "В команде колёсам не числа ({left}, {right} рад/с, {steering} рад): стоп",
+)
+EMERGENCY = Phrase(
+    "EMERGENCY STOP: the wheels stand until it is released",
+    "АВАРИЙНАЯ ОСТАНОВКА: колёса стоят, пока её не снимут",
+)
+RELEASED = Phrase(
+    "The emergency stop is released; waiting for a new command",
+    "Аварийная остановка снята; жду новой команды",
+)
+STANDS = Phrase("The wheels stand: {reasons}", "Колёса стоят: {reasons}")
+_DRIVES = Phrase("ready to drive", "готово ехать")
+_NO_ANSWER = Phrase("no Pico answers at {port}", "Pico не отвечает на {port}")
+_FLAGS = {
+    "E": Phrase("emergency stop", "аварийная остановка"),
+    "W": Phrase("no drive line for 250 ms", "нет строк управления 250 мс"),
+    "L": Phrase("fault of the left motor driver", "авария драйвера левого мотора"),
+    "R": Phrase("fault of the right motor driver", "авария драйвера правого мотора"),
+    "U": Phrase("the battery is weak", "батарея разряжена"),
+    "H": Phrase("no handshake", "нет рукопожатия"),
+    "A": Phrase("waiting for a stop", "ждёт команды стоп"),
+}
+
+
+def reasons(say: Speech, flags: Iterable[str]) -> str:
+    """Why the wheels stand, in words."""
+    return ", ".join(say.text(phrase) for flag, phrase in _FLAGS.items() if flag in flags)
+
+
+def diagnosis(
+    say: Speech, status: DiagnosticStatus, pico: PicoClient, emergency: bool
+) -> DiagnosticStatus:
+    """Add to the state of the port how the Pico is, for programs and for people."""
+    telemetry = pico.telemetry
+    status.values.append(KeyValue(key="emergency_stop", value=str(emergency).lower()))
+    if telemetry is None or not pico.answers:
+        if pico.link.connected:
+            status.level = DiagnosticStatus.ERROR
+            status.message = say.text(_NO_ANSWER, port=pico.link.port)
+        return status
+    measured = {
+        "battery_v": telemetry.battery_v,
+        "left_a": telemetry.left_a,
+        "right_a": telemetry.right_a,
+    }
+    values = {
+        "flags": "".join(sorted(telemetry.flags)) or "-",
+        "refused_by_pico": str(telemetry.refused),
+        "lost": str(pico.lost),
+        **{key: "" if value is None else f"{value:.2f}" for key, value in measured.items()},
+    }
+    status.values += [KeyValue(key=key, value=value) for key, value in values.items()]
+    why = reasons(say, telemetry.flags)
+    status.message = say.text(STANDS, reasons=why) if why else say.text(_DRIVES)
+    if why:
+        bad = telemetry.flags & frozenset("LRUH")
+        status.level = DiagnosticStatus.ERROR if bad else DiagnosticStatus.WARN
+    return status

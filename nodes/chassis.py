@@ -1,0 +1,197 @@
+"""The chassis: /wheel_commands to the Pico on a serial port, and what the Pico tells back.
+
+A drive line goes out `rate` times a second, whether there is a command or not: it is the heartbeat
+without which the Pico stops within 250 ms. A command that is older than `max_age_s`, is no number,
+or came before the emergency stop, is a stop. /emergency_stop is latched here and in the Pico.
+
+Published with every telemetry (50 Hz): /joint_states, /odom, /tf; /battery and /diagnostics once a
+second. It connects again by itself. At its end it leaves a stop behind.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from typing import TYPE_CHECKING
+
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import BatteryState, JointState
+from std_msgs.msg import Bool
+from tf2_msgs.msg import TFMessage
+
+from nodes._chassis_messages import JOINTS, DeadReckoning, battery, transform
+from nodes._chassis_words import (
+    COMMAND_OLD,
+    EMERGENCY,
+    NO_NUMBER,
+    RELEASED,
+    STANDS,
+    STARTED,
+    diagnosis,
+    reasons,
+)
+from nodes._diagnostics import tell_every_second
+from nodes._emergency import EmergencyStop
+from nodes._life import run
+from nodes._node import LessonNode, change_period
+from nodes._parameters import Number, Text, Whole
+from nodes._pico_client import PicoClient
+from nodes._topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
+from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
+
+if TYPE_CHECKING:
+    from diagnostic_msgs.msg import DiagnosticStatus
+
+    from robot.wire_pico import Telemetry
+
+JOINT_STATES, BATTERY = "/joint_states", "/battery"
+_MOST_RAD_S, _MOST_RAD = 200.0, 1.5
+_STILL = (0.0, 0.0, 0.0)
+_BATTERY_EVERY_S = 1.0
+
+
+class Chassis(LessonNode):
+    """Sends from the node's thread, publishes from the reader's."""
+
+    NAME = "chassis"
+    SETTINGS = (
+        Text("port", "/dev/ttyACM0", "Where it is; best a name of /dev/serial/by-id", fixed=True),
+        Whole("baud", 115_200, "Speed of the port", fixed=True, low=9600, high=921_600),
+        Number("rate", 50.0, "Drive lines a second", low=20.0, high=100.0, unit="Hz"),
+        Number("max_age_s", 1.0, "An older command is a stop", low=0.05, high=60.0, unit="s"),
+        Number(
+            "wheelbase",
+            WHEELBASE_M,
+            "Between front and rear axle",
+            fixed=True,
+            low=0.02,
+            high=10.0,
+            unit="m",
+        ),
+        Number(
+            "wheel_radius",
+            WHEEL_RADIUS_M,
+            "Of a rear wheel",
+            fixed=True,
+            low=0.005,
+            high=2.0,
+            unit="m",
+        ),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._command = _STILL
+        self._commanded_s = -math.inf
+        self._flags: frozenset[str] = frozenset()
+        self._release_wanted = False
+        self._reckoning = DeadReckoning(self.number("wheelbase"), self.number("wheel_radius"))
+        self._pico = PicoClient(self, int(self.number("baud")), self._hear)
+        self._joints = self.create_publisher(JointState, JOINT_STATES, DEPTH)
+        self._odometry = self.create_publisher(Odometry, ODOMETRY, DEPTH)
+        self._transforms = self.create_publisher(TFMessage, TF, DEPTH)
+        self._battery = self.create_publisher(BatteryState, BATTERY, DEPTH)
+        self._emergency = EmergencyStop(self, self._emergency_changed)
+        # Heard even if this node never saw the stop: the Pico may have kept it.
+        self.create_subscription(Bool, EMERGENCY_STOP, self._hear_release, DEPTH)
+        self.create_subscription(JointState, WHEEL_COMMANDS, self._take, DEPTH)
+        self._timer = self.every(1.0 / self.number("rate"), self._drive)
+        self.every(_BATTERY_EVERY_S, self._publish_battery)
+        tell_every_second(self, self._status)
+        self.say.info(STARTED, port=self._pico.link.port, topic=WHEEL_COMMANDS)
+        self._pico.link.start()
+
+    def parameters_changed(self) -> None:
+        """Keep the new rate."""
+        change_period(self._timer, 1.0 / self.number("rate"))
+
+    def before_end(self) -> None:
+        """Leave the wheels standing, and give the port back."""
+        self._command = _STILL
+        self._pico.drive(*_STILL)
+        self._pico.link.close()
+
+    # ---------------------------------------------------------------- the node's thread
+
+    def _take(self, message: JointState) -> None:
+        velocity = dict(zip(message.name, message.velocity, strict=False))
+        position = dict(zip(message.name, message.position, strict=False))
+        asked = (
+            velocity.get(JOINTS[0], math.nan),
+            velocity.get(JOINTS[1], math.nan),
+            position.get(JOINTS[2], math.nan),
+        )
+        self._commanded_s = time.monotonic()
+        if not all(map(math.isfinite, asked)):
+            self.say.error(NO_NUMBER, every_s=1.0, left=asked[0], right=asked[1], steering=asked[2])
+            asked = _STILL
+        if self._emergency.active:
+            asked = _STILL
+        left, right = (max(-_MOST_RAD_S, min(_MOST_RAD_S, speed)) for speed in asked[:2])
+        self._command = (left, right, max(-_MOST_RAD, min(_MOST_RAD, asked[2])))
+        self._drive()
+
+    def _drive(self) -> None:
+        late = time.monotonic() - self._commanded_s > self.number("max_age_s")
+        if late and self._command[:2] != _STILL[:2]:
+            self.say.warn(COMMAND_OLD, seconds=self.number("max_age_s"))
+            self._command = (0.0, 0.0, self._command[2])
+        telemetry = self._pico.telemetry
+        if self._emergency.active and telemetry is not None and "E" not in telemetry.flags:
+            self._pico.halt()
+        if self._release_wanted and telemetry is not None:
+            # Said until it is heard, for a line may be lost.
+            self._release_wanted = "E" in telemetry.flags
+            if self._release_wanted:
+                self._pico.release()
+        self._pico.drive(*self._command)
+        self._tell(telemetry)
+
+    def _emergency_changed(self, active: bool) -> None:
+        self._command, self._release_wanted = _STILL, not active
+        if active:
+            self._pico.halt()
+            self.say.error(EMERGENCY)
+        else:
+            self._pico.release()
+            self.say.warn(RELEASED)
+
+    def _hear_release(self, message: Bool) -> None:
+        self._release_wanted = not message.data
+
+    def _tell(self, telemetry: Telemetry | None) -> None:
+        flags = telemetry.flags & frozenset("LRUH") if telemetry is not None else frozenset()
+        if flags - self._flags:
+            self.say.error(STANDS, reasons=reasons(self.say, flags))
+        self._flags = flags
+
+    def _publish_battery(self) -> None:
+        telemetry = self._pico.telemetry
+        if telemetry is not None and self._pico.answers:
+            self._battery.publish(battery(telemetry, self.get_clock().now().to_msg()))
+
+    def _status(self) -> DiagnosticStatus:
+        status = self._pico.link.status(self.get_name(), self._pico.errors)
+        return diagnosis(self.say, status, self._pico, self._emergency.active)
+
+    # ---------------------------------------------------------------- the reader's thread
+
+    def _hear(self, telemetry: Telemetry) -> None:
+        if not self.context.ok():
+            return
+        self._reckoning.take(telemetry)
+        stamp = self.get_clock().now().to_msg()
+        odometry = self._reckoning.odometry(telemetry, stamp)
+        self._joints.publish(self._reckoning.joints(telemetry, stamp))
+        self._odometry.publish(odometry)
+        self._transforms.publish(TFMessage(transforms=[transform(odometry)]))
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(Chassis, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
