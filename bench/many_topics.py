@@ -52,9 +52,9 @@ def worst_error_percent(text: str) -> float:
     errors = []
     for line in text.splitlines():
         words = line.replace("▶", " ").split()
-        if words and words[0] in MANY:
-            figures = [word for word in words[2:] if word.replace(".", "").isdigit()]
-            hz = float(figures[2]) if len(figures) > 2 else 0.0
+        # The head of the chosen topic begins with its name too, and has two words.
+        if len(words) > 4 and words[0] in MANY:
+            hz = float(words[4]) if words[4].replace(".", "").isdigit() else 0.0
             errors.append(100 * abs(hz / MANY_HZ - 1))
     return max(errors, default=100.0)
 
