@@ -20,6 +20,7 @@ MEASUREMENTS = {
     "topics_live": "Topics open, under ten Float32 at 50 Hz and one image at 30 Hz",
     "many_topics": "Topics open, under a hundred Float32 at 100 Hz",
     "large_messages": "Topics open on a PointCloud2 of 5 MB at 10 Hz",
+    "pictures": "Topics open on a 1280x720 camera at 30 Hz",
     "observer": "The observer alone, under the same load",
     "recording": "Recording 10 MB/s",
     "log_view": "The log view alone, under 10 000 lines/s",

@@ -111,6 +111,11 @@ class Terminal:
         with self._lock:
             return "\n".join(self._screen.display)
 
+    def ground(self, column: int, row: int) -> str:
+        """The background of a cell as six hexadecimal digits, or its name."""
+        with self._lock:
+            return str(self._screen.buffer[row][column].bg)
+
     def wait_for(self, text: str, within_s: float = 30.0) -> str:
         """Wait until `text` stands on the screen; return the screen."""
         return self.wait_until(lambda screen: text in screen, f"{text!r} on screen", within_s)

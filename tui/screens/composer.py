@@ -51,7 +51,7 @@ class ComposerScreen(DeckScreen):
         "/llm_raw_json, and the right side shows what came of it: accepted or refused, what went "
         "to the wheels and to the head, and after how many milliseconds."
     )
-    period_s: ClassVar[float] = 0.1
+    period_s = 0.1
     BINDINGS: ClassVar = bindings(*COMPOSER_ACTIONS)
     DEFAULT_CSS = """
     ComposerScreen {
