@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
 
 KEPT_SAMPLES = 256
-"""Of one topic, while the app does not come to take them."""
+KEPT_BYTES = 32 * 1024 * 1024
+"""Of one topic, while the app does not come to take them; the newest is kept whatever its size."""
 
 
 class GraphInbox:
@@ -46,5 +47,16 @@ def merged(older: GraphUpdate, newer: GraphUpdate) -> GraphUpdate:
     """Return `newer` with the samples of both, each topic's in order and bounded."""
     samples: dict[str, tuple[Sample, ...]] = dict(older.samples)
     for topic, fresh in newer.samples.items():
-        samples[topic] = (*samples.get(topic, ()), *fresh)[-KEPT_SAMPLES:]
+        samples[topic] = _newest((*samples.get(topic, ()), *fresh))
     return replace(newer, samples=samples)
+
+
+def _newest(samples: tuple[Sample, ...]) -> tuple[Sample, ...]:
+    """Return as many of the newest as may wait."""
+    kept = samples[-KEPT_SAMPLES:]
+    room = KEPT_BYTES
+    for count, sample in enumerate(reversed(kept)):
+        room -= sample.size_bytes
+        if room < 0 and count:
+            return kept[-count:]
+    return kept
