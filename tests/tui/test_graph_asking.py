@@ -177,3 +177,20 @@ async def test_what_is_asked_belongs_to_its_place(action: Room) -> None:
     await action.press("escape", "left")
     await action.wait_for("not called yet")
     assert action.screen.trail.kind is Kind.SERVICE
+
+
+async def test_all_types_that_are_installed_can_be_looked_into(service: Room) -> None:
+    await service.press("escape", "right", "right")
+    assert service.screen.trail.kind is Kind.TYPE
+    assert "geometry_msgs/msg/Twist" not in service.seen()
+    await service.press("a")
+    twist = "geometry_msgs/msg/Twist"
+    await service.wait(lambda: twist in [one.name for one in service.screen.listed[Kind.TYPE]])
+    await service.choose("geometry_msgs/msg/Twist")
+    await service.wait_for("geometry_msgs/Vector3")
+    await service.press("enter", "right")
+    await service.wait_for("float64 = 0.0")
+    await service.press("enter")
+    assert service.screen.trail.here == Place(Kind.TYPE, "geometry_msgs/msg/Vector3")
+    await service.press("escape")
+    assert service.screen.trail.here == Place(Kind.TYPE, "geometry_msgs/msg/Twist")

@@ -194,6 +194,9 @@ class GraphScreen(GraphFrame):
     def toggle_everything(self) -> None:
         """Show or hide what ROS itself needs."""
         self.everything = not self.everything
+        if self.everything:
+            # It reads the directories of all packages.
+            self.run_worker(self.find_installed(), group="load", exit_on_error=False)
         self.redraw()
 
     def save_parameters(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TYPE_CHECKING
 
 from textual.containers import Horizontal
@@ -67,6 +68,8 @@ class GraphFrame(DeckScreen):
         """Whether ROS's own things are listed."""
         self.listed: dict[Kind, list[Entry]] = {}
         """All there is of each kind."""
+        self._installed: tuple[str, ...] = ()
+        """Every type there is on this computer, once somebody has asked for all."""
 
     def compose_body(self) -> ComposeResult:
         """Kinds and filter above list and detail."""
@@ -125,6 +128,11 @@ class GraphFrame(DeckScreen):
         return pane if isinstance(pane, NodePane) else None
 
     @property
+    def is_settling(self) -> bool:
+        """Whether what belongs to the chosen place is still to be loaded."""
+        return self.pane is not None and self.pane.is_settling
+
+    @property
     def shows_parameters(self) -> bool:
         """Whether parameters are in front."""
         pane = self.node_pane
@@ -138,8 +146,15 @@ class GraphFrame(DeckScreen):
 
     def take(self, update: GraphUpdate | None) -> None:
         """Show this graph from now on."""
-        self.listed = {kind: entries(update, kind) for kind in LISTED}
+        self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
         self.redraw()
+
+    async def find_installed(self) -> None:
+        """List the types that are installed, though nobody uses them."""
+        from graph.browse import interfaces
+
+        self._installed = await asyncio.to_thread(interfaces)
+        self.take(self.feed.update)
 
     def redraw(self) -> None:
         """Show list and detail as things stand."""

@@ -141,6 +141,11 @@ class AskPane(GraphPane):
         if self.is_waiting:
             self.redraw()
 
+    @property
+    def is_settling(self) -> bool:
+        """Whether its form is to be loaded."""
+        return self._settling is not None
+
     def show_name(self, name: str) -> None:
         """Show another one; its form when the choice stands."""
         if name != self.name_shown:
@@ -151,6 +156,7 @@ class AskPane(GraphPane):
 
     def load_form(self) -> None:
         """Put the form of what is shown in place of the one before."""
+        self._settling = None
         if self._form_for:
             self._texts[self._form_for] = self.form.text
         types = self.type_names()

@@ -24,8 +24,8 @@ class Entry(NamedTuple):
     housekeeping: bool = False
 
 
-def entries(update: GraphUpdate | None, kind: Kind) -> list[Entry]:
-    """Return everything of a kind, sorted by name."""
+def entries(update: GraphUpdate | None, kind: Kind, installed: Iterable[str] = ()) -> list[Entry]:
+    """Return everything of a kind, sorted by name; types that nobody uses count as ROS's own."""
     if update is None:
         return []
     if kind is Kind.NODE:
@@ -35,7 +35,7 @@ def entries(update: GraphUpdate | None, kind: Kind) -> list[Entry]:
     elif kind is Kind.ACTION:
         found = [_typed(row.name, row.type_names) for row in update.actions]
     else:
-        found = _types(update)
+        found = _types(update, installed)
     return sorted(set(found))
 
 
@@ -70,8 +70,8 @@ def _typed(name: str, type_names: tuple[str, ...]) -> Entry:
     return Entry(name, ", ".join(type_names), is_housekeeping(name))
 
 
-def _types(update: GraphUpdate) -> list[Entry]:
-    used: dict[str, bool] = {}
+def _types(update: GraphUpdate, installed: Iterable[str]) -> list[Entry]:
+    used = dict.fromkeys(installed, True)
     rows: tuple[Typed, ...] = (*update.topics, *update.services, *update.actions)
     for row in rows:
         hidden = is_housekeeping(row.name)

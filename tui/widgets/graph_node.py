@@ -26,7 +26,7 @@ class NodePane(GraphPane):
         &.-parameters GraphParameters { display: block; }
     }
     .-low NodePane.-parameters, .-flat NodePane.-parameters {
-        GraphLinks, .node-words { display: none; }
+        GraphLinks, #node-words { display: none; }
         GraphParameters { border-top: none; }
     }
     """

@@ -83,6 +83,11 @@ class GraphPane(Vertical):
         """The newest of the graph."""
         return self.deck.feed.update
 
+    @property
+    def is_settling(self) -> bool:
+        """Whether something is to be loaded once the choice stands."""
+        return False
+
     def show_name(self, name: str) -> None:
         """Show what has this full name from now on."""
         self.name_shown = name

@@ -52,6 +52,11 @@ class TypePane(GraphPane):
         """The fields."""
         return self.query_one(GraphTypeTree)
 
+    @property
+    def is_settling(self) -> bool:
+        """Whether its package is to be loaded."""
+        return self._settling is not None
+
     def show_name(self, name: str) -> None:
         """Show another type once the choice stands."""
         if name != self.name_shown:
@@ -87,6 +92,7 @@ class TypePane(GraphPane):
         return self.fields if self.fields.display else self.query_one(GraphLinks)
 
     def _load_soon(self) -> None:
+        self._settling = None
         self.run_worker(self._load(self.name_shown), group="load", exclusive=True)
 
     async def _load(self, name: str) -> None:

@@ -1,0 +1,202 @@
+"""How the screen of the graph looks, at three sizes and in both languages."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from graph.data import CallResult, GoalStatus, GraphUpdate, ParametersResult
+from tests.tui.recorded import RecordedGraph, RecordedPad
+from tests.tui.recorded_nodes import NODE_ROWS, graph_update
+from tests.tui.snapshots import Look, SnapCompare, each_size, every_look, settle
+from tui.app import DeckApp
+from tui.screens.graph import GraphScreen
+from tui.widgets.graph_place import Kind, Place
+
+Step = Callable[[GraphScreen, RecordedGraph], object]
+NODE = Place(Kind.NODE, "/safety_stop")
+SERVICE = Place(Kind.SERVICE, "/set_head_position")
+ACTION = Place(Kind.ACTION, "/drive_to_point")
+TYPE = Place(Kind.TYPE, "sensor_msgs/msg/JointState")
+
+
+def app_of(look: Look, update: GraphUpdate | None = None) -> DeckApp:
+    graph = RecordedGraph(update=update or graph_update())
+    return look.app("graph", RecordedPad(graph=graph))
+
+
+def at(place: Place, *steps: str | Step) -> Callable[[Pilot[Any]], Awaitable[None]]:
+    """Go to a place, then press keys and take steps."""
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        assert isinstance(pilot.app, DeckApp)
+        screen, graph = pilot.app.screen, pilot.app.feed.graph
+        assert isinstance(screen, GraphScreen)
+        assert isinstance(graph, RecordedGraph)
+        await screen.go(place)
+        await still(pilot, screen)
+        for step in steps:
+            if isinstance(step, str):
+                await pilot.press(step)
+            else:
+                step(screen, graph)
+            await still(pilot, screen)
+
+    return before
+
+
+async def still(pilot: Pilot[Any], screen: GraphScreen) -> None:
+    """Wait until nothing is loaded or checked any more."""
+    for _round in range(200):
+        # Forms and types wait until a choice stands.
+        await pilot.pause(0.05)
+        if (
+            all(one.is_finished or one.node is pilot.app for one in pilot.app.workers)
+            and not screen.is_settling
+        ):
+            break
+    for _round in range(3):
+        await pilot.pause()
+
+
+def executing(_screen: GraphScreen, graph: RecordedGraph) -> None:
+    feedback = {"distance": 1.25}
+    graph.change_goal(1, status=GoalStatus.SUCCEEDED, result={"reached": True}, elapsed_s=4.2)
+    graph.change_goal(
+        2, status=GoalStatus.EXECUTING, feedback=feedback, feedbacks=12, elapsed_s=1.8
+    )
+
+
+@every_look
+def test_a_node(look: Look, snap_compare: SnapCompare) -> None:
+    """Nodes at the left; safety_stop with its process, what it says and hears, and with whom."""
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE))
+
+
+@every_look
+def test_parameters(look: Look, snap_compare: SnapCompare) -> None:
+    """Five parameters with type and limits; at 80x24 in place of the links, else below them."""
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE, "p", "down"))
+
+
+@each_size
+def test_a_parameter_that_is_refused(look: Look, snap_compare: SnapCompare) -> None:
+    """A dialog with description, type, range, the typed value, and why the node refuses it."""
+
+    def refuse(_screen: GraphScreen, graph: RecordedGraph) -> None:
+        graph.refusals["rate"] = "expected 0.1 to 50.0, got 99.0"
+
+    def type_it(screen: GraphScreen, _graph: RecordedGraph) -> None:
+        field = screen.app.screen.query_one(Input)
+        field.cursor_blink = False
+        field.value = "99.0"
+
+    before = at(NODE, "p", "down", refuse, "enter", type_it, "enter")
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@each_size
+def test_a_node_that_does_not_answer(look: Look, snap_compare: SnapCompare) -> None:
+    """In place of the parameters: they could not be read, and why."""
+
+    def hang(_screen: GraphScreen, graph: RecordedGraph) -> None:
+        graph.node_parameters[NODE.name] = ParametersResult(NODE.name, (), "no answer within 5 s")
+
+    before = at(NODE, hang, "p")
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_a_service(look: Look, snap_compare: SnapCompare) -> None:
+    """Type and nodes as links, a form that fits, sum 1 with its time; below the call itself."""
+    before = at(SERVICE, "enter", "ctrl+s")
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@each_size
+def test_a_call_under_way_and_one_that_failed(look: Look, snap_compare: SnapCompare) -> None:
+    """The newest call waits, seconds are counted, F7 cancels; the one below failed by time-out."""
+
+    def fail(_screen: GraphScreen, graph: RecordedGraph) -> None:
+        why = "no answer within 5 s"
+        graph.answers[SERVICE.name] = CallResult(SERVICE.name, False, None, why, 5.0)
+
+    def hold(_screen: GraphScreen, graph: RecordedGraph) -> None:
+        graph.hold_calls = True
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await at(SERVICE, fail, "ctrl+s", hold)(pilot)
+        assert isinstance(pilot.app, DeckApp)
+        await pilot.press("ctrl+s")
+        for _round in range(5):
+            await pilot.pause()
+
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_an_action(look: Look, snap_compare: SnapCompare) -> None:
+    """Goal form, two goals: one succeeded, one executing with its twelfth feedback shown."""
+    before = at(ACTION, "enter", "ctrl+s", "ctrl+s", executing)
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_a_type(look: Look, snap_compare: SnapCompare) -> None:
+    """JointState down to its fields, the header unfolded; below the topics that are of it."""
+    before = at(TYPE, "enter", "right")
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@every_look
+def test_the_map(look: Look, snap_compare: SnapCompare) -> None:
+    """safety_stop in a box; what it hears at the left, what it says at the right, with whom."""
+    before = at(NODE, "m", "left")
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@each_size
+def test_a_node_that_has_left(look: Look, snap_compare: SnapCompare) -> None:
+    """The list marks it as gone; the detail says so, and what it last did."""
+
+    def leave(_screen: GraphScreen, graph: RecordedGraph) -> None:
+        rest = tuple(row for row in NODE_ROWS if row.name != NODE.name)
+        graph.show(graph_update(nodes=rest))
+
+    before = at(NODE, leave)
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+
+
+@each_size
+def test_an_empty_domain(look: Look, snap_compare: SnapCompare) -> None:
+    """No node at all: it says why that may be."""
+    app = app_of(look, GraphUpdate(0.0))
+    assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
+
+
+@pytest.mark.parametrize("drawn", [False, True], ids=["list", "map"])
+def test_hostile_names(drawn: bool, snap_compare: SnapCompare) -> None:
+    """Escape sequences, markup and endless names are shown as they are, and shortened."""
+    look = Look((80, 24), "en")
+    long = "/" + "endless/" * 40
+    evil = replace(
+        NODE_ROWS[0],
+        name="/\x1b[2J[red]evil[/red]\x00",
+        publishes=("/\x1b]0;title\x07[blink]", long),
+        subscribes=("/\u202enwod_edispu", "/日本語"),
+    )
+    app = app_of(look, graph_update(nodes=(evil, replace(NODE_ROWS[1], name=long))))
+    before = at(Place(Kind.NODE, evil.name), *(("m",) if drawn else ()))
+    assert snap_compare(app, terminal_size=look.size, run_before=before)
+
+
+def test_a_tiny_terminal(snap_compare: SnapCompare) -> None:
+    """At 40x12 names are shortened; nothing breaks."""
+    look = Look((40, 12), "en")
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE))
