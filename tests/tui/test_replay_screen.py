@@ -153,3 +153,11 @@ async def test_leaving_lets_go_of_the_bag(drive: Path) -> None:
         await until(pilot, lambda: app._exit)
         assert replay._thread is not None
         assert not replay._thread.is_alive()
+
+
+async def test_what_nodes_logged_is_in_the_log(drive: Path) -> None:
+    async with replayed(drive) as (app, pilot, _replay):
+        await until(pilot, lambda: app.feed.history)
+        (line,) = app.feed.history.all()
+        assert (line.node, line.severity.value, line.text) == ("safety_stop", "warn", "too near")
+        assert line.time_s == 1_700_000_000

@@ -81,7 +81,7 @@ def write_bag(
 
 
 def write_robot_bag(folder: Path) -> Path:
-    """A bag of ten seconds in which a robot drives: sonar, wheels, and a text."""
+    """A bag of ten seconds in which a robot drives: sonar, wheels, and one line of /rosout."""
     types = store()
     made = types.types
     joint, header, stamp = (
@@ -99,6 +99,17 @@ def write_robot_bag(folder: Path) -> Path:
 
         sonar = channel("/sensor/sonar_front", "std_msgs/msg/Float32")
         wheels = channel("/wheel_commands", "sensor_msgs/msg/JointState")
+        said = made["rcl_interfaces/msg/Log"](
+            stamp=stamp(sec=BEGIN_NS // SECOND_NS, nanosec=0),
+            level=30,
+            name="safety_stop",
+            msg="too near",
+            file="",
+            function="",
+            line=0,
+        )
+        raw = types.serialize_cdr(said, "rcl_interfaces/msg/Log")
+        writer.write(channel("/rosout", "rcl_interfaces/msg/Log"), BEGIN_NS, bytes(raw))
         for turn in range(101):
             at_ns = BEGIN_NS + turn * SECOND_NS // 10
             metres = made["std_msgs/msg/Float32"](data=2.0 - turn * 0.015)
