@@ -104,9 +104,12 @@ def _reduction(width: int, height: int, fit: Fit) -> int:
 
 def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uint8]:
     """Return pixels of shape (height, width, 3), or (height, width, 1) numbers as they are."""
-    import cv2
     import numpy as np
 
+    try:
+        import cv2
+    except ImportError as error:
+        raise ImageError(f"OpenCV is missing, which decodes them: {error}") from error
     modes: dict[int, int] = {
         1: cv2.IMREAD_COLOR,
         2: cv2.IMREAD_REDUCED_COLOR_2,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import sys
 from typing import Any
 
 import cv2
@@ -186,6 +187,12 @@ def test_what_cannot_be_decoded_is_named(value: dict[str, Value], words: str) ->
 def test_too_many_bytes_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("graph.compressed.MOST_BYTES", 100)
     with pytest.raises(ImageError, match="too large"):
+        read_picture(COMPRESSED, {"format": "jpeg", "data": JPEG_BYTES}, whole)
+
+
+def test_without_opencv_a_word_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    with pytest.raises(ImageError, match="OpenCV is missing"):
         read_picture(COMPRESSED, {"format": "jpeg", "data": JPEG_BYTES}, whole)
 
 
