@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import signal
+
+from tests.e2e import marked
 from tests.e2e.conftest import Deck
 from tests.e2e.terminal import Terminal
 
@@ -52,3 +56,35 @@ def test_the_map_shows_who_talks_to_the_brain(deck: Deck) -> None:
     terminal.wait_for("┌─")
     terminal.wait_for("/set_head_position()")
     terminal.wait_for("head_controller")
+
+
+def test_a_node_that_hangs_freezes_nothing_and_is_told(deck: Deck) -> None:
+    terminal = at_the_graph(deck)
+    (hung,) = (pid for pid, line in marked.nodes(deck.mark).items() if "audio" in line)
+    os.kill(hung, signal.SIGSTOP)
+    try:
+        terminal.press("/")
+        terminal.type("audio")
+        terminal.wait_for("1 of ")
+        terminal.press("enter")
+        terminal.wait_for("p Parameters")
+        terminal.press("p")
+        terminal.wait_for("no answer for")
+        terminal.press("1")
+        terminal.wait_for("Sonar", within_s=3.0)
+        terminal.press("5")
+        terminal.wait_for("could not be read")
+    finally:
+        os.kill(hung, signal.SIGCONT)
+
+
+def test_a_goal_is_sent_and_reached_with_feedback_on_the_way(deck: Deck) -> None:
+    terminal = deck.open("03b-drive-to-point", "--lang", "en")
+    terminal.wait_for("● ")
+    terminal.press("5")
+    terminal.wait_for("Actions 1")
+    terminal.press("right", "right")
+    terminal.wait_for("fits deck_interfaces/action/DriveToPoint")
+    terminal.press("ctrl+s")
+    terminal.wait_for("#1")
+    terminal.wait_until(lambda text: "✓ succeeded" in text or "✗" in text, "the goal's end")
