@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 NAME_PREFIX = "_deck_"
 """The underscore keeps it out of `ros2 node list`."""
+ONLY_LISTENING = (f"/{NAME_PREFIX}observer_", f"/{NAME_PREFIX}recorder_")
+"""How the full names of nodes begin that look on, in this process or in another of Deck's."""
 DOMAINS = range(233)
 """Fast DDS ends the whole process at a greater one: its ports would be no ports any more."""
 FAST_DDS = Path(__file__).with_name("fastdds.xml")

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from graph.ros import ONLY_LISTENING
 from graph.scan_endpoints import full_name, publishers, subscriptions
 from graph.scan_nodes import action_rows, node_rows, parties, service_rows
 
@@ -101,6 +102,7 @@ def _topic(node: Node, own_name: str, name: str, types: tuple[str, ...]) -> Topi
         name,
         types,
         tuple(end for end in publishing if end.node != own_name),
-        tuple(end for end in subscriptions(node, name) if end.node != own_name),
+        # A recorder that hears the emergency stop must not pass for somebody who obeys it.
+        tuple(end for end in subscriptions(node, name) if not end.node.startswith(ONLY_LISTENING)),
         tuple(end for end in publishing if end.node == own_name),
     )

@@ -16,12 +16,13 @@ from mcap_ros2.decoder import DecoderFactory
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import Image
-from std_msgs.msg import Float32, String
+from std_msgs.msg import Bool, Float32, String
 from tf2_msgs.msg import TFMessage
 
 from graph.bag import open_bag
 from graph.bag_errors import BagError
 from graph.recording import Recorder
+from tests.ros.observing import Watcher, let_updates_come
 from tests.ros.peer import LATCHED, Peer
 from tests.ros.recorded import (
     messages_of,
@@ -211,6 +212,21 @@ def test_a_full_disk_leaves_a_whole_bag_and_a_word(ros_domain: int, tmp_path: Pa
     assert kept == read_by_rosbags(tmp_path / "bag")["/big"]
     dropped = int(lines[-1].split()[-1])
     assert len(kept) + dropped == 50
+
+
+def test_a_recorder_does_not_pass_for_somebody_who_obeys(ros_domain: int, tmp_path: Path) -> None:
+    recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
+    watcher = Watcher(ros_domain)
+    with Peer(ros_domain) as peer:
+        watcher.observer.measure(all_topics=True)
+        peer.publisher("/emergency_stop", Bool, LATCHED).publish(Bool(data=True))
+        recorder.start()
+        recorded(recorder, "/emergency_stop", 1)
+        let_updates_come(watcher, 10)
+        row = watcher.wait_for("/emergency_stop", lambda row: row.count, "a message")
+        assert (row.publishers, row.subscribers) == (1, 0)
+        recorder.stop()
+    watcher.close()
 
 
 def test_lost_messages_are_counted(ros_domain: int, tmp_path: Path) -> None:
