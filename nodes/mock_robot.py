@@ -132,7 +132,9 @@ class MockRobot(LessonNode):
 
     def _make_lines(self, folder: Path) -> dict[str, FaultyLine]:
         try:
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            # The folder above is Deck's own, which keeps it from everybody else.
+            folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700, exist_ok=True)
             return {
                 device: FaultyLine(PseudoSerial(folder / device), seed)
                 for seed, device in enumerate(DEVICES)

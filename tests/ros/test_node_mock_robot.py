@@ -120,12 +120,14 @@ def test_noise_and_silence_are_to_be_had(folder: Path, peer: Peer) -> None:
 
 
 def test_it_takes_its_devices_with_it(module_domain: int, tmp_path: Path) -> None:
-    with mock_robot(module_domain, tmp_path / "here") as robot:
+    folder = tmp_path / "run" / "devices"
+    with mock_robot(module_domain, folder) as robot:
         robot.wait_for_words("The simulated robot is in")
-        assert {path.name for path in (tmp_path / "here").iterdir()} == set(NAMES)
+        assert {path.name for path in folder.iterdir()} == set(NAMES)
+        assert folder.parent.stat().st_mode & 0o777 == 0o700
         robot.send(signal.SIGTERM)
         assert robot.wait() == 0
-        assert list((tmp_path / "here").iterdir()) == []
+        assert list(folder.iterdir()) == []
 
 
 def test_a_folder_that_cannot_be_is_told_in_one_line(module_domain: int, tmp_path: Path) -> None:
