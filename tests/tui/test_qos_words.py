@@ -14,43 +14,45 @@ def facts(**values: str) -> dict[str, str]:
     return {"publisher": "/lidar", "subscriber": "/brain", **values}
 
 
+APART = "/brain does not hear /lidar: "
+LIFE = "it asks for a sign of life at least every 2.0 s (liveliness lease duration), "
+
+
 @pytest.mark.parametrize(
-    ("values", "words"),
+    ("policy", "offered", "requested", "why", "way_out"),
     [
         (
-            {"policy": "liveliness", "offered": "automatic", "requested": "manual_by_topic"},
-            (
-                "/brain does not hear /lidar: liveliness manual_by_topic is asked for, automatic is "
-                "offered. Let /lidar offer manual_by_topic, or let /brain ask for automatic."
-            ),
+            "liveliness", "automatic", "manual_by_topic",
+            "liveliness manual_by_topic is asked for, automatic is offered.",
+            " Let /lidar offer manual_by_topic, or let /brain ask for automatic.",
         ),
         (
-            {"policy": "deadline", "offered": "0.5", "requested": "0.25"},
-            (
-                "/brain does not hear /lidar: it asks for a message at least every 250 ms (deadline), "
-                "500 ms is offered. Let /lidar offer 250 ms or less, or let /brain ask for 500 ms or "
-                "more."
-            ),
+            "deadline", "0.5", "0.25",
+            "it asks for a message at least every 250 ms (deadline), 500 ms is offered.",
+            " Let /lidar offer 250 ms or less, or let /brain ask for 500 ms or more.",
         ),
         (
-            {"policy": "deadline", "offered": "", "requested": "2"},
-            (
-                "/brain does not hear /lidar: it asks for a message at least every 2.0 s (deadline), "
-                "no deadline is offered. Let /lidar offer 2.0 s or less, or let /brain ask for none."
-            ),
+            "deadline", "", "2",
+            "it asks for a message at least every 2.0 s (deadline), no deadline is offered.",
+            " Let /lidar offer 2.0 s or less, or let /brain ask for none.",
         ),
         (
-            {"policy": "lease", "offered": "", "requested": "2"},
-            (
-                "/brain does not hear /lidar: it asks for a sign of life at least every 2.0 s "
-                "(liveliness lease duration), none is offered. Let /lidar offer 2.0 s or less, or let "
-                "/brain ask for none."
-            ),
+            "lease", "", "2",
+            LIFE + "none is offered.",
+            " Let /lidar offer 2.0 s or less, or let /brain ask for none.",
+        ),
+        (
+            "lease", "3", "2",
+            LIFE + "3.0 s is offered.",
+            " Let /lidar offer 2.0 s or less, or let /brain ask for 3.0 s or more.",
         ),
     ],
-)
-def test_each_policy_has_its_own_words(values: dict[str, str], words: str) -> None:
-    assert pair_words(facts(**values)) == words
+)  # fmt: skip
+def test_each_policy_has_its_own_words(
+    policy: str, offered: str, requested: str, why: str, way_out: str
+) -> None:
+    values = facts(policy=policy, offered=offered, requested=requested)
+    assert pair_words(values) == APART + why + way_out
 
 
 def test_further_pairs_are_counted() -> None:
