@@ -20,7 +20,7 @@ from tui.widgets.topic_plot_field import PlotField
 from tui.widgets.topic_plot_legend import legend_in_short, legend_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from graph.data import GraphUpdate, Sample
     from tui.widgets.topic_plot_history import Columns, History
@@ -181,7 +181,8 @@ class TopicPlot(Drawing):
 
     def _picture(self, end_s: float, width: int, rows: int) -> list[Line]:
         """Curves and axes in so many rows of cells, and the times below."""
-        from tui.widgets import topic_plot_curve
+        from tui.widgets.topic_plot_curve import curve
+        from tui.widgets.topic_plot_grid import Grid
 
         axis = self._axis = self._suiting_axis(end_s, rows)
         labels = {self._row_of(tick, axis, rows): axis.label(tick) for tick in axis.ticks}
@@ -192,24 +193,16 @@ class TopicPlot(Drawing):
         # The window ends at a whole cell: the curves move by cells and keep their shape.
         cell_s = self._window_s / across
         edge_s = math.ceil(end_s / cell_s) * cell_s
-        grid = [[Ink(" ")] * across for _row in range(rows)]
-        for row in labels:
-            grid[row] = [Ink("·", "muted") if x % 4 == 0 else Ink(" ") for x in range(across)]
+        grid = Grid(rows, across, labels)
         ends: dict[int, Ink] = {}
-        for series in self._series:
+        for number, series in enumerate(self._series, start=1):
             columns = series.history.columns(edge_s, self._window_s, 2 * across)
-            cells = topic_plot_curve.curve(columns, axis, rows)
-            for row, column in zip(*cells.nonzero(), strict=True):
-                before = ord(grid[row][column].text)
-                bits = (before - BLANK if before > BLANK else 0) | int(cells[row, column])
-                grid[row][column] = Ink(chr(BLANK + bits), series.look)
+            grid.draw(curve(columns, axis, rows), number)
             self._letter(series, columns, axis, rows, ends)
         lines = []
-        for row, inks in enumerate(grid):
-            label = Ink(
-                labels.get(row, "").rjust(left - 1) + ("┤" if row in labels else "│"), "muted"
-            )
-            lines.append([label, *_runs(inks), ends.get(row, Ink(" "))])
+        for row, line in enumerate(grid.lines([series.look for series in self._series])):
+            label = labels.get(row, "").rjust(left - 1) + ("┤" if row in labels else "│")
+            lines.append([Ink(label, "muted"), *line, ends.get(row, Ink(" "))])
         return [*lines, self._times(left, across)]
 
     def _suiting_axis(self, end_s: float, rows: int) -> Axis:
@@ -251,22 +244,8 @@ class TopicPlot(Drawing):
         return [Ink(text, "muted")]
 
 
-BLANK = 0x2800
-
-
 def window_text(seconds: float) -> str:
     """`30 s`, `5 min`."""
     if seconds < 120:
         return _("{n} s").format(n=f"{seconds:g}")
     return _("{n} min").format(n=f"{seconds / 60:g}")
-
-
-def _runs(inks: Sequence[Ink]) -> Line:
-    """Neighbours that look alike as one."""
-    line: Line = []
-    for ink in inks:
-        if line and line[-1].look == ink.look:
-            line[-1] = Ink(line[-1].text + ink.text, ink.look)
-        else:
-            line.append(ink)
-    return line
