@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from bisect import insort
 from collections import deque
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tui.flow import EARLY_S, Chain
@@ -59,6 +61,9 @@ class FlowBook:
         return next(begun, None)
 
     def _begin(self, first: Step) -> None:
+        # Chains are told apart by their beginnings.
+        while any(chain.start_s == first.time_s for chain in self._chains):
+            first = replace(first, time_s=math.nextafter(first.time_s, math.inf))
         chain = Chain(first)
         insort(self._chains, chain, key=lambda one: one.start_s)
         del self._chains[:-MOST_CHAINS]

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 MIC, SPEAKER = "/audio/mic_raw", "/audio/speaker_raw"
 COMMAND, JSON = "/ai_command", "/llm_raw_json"
 DRIVE, DRIVE_SAFE, WHEELS, HEAD = "/drive", "/drive_safe", "/wheel_commands", "/head_state"
-TOPICS = frozenset({MIC, SPEAKER, COMMAND, JSON, DRIVE, DRIVE_SAFE, WHEELS, HEAD})
+TOPICS = (MIC, JSON, COMMAND, DRIVE, DRIVE_SAFE, WHEELS, HEAD, SPEAKER)
+"""Causes before what follows from them, which decides among messages of one moment."""
 
 SPOKEN_LEVEL = 3
 """Of the eight columns of loudness: a quieter sound is no voice (about -38 dB)."""
@@ -55,7 +56,7 @@ class FlowReader:
         self, samples: Mapping[str, Iterable[Sample]], said_by: Mapping[str, str]
     ) -> list[Step]:
         """Read samples; `said_by` has the publishers of each topic."""
-        came = [one for topic in TOPICS & samples.keys() for one in samples[topic]]
+        came = [one for topic in TOPICS for one in samples.get(topic, ())]
         came.sort(key=_sent_s)
         return [step for one in came for step in self._read(one, said_by.get(one.topic, ""))]
 

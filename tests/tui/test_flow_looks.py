@@ -74,6 +74,8 @@ def test_less_and_more(look: Look, snap_compare: SnapCompare) -> None:
 @each_size
 def test_nothing_to_speak_to(look: Look, snap_compare: SnapCompare) -> None:
     """No topic that a voice or a command would come on: says so."""
-    empty = RecordedPad(RecordedSession(lines=()), RecordedGraph(lesson_update(topics=())))
+    empty = RecordedPad(
+        RecordedSession(lines=()), RecordedGraph(lesson_update(topics=(), samples={}))
+    )
     app = look.app("flow", empty)
     assert snap_compare(app, terminal_size=look.size, run_before=look.settle)

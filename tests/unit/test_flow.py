@@ -123,6 +123,11 @@ def test_the_same_again_is_counted() -> None:
     assert [one.times for one in chain.steps] == [1, 40]
 
 
+def test_two_beginnings_of_one_moment_are_two_chains() -> None:
+    chains = book_of(mic(1.0), said(1.0), said(1.0, "left"), step(1.1)).chains
+    assert len({chain.start_s for chain in chains}) == len(chains)
+
+
 def test_chains_and_their_steps_are_bounded() -> None:
     many = [mic(at * 2.0) for at in range(3 * MOST_CHAINS)]
     assert len(book_of(*many).chains) == MOST_CHAINS
