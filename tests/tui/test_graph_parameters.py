@@ -11,6 +11,7 @@ from textual.widgets import Input
 
 from graph.data import ParametersResult
 from tests.tui.graph_room import Room, opened
+from tests.tui.snapshots import settle
 from tui.screens.graph_parameter import ParameterDialog
 
 NODE = "/sonar_front"
@@ -86,9 +87,10 @@ async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
     await room.press("p", "p")
     monkeypatch.undo()
     await room.choose("/camera")
-    future.set_result(ParametersResult(NODE, (), "too late"))
     await room.press("p")
     await room.wait_for("5 parameters")
+    future.set_result(ParametersResult(NODE, (), "too late"))
+    await settle(room.pilot)
     assert "too late" not in room.seen()
 
 
