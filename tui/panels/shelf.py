@@ -64,7 +64,11 @@ class Shelf(Container):
         width, height = event.size
         self._frame = 2 if width >= BESIDE_FROM else 1
         self.set_class(self._frame == 1, "-thin")
+        before = self.pages
         self._pages = paged(in_rows(self._panels, width), height, self._frame)
+        if self.pages != before:
+            # The key that turns the page comes and goes with the pages.
+            self.screen.refresh_bindings()
         self._page = min(self._page, max(0, len(self._pages) - 1))
         self._lay_out(height)
 
