@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
@@ -79,12 +80,19 @@ def stood(answer: dict[str, Any]) -> bool:
     return all(motors == [0, 0] for motors in answer["seen"])
 
 
+def _do_without(reason: str) -> NoReturn:
+    """Skip for who has no Node.js; the project's own gate has to have it."""
+    if os.environ.get("CI"):
+        pytest.fail(reason)
+    pytest.skip(reason)
+
+
 @pytest.fixture(scope="session")
 def modules(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with MicroPython in it, from npm, kept between runs."""
     package = CACHE / "node_modules/@micropython/micropython-webassembly-pyscript/micropython.wasm"
     if shutil.which("node") is None or shutil.which("npm") is None:
-        pytest.skip("MicroPython runs in Node.js, which is not installed")
+        _do_without("MicroPython runs in Node.js, which is not installed")
     if package.exists():
         return CACHE
     fresh = tmp_path_factory.mktemp("micropython")
@@ -95,7 +103,7 @@ def modules(tmp_path_factory: pytest.TempPathFactory) -> Path:
         command, cwd=fresh, capture_output=True, text=True, timeout=50, check=False
     )
     if done.returncode:
-        pytest.skip(f"npm did not bring MicroPython: {done.stderr.strip()[-200:]}")
+        _do_without(f"npm did not bring MicroPython: {done.stderr.strip()[-200:]}")
     CACHE.mkdir(parents=True, exist_ok=True)
     shutil.copytree(fresh, CACHE, dirs_exist_ok=True)
     return CACHE
