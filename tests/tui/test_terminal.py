@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import pty
+import select
 import sys
 import threading
 from collections.abc import Iterator
@@ -50,6 +51,9 @@ def test_a_stalled_terminal_never_makes_the_writer_wait(line: tuple[int, int]) -
     caught_up = threading.Event()
     terminal = Terminal(program, caught_up.set)
     frame = "x" * 10_000
+    # From here on the terminal takes nothing: there is no more room in it.
+    terminal.write(10 * frame)
+    wait_until(lambda: not select.select([], [program], [], 0)[1], "the terminal full")
 
     def flood() -> None:
         for number in range(3 * MOST_WAITING // len(frame)):
