@@ -17,7 +17,7 @@ def test_ctrl_c_ends_a_run_with_its_summary(deck: Deck) -> None:
     terminal.press("ctrl+c")
     assert terminal.wait_exit() == 0
     terminal.wait_for("every node stayed healthy")
-    assert marked.alive(deck.mark) == {}
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
 
 
 def test_a_window_that_closes_ends_a_run(deck: Deck, tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_the_screen_comes_and_goes_while_the_nodes_run_on(deck: Deck) -> None:
     down = deck.open("down")
     down.wait_for("01-hello stopped, 1 node")
     assert down.wait_exit() == 0
-    assert marked.alive(deck.mark) == {}
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
 
 
 def test_attach_with_nothing_to_attach_to_says_so(deck: Deck) -> None:

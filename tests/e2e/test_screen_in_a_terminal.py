@@ -29,7 +29,7 @@ def test_enter_starts_lesson_nine_and_q_leaves_nothing_running(deck: Deck) -> No
     assert len(marked.nodes(deck.mark)) == 8
     terminal.press("q")
     assert terminal.wait_exit() == 0
-    assert marked.alive(deck.mark) == {}
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
 
 
 def supervisors(mark: str) -> list[int]:
@@ -96,7 +96,7 @@ def test_a_terminated_screen_gives_the_terminal_back(deck: Deck) -> None:
     terminal.process.send_signal(signal.SIGTERM)
     terminal.wait_exit()
     terminal.wait_gone("1/1")
-    assert marked.alive(deck.mark) == {}
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
 
 
 def test_a_killed_supervisor_is_said_and_leaves_no_node(deck: Deck) -> None:
