@@ -277,9 +277,11 @@ class LessonDeck(DeckScreen):
     async def _look_at_others(self, update: GraphUpdate) -> None:
         """Say who runs, and bring the panels for which topics have come; none is taken away."""
         self.set_class(self.driven, "-driven")
-        self.query_one("#watched", Static).update(
-            watched_words(update, self.feed.session.domain if self.feed.session else 0)
-        )
+        words = watched_words(update, self.feed.session.domain if self.feed.session else 0)
+        watched = self.query_one("#watched", Static)
+        # Each update of a Static lays the screen out anew, and this comes with every look.
+        if words != watched.content:
+            watched.update(words)
         wanted = panels_for({row.name for row in update.topics if row.publishers})
         if not self._put.issuperset(wanted):
             self._put |= set(wanted)
