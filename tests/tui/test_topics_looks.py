@@ -23,6 +23,9 @@ HOSTILE = (
     "[red]красный[/red] \x1b[31m\x1b]52;c;aGVsbG8=\x07\x00 \ud800 \u202eназад " + "1 MB " * 200_000
 )
 
+AWAITED = "awaited"
+"""Stands in place of a picture that is to come."""
+
 Before = Callable[[Pilot[Any]], Awaitable[None]]
 
 
@@ -133,8 +136,7 @@ async def drawn(pilot: Pilot[Any]) -> None:
     view = pilot.app.screen.query_one(TopicDetail).query_one(ImageView)
     for _round in range(500):
         await pilot.pause(0.01)
-        under_way = any(worker.group == "pictures" for worker in pilot.app.workers)
-        if not under_way and (view.has_picture or any(view.words)):
+        if view.has_picture or view.words[0] not in {"", AWAITED}:
             break
     for _round in range(3):
         await pilot.pause()
@@ -157,12 +159,14 @@ def test_other_pictures(
 
     async def decoded(pilot: Pilot[Any]) -> None:
         await before(pilot)
+        await drawn(pilot)
         app = pilot.app
         assert isinstance(app, DeckApp)
-        # The first one is thinned out to a size that the layout may still change.
-        for _turn in range(2):
-            app.feed.graph.show(with_camera(type_name, value))  # type: ignore[union-attr]
-            await drawn(pilot)
+        # The first one was thinned out to a size that the layout may have changed since, and
+        # what was drawn before steadies the colours of what follows.
+        app.screen.query_one(TopicDetail).picture.show_words(AWAITED)
+        app.feed.graph.show(with_camera(type_name, value))  # type: ignore[union-attr]
+        await drawn(pilot)
 
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=decoded)
 
