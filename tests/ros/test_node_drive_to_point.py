@@ -11,6 +11,7 @@ import pytest
 from ackermann_msgs.msg import AckermannDriveStamped
 from action_msgs.msg import GoalStatus
 from deck_interfaces.action import DriveToPoint
+from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.action import ActionClient
 from std_msgs.msg import Bool
@@ -22,7 +23,9 @@ from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+
+    from rclpy.task import Future
 
 MODULE = "nodes.drive_to_point"
 SIMULATED: dict[str, object] = {"simulate": "always", "max_speed": 0.5}
@@ -37,6 +40,7 @@ class Asker:
     """A client of the action."""
 
     def __init__(self, peer: Peer) -> None:
+        self._peer = peer
         self._client = ActionClient(peer.node, DriveToPoint, "drive_to_point")
         wait_until(self._client.server_is_ready, "the action server")
         self.feedback: list[float] = []
@@ -46,24 +50,30 @@ class Asker:
         """Send a goal; whether it was accepted."""
         goal = DriveToPoint.Goal(x=x, y=y, tolerance=tolerance)
         self.feedback.clear()
-        sent = self._client.send_goal_async(
-            goal, feedback_callback=lambda told: self.feedback.append(told.feedback.distance)
+        self.handle = self._answer(
+            lambda: self._client.send_goal_async(
+                goal, feedback_callback=lambda told: self.feedback.append(told.feedback.distance)
+            ),
+            "an answer to the goal",
         )
-        wait_until(sent.done, "an answer to the goal")
-        self.handle = sent.result()
         return bool(self.handle.accepted)
+
+    def result(self) -> Future:
+        """Ask for the result, which comes when the goal has ended."""
+        return self._peer.on_its_thread(self.handle.get_result_async, "a question for the result")
 
     def end(self) -> tuple[int, DriveToPoint.Result]:
         """Wait for the end; the status and the result."""
-        result = self.handle.get_result_async()
-        wait_until(result.done, "a result")
-        return result.result().status, result.result().result
+        ended = self._peer.answer(self.result(), "a result")
+        return ended.status, ended.result
 
     def cancel(self) -> None:
         """Ask to cancel, and wait until that is granted."""
-        asked = self.handle.cancel_goal_async()
-        wait_until(asked.done, "an answer to the cancellation")
-        assert asked.result().goals_canceling
+        answer = self._answer(self.handle.cancel_goal_async, "an answer to the cancellation")
+        assert answer.goals_canceling
+
+    def _answer(self, call: Callable[[], Future], what: str) -> Any:
+        return self._peer.answer(self._peer.on_its_thread(call, what), what)
 
 
 @pytest.fixture
@@ -94,9 +104,14 @@ def test_it_reaches_the_point_while_the_distance_falls(peer: Peer, ros_domain: i
     with NodeProcess(MODULE, ros_domain, params=SIMULATED) as node:
         drive = peer.hear("/drive", AckermannDriveStamped)
         poses, transforms = peer.hear("/odom", Odometry), peer.hear("/tf", TFMessage)
+        goals = peer.hear("/goal_pose", PoseStamped, LATCHED)
         asker = Asker(peer)
         assert asker.ask(0.8, 0.2, 0.05)
+        wait_until(lambda: goals, "the goal")
+        assert goals[0].header.frame_id == "odom"
+        assert (goals[0].pose.position.x, goals[0].pose.position.y) == (0.8, 0.2)
         status, result = asker.end()
+        wait_until(lambda: goals[-1].header.frame_id == "", "the end of the goal")
         assert (status, result.reached) == (SUCCEEDED, True)
         assert result.distance <= 0.05
         assert "There" in result.message
@@ -259,7 +274,7 @@ def test_it_ends_in_the_middle_of_a_drive_with_a_stop_and_a_result(
         asker = Asker(peer)
         assert asker.ask(9.0, 0.0)
         wait_for_motion(drive)
-        result = asker.handle.get_result_async()
+        result = asker.result()
         wait_until(lambda: asker.feedback, "feedback, by which time the result was asked for")
         began_s = time.monotonic()
         node.send(number)
