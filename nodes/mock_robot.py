@@ -3,8 +3,8 @@
 In `folder` appear pico, tof_front, tof_rear and lsc16: pseudo-terminals that speak the bytes of
 the real devices. The drivers (chassis, tof_sonar, head_controller) take them for real ones. Behind
 them is a simulated room with walls and boxes. Trouble is made by parameters, at any time:
-`pico:=unplugged` pulls a cable, `pico:=fine` puts it back. /mock/pose tells where the robot really
-is, which a real one could not.
+`pico:=unplugged` pulls a cable, `pico:=fine` puts it back. /map is the room, to be drawn, and
+/mock/pose tells where the robot really is, which a real one could not.
 """
 
 from __future__ import annotations
@@ -16,17 +16,20 @@ import time
 from pathlib import Path
 
 from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import OccupancyGrid
 
 from nodes._device_fault import FAULTS, FINE, FaultyLine
 from nodes._life import run
+from nodes._map_message import occupancy_grid
 from nodes._node import LessonNode, UsageError
 from nodes._parameters import Choice, Number, Setting, Text, Whole
 from nodes._pty import PseudoSerial
 from nodes._speech import Phrase
-from nodes._topics import DEPTH
+from nodes._topics import DEPTH, LATCHED, MAP
 from robot.geometry import quaternion_from_rpy
 from robot.wire_tfluna import TofFrame, encode
 from robot.world import STEP_S, Sonar, World
+from robot.world_grid import grid_of
 from robot.world_pico import SimulatedPico
 from robot.world_servos import SimulatedServos
 
@@ -106,6 +109,9 @@ class MockRobot(LessonNode):
         self._told: dict[str, str] = dict.fromkeys(DEVICES, FINE)
         self._collisions = 0
         self._publisher = self.create_publisher(PoseStamped, POSE, DEPTH)
+        self._map_publisher = self.create_publisher(OccupancyGrid, MAP, LATCHED)
+        now = self.get_clock().now().to_msg()
+        self._map_publisher.publish(occupancy_grid(grid_of(self._world.room), now))
         self.parameters_changed()
         self._now_s = time.monotonic()
         self.every(STEP_S, self._tick)

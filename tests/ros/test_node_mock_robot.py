@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import pytest
 import serial
 from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import OccupancyGrid
 
 from robot.wire_lsc16 import Battery, BatteryRequest, ServoDecoder
 from robot.wire_lsc16 import encode as encode_servo
 from robot.wire_pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode
 from robot.wire_tfluna import Model, TofDecoder
 from tests.ros.devices import mock_robot, set_parameter
-from tests.ros.peer import Peer
+from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -83,6 +84,21 @@ def test_the_sonars_see_the_room(folder: Path) -> None:
                 "frames",
             )
         assert nearest < frames[-1].distance_m(Model.LUNA) < 2.5
+
+
+@pytest.mark.usefixtures("robot")
+def test_a_late_comer_gets_the_room_as_a_map(peer: Peer) -> None:
+    maps = peer.hear("/map", OccupancyGrid, LATCHED)
+    wait_until(lambda: maps, "a map")
+    (told,) = maps
+    assert told.header.frame_id == "odom"
+    assert told.info.resolution == pytest.approx(0.05)
+    assert len(told.data) == told.info.width * told.info.height
+    assert set(told.data) == {-1, 0, 100}
+    # The wall ahead of the start, 4 m away at its height.
+    row = round((0.8 - told.info.origin.position.y) / 0.05 - 0.5)
+    walls = [x for x in range(told.info.width) if told.data[row * told.info.width + x] == 100]
+    assert told.info.origin.position.x + (walls[-1] + 0.5) * 0.05 == pytest.approx(4.0, abs=0.03)
 
 
 @pytest.mark.usefixtures("robot")

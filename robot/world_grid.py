@@ -1,0 +1,85 @@
+"""A room as a map of square cells, as a robot would have drawn it: occupied, free, unknown."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from robot.world_room import Box, Room
+
+OCCUPIED, FREE, UNKNOWN = 100, 0, -1
+"""As nav_msgs/OccupancyGrid has them."""
+CELL_M = 0.05
+_MARGIN = 2
+"""Unknown cells around the walls."""
+_SAMPLES = 4
+"""Places in a cell that are looked at along a wall: no wall has holes, whatever its angle."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cells of a side of `cell_m`, the first at the corner with the least x and y."""
+
+    x_m: float
+    y_m: float
+    """Outer corner of the first cell."""
+    cell_m: float
+    cells: NDArray[np.int8]
+    """Shape (rows, columns); rows count along y, columns along x."""
+
+    def at(self, x_m: float, y_m: float) -> int:
+        """What is at a place; unknown outside."""
+        row = math.floor((y_m - self.y_m) / self.cell_m)
+        column = math.floor((x_m - self.x_m) / self.cell_m)
+        rows, columns = self.cells.shape
+        if 0 <= row < rows and 0 <= column < columns:
+            return int(self.cells[row, column])
+        return UNKNOWN
+
+
+def grid_of(room: Room, cell_m: float = CELL_M) -> Grid:
+    """Draw a room: its walls and boxes are occupied, the floor between them is free."""
+    corners = np.array(room.walls.corners())
+    # Half a cell more: a wall parallel to the axes runs through the middle of its cells.
+    least = corners.min(axis=0) - (_MARGIN + 0.5) * cell_m
+    columns, rows = np.ceil((corners.max(axis=0) - least) / cell_m).astype(int) + _MARGIN
+    centres = np.meshgrid(
+        least[0] + (np.arange(columns) + 0.5) * cell_m,
+        least[1] + (np.arange(rows) + 0.5) * cell_m,
+    )
+    cells = np.full((rows, columns), UNKNOWN, dtype=np.int8)
+    cells[_within(room.walls, *centres)] = FREE
+    for box in room.boxes:
+        cells[_within(box, *centres)] = OCCUPIED
+    for box in (room.walls, *room.boxes):
+        across, up = _edges(box, cell_m)
+        cells[
+            np.floor((up - least[1]) / cell_m).astype(int),
+            np.floor((across - least[0]) / cell_m).astype(int),
+        ] = OCCUPIED
+    return Grid(float(least[0]), float(least[1]), cell_m, cells)
+
+
+def _within(box: Box, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+    east, north = x_m - box.x_m, y_m - box.y_m
+    cos, sin = math.cos(box.heading_rad), math.sin(box.heading_rad)
+    ahead, left = np.abs(cos * east + sin * north), np.abs(cos * north - sin * east)
+    inside: NDArray[np.bool_] = (ahead <= box.length_m / 2) & (left <= box.width_m / 2)
+    return inside
+
+
+def _edges(box: Box, cell_m: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places along the outline of a box, x and y."""
+    corners = box.corners()
+    places = [
+        np.linspace(begin, end, math.ceil(math.dist(begin, end) / cell_m * _SAMPLES) + 1)
+        for begin, end in zip(corners, (*corners[1:], corners[0]), strict=True)
+    ]
+    together = np.concatenate(places)
+    return together[:, 0], together[:, 1]
