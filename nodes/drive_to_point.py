@@ -8,6 +8,8 @@ old, when the robot stands though it should drive, and when it drives and does n
 goal takes the place of the old one. A goal that is no number or too far away is refused; so is any
 while the emergency stop is held.
 
+/goal_pose tells where it drives to, latched; a pose without a frame says that it drives nowhere.
+
 With `simulate: auto` a simulated base tells /odom and /tf if nobody else does.
 """
 
@@ -26,6 +28,7 @@ from rclpy.duration import Duration
 from nodes import _drive_to_point_words as words
 from nodes._drive import to_message
 from nodes._drive_goal import DriveGoal
+from nodes._drive_goal_pose import GoalPose
 from nodes._emergency import EmergencyStop
 from nodes._life import run
 from nodes._node import LessonNode, change_period
@@ -111,6 +114,7 @@ class DriveToPointNode(LessonNode):
         self._waiting: dict[bytes, Future] = {}
         """Results to come, of goals whose clients have not been told yet."""
         self._publisher = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
+        self._goal_pose = GoalPose(self)
         self._emergency = EmergencyStop(self, self._emergency_changed)
         self._odometry = OdometryListener(self)
         self._base = SimulatedBase(
@@ -194,6 +198,7 @@ class DriveToPointNode(LessonNode):
         approach = Approach(Point(wanted.x, wanted.y), tolerance_m, chassis)
         self._goal = DriveGoal(handle, approach, self.number("patience_s"))
         self._waiting[bytes(handle.goal_id.uuid)] = self._goal.over
+        self._goal_pose.tell(approach.goal)
         self.say.info(words.GOAL, x=wanted.x, y=wanted.y, tolerance=tolerance_m)
         handle.execute()
         change_period(self._timer, 1.0 / self.number("rate"))
@@ -237,6 +242,7 @@ class DriveToPointNode(LessonNode):
             return
         self._timer.cancel()
         self._ask_for(STOP)
+        self._goal_pose.forget()
         pose = self._odometry.pose
         values = {
             "distance": goal.distance_m(pose),
