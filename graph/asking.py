@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
     from graph.data import CallResult, Value
+    from graph.held import Holding
     from graph.station import Station
 
 
@@ -76,6 +77,40 @@ class Asking:
     def stop_publishing(self, number: int) -> None:
         """Publish that one no more; updates do not tell of it any longer."""
         self._order(Do(lambda station: station.publications.stop(number)))
+
+    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
+        """Make a publisher for what may be held, and publish nothing.
+
+        The future raises PublishError, UnknownTypeError or ObserverError.
+        """
+
+        def prepare(station: Station, future: Future[None]) -> None:
+            station.held.prepare(topic, type_name, station.ends(topic))
+            future.set_result(None)
+
+        order = Ask[None](prepare)
+        self._order(order)
+        return order.future
+
+    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
+        """Publish a message again and again until `word.until_s`, unless asked again before.
+
+        Then `word.rest` is published, and nothing more. The future tells how many subscribers are
+        matched now; it raises PublishError, UnknownTypeError, FieldError or ObserverError.
+        """
+
+        def hold(station: Station, future: Future[int]) -> None:
+            if not station.held.knows(topic):
+                station.held.prepare(topic, type_name, station.ends(topic))
+            future.set_result(station.held.hold(topic, word))
+
+        order = Ask[int](hold)
+        self._order(order)
+        return order.future
+
+    def let_go(self, topic: str) -> None:
+        """Publish the message of rest of what is held, at once."""
+        self._order(Do(lambda station: station.held.let_go(topic)))
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
         """Send a goal; the future tells its number, and updates how it goes.

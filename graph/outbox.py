@@ -98,6 +98,10 @@ class Outbox:
         self._born_s = time.monotonic()
         self._lines: dict[tuple[str, str, bool], _Line] = {}
 
+    def knows_latched(self, topic: str, type_name: str) -> bool:
+        """Whether there is a latched publisher already."""
+        return (topic, type_name, True) in self._lines
+
     def prepare(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> None:
         """Make the publisher now, so that the first message need not wait for it.
 
@@ -179,7 +183,9 @@ def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> Non
         )
 
 
-def open_publisher(node: Node, topic: str, cls: type[Any], qos: Qos) -> Publisher:
+def open_publisher(
+    node: Node, topic: str, cls: type[Any], qos: Qos, depth: int = DEPTH
+) -> Publisher:
     """Make a publisher. Raises PublishError for a name that is none."""
     from rclpy.event_handler import PublisherEventCallbacks
 
@@ -187,7 +193,7 @@ def open_publisher(node: Node, topic: str, cls: type[Any], qos: Qos) -> Publishe
         return node.create_publisher(
             cls,
             topic,
-            profile(qos, 1 if qos.durability == TRANSIENT_LOCAL else DEPTH),
+            profile(qos, 1 if qos.durability == TRANSIENT_LOCAL else depth),
             event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
         )
     except Exception as error:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from graph.data import Value
+    from graph.held import Holding
 
 T = TypeVar("T")
 
@@ -43,6 +44,19 @@ class Refusals:
 
     def stop_publishing(self, number: int) -> None:
         """Do nothing: nothing is published."""
+
+    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
+        """Fail."""
+        del topic, type_name
+        return _failed()
+
+    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
+        """Fail."""
+        del topic, type_name, word
+        return _failed()
+
+    def let_go(self, topic: str) -> None:
+        """Do nothing: nothing is held."""
 
     def call(
         self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from graph.calls import Calls
 from graph.data import GraphUpdate
 from graph.goals import Goals
+from graph.held import Held
 from graph.interest import Interest
 from graph.outbox import Outbox
 from graph.parameters import Parameters
@@ -35,6 +36,7 @@ class Station:
         self.outbox = Outbox(ros.node)
         self.goals = Goals(ros.node)
         self.publications = Publications(ros.node)
+        self.held = Held(ros.node)
         self.parameters = Parameters(self.calls, self._known_node, self._known_service)
         self._ros = ros
         self._taps = Taps(ros.node)
@@ -80,8 +82,8 @@ class Station:
 
         None if nothing needs it before the next look.
         """
-        # A message that is due goes out before all else.
-        due_s = self.publications.step()
+        # What is held may have to rest, before all else; then what is due.
+        due_s = _sooner(self.held.step(), self.publications.step())
         calling = self.calls.step()
         # What has just been answered leads to the next question.
         talking = self.parameters.step()
@@ -89,12 +91,12 @@ class Station:
         sending = self.outbox.step()
         if not (calling or talking or pursuing or sending):
             return due_s
-        soon_s = time.monotonic() + PENDING_S
-        return soon_s if due_s is None else min(due_s, soon_s)
+        return _sooner(due_s, time.monotonic() + PENDING_S)
 
     def close(self, error: Exception) -> None:
         """Have goals cancelled, let everything else that is under way fail, and leave the graph."""
         try:
+            self.held.close()
             self.publications.close()
             self.goals.close()
         finally:
@@ -122,6 +124,7 @@ class Station:
         if seen != self._scan:
             self._scan = seen
             self.publications.tune(seen.topics)
+            self.held.tune(seen.topics)
 
     def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
         rows = self._taps.rows()
@@ -134,3 +137,8 @@ class Station:
         return GraphUpdate(
             time.time(), rows, samples, seen.nodes, seen.services, seen.actions, *doing
         )
+
+
+def _sooner(one_s: float | None, other_s: float | None) -> float | None:
+    times_s = [each_s for each_s in (one_s, other_s) if each_s is not None]
+    return min(times_s, default=None)

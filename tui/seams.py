@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
+    from graph.held import Holding
     from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
     from tui.orders import Lesson, Order
@@ -101,6 +102,15 @@ class GraphLink(Protocol):
 
     def stop_publishing(self, number: int) -> None:
         """Publish that one no more; updates do not tell of it any longer."""
+
+    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
+        """Make a publisher for what may be held, and publish nothing."""
+
+    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
+        """Publish again and again until `word.until_s`, then its rest, then nothing."""
+
+    def let_go(self, topic: str) -> None:
+        """Publish the rest of what is held, at once."""
 
     def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
         """Read all parameters of a node with their descriptors; the future never raises."""

@@ -17,6 +17,7 @@ from graph.data import (
     Publication,
     SetResult,
 )
+from graph.held import Holding
 from tests.tui.recorded_lesson import NOW_S, lesson_update
 
 PARAMETERS: tuple[ParameterRow, ...] = (
@@ -54,6 +55,10 @@ class RecordedGraph:
     repeated: list[tuple[str, str, Mapping[str, Any], float]] = field(default_factory=list)
     """(topic, type, value, hz) that is published again and again."""
     stopped_publications: list[int] = field(default_factory=list)
+    held: list[tuple[str, str, Holding]] = field(default_factory=list)
+    """(topic, type, word) that is published while it is held."""
+    let_go_of: list[str] = field(default_factory=list)
+    """Topics whose rest was asked for."""
     node_parameters: dict[str, ParametersResult] = field(default_factory=dict)
     """Node to what it says of its parameters; others have `PARAMETERS`."""
     refusals: dict[str, str] = field(default_factory=dict)
@@ -140,6 +145,19 @@ class RecordedGraph:
                 now, publications=tuple(one for one in now.publications if one.number != number)
             )
         )
+
+    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
+        self.prepared.append((topic, type_name, False))
+        future: Future[None] = Future()
+        future.set_result(None)
+        return future
+
+    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
+        self.held.append((topic, type_name, word))
+        return self._numbered(1)
+
+    def let_go(self, topic: str) -> None:
+        self.let_go_of.append(topic)
 
     def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
         del timeout_s
