@@ -65,13 +65,11 @@ class Publish:
     def carry_out(self, station: Station) -> None:
         """Do it, unless it was cancelled meanwhile."""
         if self.future.set_running_or_notify_cancel():
+            # An emergency stop must not wait for a look at the graph, which takes its time.
+            ready = self.latched and station.outbox.knows_latched(self.topic, self.type_name)
+            ends = None if ready else station.ends(self.topic)
             station.outbox.publish(
-                self.topic,
-                self.type_name,
-                self.value,
-                station.ends(self.topic),
-                self.future,
-                latched=self.latched,
+                self.topic, self.type_name, self.value, ends, self.future, latched=self.latched
             )
 
     def fail(self, error: Exception) -> None:
