@@ -30,6 +30,7 @@ from launcher.errors import (
     UnknownNodeError,
 )
 from launcher.rundir import log_dir, run_dir
+from launcher.serial_ports import serial_ports
 from launcher.supervisor_plan import plan_of
 from launcher.supervisor_record import read_records
 from launcher.words import say
@@ -125,7 +126,9 @@ def _read(
 
     if isinstance(profile, Profile):
         return profile
-    return load_profile(profile, hardware=hardware, overrides=overrides, domain=domain)
+    return load_profile(
+        profile, hardware=hardware, overrides=overrides, domain=domain, ports=serial_ports
+    )
 
 
 async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.domain import LAST_SAFE_DOMAIN, choose_domain
-from launcher.errors import ProfileError, ProfileProblem
+from launcher.errors import DomainError, ProfileError, ProfileProblem
 from launcher.profile_check import applies, check_module, check_needs, check_node
 from launcher.profile_devices import with_devices
 from launcher.profile_extends import read_profile
@@ -20,15 +20,17 @@ from launcher.profile_params import flatten
 from launcher.profile_sets import read_sets
 from launcher.profile_spec import NodeSpec, Profile, Ready
 from launcher.profile_text import shown
-from launcher.profile_tree import Branch, Place, Problems, find, place_of
+from launcher.profile_tree import Branch, Place, Problems, Scalar, find, place_of
 from launcher.profile_validate import validate
 from launcher.profile_when import HARDWARE
+from launcher.rundir import run_path
 from launcher.words import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from launcher.profile_model import NodeDocument, ProfileDocument
+    from launcher.serial_ports import SerialPort
 
 __all__ = ["NodeSpec", "Profile", "ProfileError", "ProfileProblem", "Ready", "load_profile"]
 
@@ -40,6 +42,7 @@ def load_profile(
     overrides: Iterable[str] = (),
     domain: int | None = None,
     environ: Mapping[str, str] | None = None,
+    ports: Callable[[], Sequence[SerialPort]] | None = None,
 ) -> Profile:
     """Read a profile and everything that it extends.
 
@@ -49,6 +52,8 @@ def load_profile(
         overrides: `node.param=value`, the value read as YAML
         domain: the ROS domain, over what the profile and the environment say
         environ: where DECK_* and ROS_DOMAIN_ID are read; by default the process's own
+        ports: tells the serial ports that are there, for devices with `port: auto`; who starts
+            a profile gives `serial_ports`, who only reads it none
 
     Raises:
         ProfileError: with all that is wrong.
@@ -63,7 +68,8 @@ def load_profile(
     tree = read_profile(path, problems)
     if tree is None or problems.found:
         raise ProfileError(problems.in_order())
-    tree = with_devices(tree, env, problems)
+    places = {"run_dir": str(run_path(env).absolute()), "domain": _early_domain(tree, domain, env)}
+    tree = with_devices(tree, hardware, places, env, problems, ports)
     document, valid = validate(tree, problems)
     reader = _Reader(path.absolute(), tree, problems)
     nodes = reader.nodes(valid, hardware)
@@ -72,6 +78,16 @@ def load_profile(
         raise ProfileError(problems.in_order())
     chosen = choose_domain(domain, document.domain, env)
     return reader.profile(document, nodes, hardware, chosen)
+
+
+def _early_domain(tree: Branch, asked: int | None, environ: Mapping[str, str]) -> str:
+    """Return the domain for names in `${domain}`, before anything is validated."""
+    written = find(tree, ("domain",))
+    value = written.value if isinstance(written, Scalar) else None
+    try:
+        return str(choose_domain(asked, value if type(value) is int else None, environ))
+    except DomainError:
+        return ""  # Told once all else is known to be right.
 
 
 @dataclass

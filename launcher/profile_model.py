@@ -13,6 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSche
 from pydantic_core import PydanticCustomError
 
 from launcher.domain import LAST_DOMAIN
+from launcher.serial_choice import KINDS
 from launcher.words import Words, say
 
 Restart = Literal["never", "on-failure", "always"]
@@ -126,6 +127,28 @@ Discovery = Annotated[
 ]
 
 
+_DEVICE: dict[str, Any] = {
+    "type": "object",
+    "properties": {
+        "kind": {
+            "enum": list(KINDS),
+            "description": "What it is, for `port: auto` and for `deck check --preflight`.",
+        },
+        "port": {
+            "type": "string",
+            "description": "A path, best one of /dev/serial/by-id; auto: found by its USB ids.",
+        },
+        "usb": {
+            "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
+            "description": "USB ids for `port: auto`, vendor:product: 2e8a:0005.",
+        },
+        "baud": {"type": "integer", "description": "Speed of the port."},
+        "mock": {"type": "object", "description": "What replaces settings on mock hardware."},
+        "real": {"type": "object", "description": "What replaces settings on real hardware."},
+    },
+}
+
+
 class Document(BaseModel):
     """Common to all parts of a profile: nothing unknown, nothing converted behind one's back."""
 
@@ -208,7 +231,7 @@ class ProfileDocument(Document):
     nodes: dict[str, NodeDocument | None] = Field(
         {}, description="Nodes by name; null takes out one of the profile that is extended."
     )
-    devices: dict[str, dict[str, Any]] = Field(
+    devices: dict[str, Annotated[dict[str, Any], WithJsonSchema(_DEVICE)]] = Field(
         {},
         description="Settings of devices, used as ${devices.pico.port} and overridden by"
         " DECK_PICO_PORT.",

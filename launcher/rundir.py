@@ -9,9 +9,13 @@ import contextlib
 import os
 import stat
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from launcher.errors import RunDirError
 from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 
 def run_dir() -> Path:
@@ -22,7 +26,7 @@ def run_dir() -> Path:
     Raises:
         RunDirError: if it is a link, a file, or somebody else's.
     """
-    return _own_folder(_run_path())
+    return _own_folder(run_path(os.environ))
 
 
 def log_dir() -> Path:
@@ -50,11 +54,12 @@ def log_dir() -> Path:
     return path
 
 
-def _run_path() -> Path:
-    chosen = os.environ.get("DECK_RUN_DIR")
+def run_path(environ: Mapping[str, str]) -> Path:
+    """Return where the run directory is by these variables, whether it is there or not."""
+    chosen = environ.get("DECK_RUN_DIR")
     if chosen:
         return Path(chosen)
-    runtime = Path(os.environ.get("XDG_RUNTIME_DIR") or "/nonexistent")
+    runtime = Path(environ.get("XDG_RUNTIME_DIR") or "/nonexistent")
     if runtime.is_dir() and runtime.stat().st_uid == os.getuid():
         return runtime / "deck"
     return Path(f"/tmp/deck-{os.getuid()}")

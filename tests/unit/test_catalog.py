@@ -70,8 +70,7 @@ def test_a_beginning_that_fits_several_is_told() -> None:
 def test_a_broken_profile_is_listed_with_its_error(tmp_path: Path) -> None:
     (tmp_path / "profiles").mkdir()
     written(tmp_path / "profiles", "nodes: {a: {}}", "broken.yaml")
-    broken = list_profiles()[-1]
-    assert broken.name == "broken"
+    broken = next(entry for entry in list_profiles() if entry.name == "broken")
     assert broken.error.startswith("profiles/broken.yaml:1:9: nodes.a: needs `run` or `exec`")
 
 

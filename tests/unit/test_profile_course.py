@@ -26,7 +26,7 @@ def test_every_lesson_is_there() -> None:
             "07-vision",
             "08-audio",
         ),
-        *("09-brain", "10-llm-json"),
+        *("09-brain", "10-llm-json", "robot"),
     ]
 
 
@@ -63,6 +63,25 @@ def test_the_brain_lesson_has_its_eight_nodes() -> None:
     assert profile.nodes["safety_stop"].params["gate"] is True
     assert profile.nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
     assert not any(node.needs for node in profile.nodes.values()), "all start at once"
+
+
+def test_the_robot_has_the_same_drivers_on_mock_and_on_real_hardware() -> None:
+    mock = load_profile(PROFILES / "robot.yaml").nodes
+    real = load_profile(PROFILES / "robot.yaml", hardware="real").nodes
+    for name in ("chassis", "sonar_front", "sonar_rear", "head_controller", "safety_stop"):
+        assert mock[name].run == real[name].run
+        assert {**mock[name].params, "port": ""} == {**real[name].params, "port": ""}
+    assert not [name for name, node in real.items() if "mock" in str(node.run)]
+    assert set(real) - set(mock) == set()
+
+
+def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
+    nodes = load_profile(PROFILES / "robot.yaml").nodes
+    assert nodes["safety_stop"].params["gate"] is True
+    assert nodes["safety_stop"].params["rear_topic"] == "/sensor/sonar_rear"
+    assert nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
+    assert nodes["drive_to_point"].remap == {"/drive": "/drive_action"}
+    assert nodes["drive_to_point"].params["simulate"] == "never"
 
 
 def test_rviz_is_optional() -> None:

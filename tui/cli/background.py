@@ -52,12 +52,14 @@ def down_command(options: Namespace) -> int:
 async def _up(options: Namespace) -> int:
     # Validation takes pydantic along, which the other commands do without.
     from launcher.profile import load_profile
+    from launcher.serial_ports import serial_ports
 
     profile = load_profile(
         find_profile(options.profile),
         hardware=options.hardware,
         overrides=options.overrides,
         domain=options.domain,
+        ports=serial_ports,
     )
     link = await client.launch(
         profile, foreground=False, node_lang=language(), supervisor=options.supervisor

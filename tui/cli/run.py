@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from launcher.catalog import find_profile
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.profile import load_profile
+from launcher.serial_ports import serial_ports
 from launcher.status import NodeState
 from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
@@ -39,6 +40,7 @@ def run_command(options: Namespace) -> int:
         hardware=options.hardware,
         overrides=options.overrides,
         domain=options.domain,
+        ports=serial_ports,
     )
     return asyncio.run(_main(profile, options))
 

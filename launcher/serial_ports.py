@@ -1,0 +1,83 @@
+"""The serial ports of this machine: what is plugged in, and under which name it stays findable."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from launcher.words import say
+
+LASTING = ("/dev/serial/by-id", "/dev/serial/by-path")
+"""Folders of names that outlive a plugging, the better one first: by-id goes with the device,
+by-path with the socket that it is plugged into."""
+PICO = "2e8a:0005"
+BRIDGES = {
+    "10c4:ea60": "CP2102",
+    "1a86:7523": "CH340",
+    "0403:6001": "FTDI",
+}
+"""Chips that many devices have between USB and their serial line: the ids say no more than that."""
+
+
+@dataclass(frozen=True)
+class SerialPort:
+    """One port."""
+
+    device: str
+    """What the kernel calls it today: `/dev/ttyACM0`."""
+    name: str = ""
+    """The name that lasts, `device` where there is none."""
+    usb: str = ""
+    """Vendor and product as `2e8a:0005`, empty if it is no USB device."""
+    description: str = ""
+
+    @property
+    def path(self) -> str:
+        """The name to open it by."""
+        return self.name or self.device
+
+    @property
+    def kind(self) -> str:
+        """What it looks like by its USB ids, for people; empty if they tell nothing."""
+        if self.usb == PICO:
+            return say("Pico with MicroPython")
+        if self.usb in BRIDGES:
+            return say("{chip} bridge: a sonar, or the servos", chip=BRIDGES[self.usb])
+        return ""
+
+    def __str__(self) -> str:
+        """Name it with all that helps to tell it from another."""
+        about = ", ".join(part for part in (self.usb, self.description) if part)
+        return f"{self.path} ({about})" if about else self.path
+
+
+def serial_ports() -> list[SerialPort]:
+    """Return every port that something is behind, in the order of the kernel's names.
+
+    Raises:
+        ImportError: if pyserial is not installed.
+    """
+    from serial.tools import list_ports
+
+    names = lasting_names()
+    return [
+        SerialPort(
+            port.device,
+            names.get(os.path.realpath(port.device), ""),
+            "" if port.vid is None else f"{port.vid:04x}:{port.pid or 0:04x}",
+            "" if port.description in (None, "n/a") else str(port.description),
+        )
+        for port in sorted(list_ports.comports(), key=lambda port: str(port.device))
+        # Ports of the motherboard are told whether or not there is a socket for them.
+        if port.hwid != "n/a"
+    ]
+
+
+def lasting_names(folders: tuple[str, ...] = LASTING) -> dict[str, str]:
+    """Return {device: lasting name}; two equal adapters share one by-id name, which has but one."""
+    names: dict[str, str] = {}
+    for folder in folders:
+        for link in sorted(Path(folder).glob("*")):
+            names.setdefault(os.path.realpath(link), str(link))
+    return names
