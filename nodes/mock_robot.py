@@ -4,7 +4,8 @@ In `folder` appear pico, tof_front, tof_rear and lsc16: pseudo-terminals that sp
 the real devices. The drivers (chassis, tof_sonar, head_controller) take them for real ones. Behind
 them is a simulated room with walls and boxes. Trouble is made by parameters, at any time:
 `pico:=unplugged` pulls a cable, `pico:=fine` puts it back. /map is the room, to be drawn, and
-/mock/pose tells where the robot really is, which a real one could not.
+/mock/pose tells where the robot really is, /mock/motors what its wheels really do, which a real one
+could not.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from nav_msgs.msg import OccupancyGrid
 from nodes._device_fault import FAULTS, FINE, FaultyLine
 from nodes._life import run
 from nodes._map_message import occupancy_grid
+from nodes._mock_motors import MockMotors
 from nodes._node import LessonNode, UsageError
 from nodes._parameters import Choice, Number, Setting, Text, Whole
 from nodes._pty import PseudoSerial
@@ -108,6 +110,7 @@ class MockRobot(LessonNode):
         self._lines = self._make_lines(folder)
         self._told: dict[str, str] = dict.fromkeys(DEVICES, FINE)
         self._collisions = 0
+        self._motors = MockMotors(self, self._world)
         self._publisher = self.create_publisher(PoseStamped, POSE, DEPTH)
         self._map_publisher = self.create_publisher(OccupancyGrid, MAP, LATCHED)
         now = self.get_clock().now().to_msg()
@@ -168,6 +171,7 @@ class MockRobot(LessonNode):
     def _step(self) -> None:
         self._lines["pico"].write(self._pico.step(), self._now_s)
         self._world.step()
+        self._motors.step()
         self._servos.advance(STEP_S)
         for device, metres in zip(
             ("tof_front", "tof_rear"), self._world.read_sonars(), strict=True

@@ -9,6 +9,7 @@ import pytest
 import serial
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
+from sensor_msgs.msg import JointState
 
 from robot.wire_lsc16 import Battery, BatteryRequest, ServoDecoder
 from robot.wire_lsc16 import encode as encode_servo
@@ -52,6 +53,7 @@ def open_port(folder: Path, name: str, baud: int = 115200) -> serial.Serial:
 @pytest.mark.usefixtures("robot")
 def test_the_pico_answers_drives_and_stops_by_itself(folder: Path, peer: Peer) -> None:
     poses = peer.hear("/mock/pose", PoseStamped)
+    motors = peer.hear("/mock/motors", JointState)
     decoder, told = PicoDecoder(), []
     with open_port(folder, "pico") as port:
 
@@ -66,11 +68,15 @@ def test_the_pico_answers_drives_and_stops_by_itself(folder: Path, peer: Peer) -
         assert any(isinstance(message, Welcome) for message in told)
         wait_until(lambda: (now := hear(next(sequence), 5)) and now.left_rad_s > 4.5, "turning")
         wait_until(lambda: poses and poses[-1].pose.position.x > 0.01, "a robot that moves")
+        wait_until(lambda: motors and motors[-1].velocity[0] > 4.5, "motors that turn")
+        assert motors[-1].effort[1] == 5.0
+        assert motors[-1].position[0] == pytest.approx(poses[-1].pose.position.x / 0.0325, abs=1.0)
     decoder = PicoDecoder()
     wait_until(
         lambda: len(poses) > 3 and poses[-1].pose.position.x == poses[-3].pose.position.x,
         "standing after the silence",
     )
+    wait_until(lambda: not any(motors[-1].velocity) and not any(motors[-1].effort), "motors off")
     assert decoder.errors == 0
 
 
