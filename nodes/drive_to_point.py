@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 import sys
+import time
 from typing import TYPE_CHECKING
 
 from ackermann_msgs.msg import AckermannDriveStamped
@@ -54,6 +55,8 @@ _NO_ODOMETRY_S = WAIT_S + 1.0
 """How long a goal waits for a first pose."""
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach everybody."""
+_LAST_WORD_S = 0.2
+"""How long the result may take on its way to those who asked for it."""
 
 
 class DriveToPointNode(LessonNode):
@@ -151,8 +154,9 @@ class DriveToPointNode(LessonNode):
         self._finish(words.ENDING)
         self._publisher.wait_for_all_acked(_LAST_STOP)
         if self.executor is not None:
-            # The result is sent by a task of its own, once it has been asked to.
-            for _turn in range(5):
+            # The result is sent by a task of its own, behind all that is waiting already.
+            until_s = time.monotonic() + _LAST_WORD_S
+            while time.monotonic() < until_s:
                 self.executor.spin_once(timeout_sec=0.01)
 
     def destroy_node(self) -> None:
