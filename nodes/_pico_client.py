@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from nodes._serial_link import SerialLink
 from nodes._speech import Phrase
+from robot.frames_pico import PicoReader
 from robot.wire_pico import (
     PROTOCOL,
     SEQUENCES,
@@ -54,7 +55,7 @@ class PicoClient:
 
     def __init__(self, node: LessonNode, baud: int, heard: Callable[[Telemetry], None]) -> None:
         self._say, self._heard = node.say, heard
-        self.link = SerialLink(node, baud, self._hear, self._greet, self._forget)
+        self.link = SerialLink(node, baud, self._hear, self._greet, self._forget, PicoReader)
         self._lock = threading.Lock()
         self._decoder = PicoDecoder()
         self._sequence = 0
@@ -62,6 +63,8 @@ class PicoClient:
         self._heard_s = self._opened_s = 0.0
         self.telemetry: Telemetry | None = None
         """The newest one, None while there is no connection."""
+        self.frames = 0
+        """Lines of use that came."""
         self.lost = 0
         """Lines of the Pico that never came, by their numbers."""
 
@@ -125,6 +128,7 @@ class PicoClient:
 
     def _hear(self, data: bytes) -> None:
         for message in self._decoder.feed(data):
+            self.frames += 1
             if isinstance(message, Welcome):
                 self._welcome(message)
             elif isinstance(message, Telemetry):

@@ -1,7 +1,7 @@
 """A serial port that comes and goes: a thread of its own reads it, and opens it again for ever.
 
 Only one program at a time gets a port (an advisory lock, which pyserial and we respect). The
-callbacks run on the reader's thread.
+callbacks run on the reader's thread. What goes over it is told on `~/frames` to whoever listens.
 """
 
 from __future__ import annotations
@@ -13,17 +13,21 @@ import termios
 import threading
 import time
 from dataclasses import dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 import serial
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
+from nodes._serial_frames import SerialFrames
 from nodes._speech import Phrase
+from robot.frames import RawReader
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nodes._node import LessonNode
+    from robot.frames import FrameReader
 
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
 """What pyserial raises when a cable is pulled; TypeError is how it sees its port closed."""
@@ -54,6 +58,7 @@ _PROBLEMS = {
 _PROBLEMS[errno.EBUSY] = _PROBLEMS[errno.EAGAIN]
 _PROBLEMS[errno.EPERM] = _PROBLEMS[errno.EACCES]
 _OTHER = Phrase("{problem}", "{problem}")
+_NOT_YET = Phrase("not yet connected to {port}", "ещё не подключено: {port}")
 _CANNOT = Phrase("Cannot open {port}: {problem}", "Не открыть {port}: {problem}")
 _SINCE = Phrase("connected to {port} for {seconds:.0f} s", "подключено: {port}, {seconds:.0f} с")
 
@@ -77,18 +82,23 @@ class SerialLink:
         heard: Callable[[bytes], None],
         opened: Callable[[], None],
         lost: Callable[[], None],
+        frames: Callable[[str], FrameReader] = RawReader,
     ) -> None:
-        """The port is the node's parameter `port`."""
+        """The port is the node's parameter `port`.
+
+        `frames` makes what reads the frames of this device, for people, and speaks a language.
+        """
         self._say, self.port, self.baud = node.say, node.text("port"), baud
         self._heard, self._opened, self._lost = heard, opened, lost
         self.traffic = Traffic()
+        self._frames = SerialFrames(node, frames)
         self._serial: serial.Serial | None = None
-        self._since_s = time.monotonic()
+        self._since_s, self._since = time.monotonic(), ""
         self._problem = ""
         self._writes = threading.Lock()
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._live, name="serial", daemon=True)
-        self._told = (time.monotonic(), 0, 0, 0)
+        self._told = (time.monotonic(), (0, 0, 0, 0))
 
     @property
     def connected(self) -> bool:
@@ -123,29 +133,29 @@ class SerialLink:
                     self._serial.cancel_read()
                 return False
             self.traffic.octets_out += len(data)
+            self._frames.note("out", data)
             return True
 
-    def status(self, name: str, errors: int) -> DiagnosticStatus:
-        """For /diagnostics: to what it is connected, since when, bytes and errors a second."""
-        now_s = time.monotonic()
-        counts = self.traffic.octets_in, self.traffic.octets_out, errors
-        passed_s = max(1e-3, now_s - self._told[0])
-        rates = [(new - old) / passed_s for new, old in zip(counts, self._told[1:], strict=True)]
-        self._told = (now_s, *counts)
-        seconds = now_s - self._since_s
+    def status(self, name: str, errors: int, frames: int = 0) -> DiagnosticStatus:
+        """For /diagnostics: to what it is connected, since when, bytes and errors a second.
+
+        `errors` and `frames` that came in are counted by the caller, since the start.
+        """
+        seconds = time.monotonic() - self._since_s
         connected = self.connected
-        if connected:
-            message = self._say.text(_SINCE, port=self.port, seconds=seconds)
-        else:
-            message = self._say.text(_CANNOT, port=self.port, problem=self._problem)
+        message = self._told_state(connected, seconds)
+        rates = self._rates(errors, frames)
         values = {
             "port": self.port,
             "connected": str(connected).lower(),
+            "connected_since": self._since,
             "seconds": f"{seconds:.1f}",
             "connections": str(self.traffic.connections),
+            "reconnects": str(max(0, self.traffic.connections - 1)),
             "bytes_in_per_s": f"{rates[0]:.0f}",
             "bytes_out_per_s": f"{rates[1]:.0f}",
-            "errors_per_s": f"{rates[2]:.1f}",
+            "frames_in_per_s": f"{rates[2]:.1f}",
+            "errors_per_s": f"{rates[3]:.1f}",
             "errors": str(errors),
         }
         return DiagnosticStatus(
@@ -155,6 +165,22 @@ class SerialLink:
             hardware_id=self.port,
             values=[KeyValue(key=key, value=value) for key, value in values.items()],
         )
+
+    def _told_state(self, connected: bool, seconds: float) -> str:
+        if connected:
+            return self._say.text(_SINCE, port=self.port, seconds=seconds)
+        phrase = _CANNOT if self._problem else _NOT_YET
+        return self._say.text(phrase, port=self.port, problem=self._problem)
+
+    def _rates(self, errors: int, frames: int) -> list[float]:
+        """Bytes in, bytes out, frames and errors a second, since this was asked before."""
+        now_s = time.monotonic()
+        counts = (self.traffic.octets_in, self.traffic.octets_out, frames, errors)
+        told_s, told = self._told
+        self._told = (now_s, counts)
+        passed_s = max(1e-3, now_s - told_s)
+        # A device that has started anew counts its errors anew.
+        return [max(0, new - old) / passed_s for new, old in zip(counts, told, strict=True)]
 
     # ---------------------------------------------------------------- the reader's thread
 
@@ -178,6 +204,7 @@ class SerialLink:
             self._say.warn(_CANNOT, every_s=_SAY_EVERY_S, port=self.port, problem=self._problem)
             return None
         self.traffic.connections += 1
+        self._since = datetime.now().astimezone().isoformat(timespec="seconds")
         self._since_s, self._serial = time.monotonic(), port
         self._say.info(_OPEN, port=self.port, baud=self.baud)
         self._opened()
@@ -191,6 +218,7 @@ class SerialLink:
                 if data:
                     data += port.read(min(port.in_waiting, _CHUNK))
                     self.traffic.octets_in += len(data)
+                    self._frames.note("in", data)
                     self._heard(data)
                 elif not _is_there(self.port):
                     raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
@@ -200,7 +228,7 @@ class SerialLink:
                 self._say.warn(_LOST, port=self.port, problem=self._problem)
         finally:
             with self._writes:
-                self._serial, self._since_s = None, time.monotonic()
+                self._serial, self._since_s, self._since = None, time.monotonic(), ""
                 with contextlib.suppress(*BAD):
                     port.close()
             self._lost()

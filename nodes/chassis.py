@@ -172,8 +172,9 @@ class Chassis(LessonNode):
             self._battery.publish(battery(telemetry, self.get_clock().now().to_msg()))
 
     def _status(self) -> DiagnosticStatus:
-        status = self._pico.link.status(self.get_name(), self._pico.errors)
-        return diagnosis(self.say, status, self._pico, self._emergency.active)
+        pico = self._pico
+        status = pico.link.status(self.get_name(), pico.errors, pico.frames)
+        return diagnosis(self.say, status, pico, self._emergency.active)
 
     # ---------------------------------------------------------------- the reader's thread
 

@@ -3,7 +3,7 @@
 Publishes metres as Float32 on `topic` and as Range on `topic`/range, by REP-117: +inf nothing in
 range, -inf too close to measure, nan no valid reading. While the port is not there or is silent it
 publishes nan ten times a second, so that nobody believes in a distance of the past. It connects
-again by itself. How it is goes to /diagnostics once a second.
+again by itself. How it is goes to /diagnostics once a second, its frames in words to `~/frames`.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import sys
 import time
+from functools import partial
 from typing import TYPE_CHECKING
 
 from sensor_msgs.msg import Range
@@ -23,6 +24,7 @@ from nodes._parameters import Choice, Number, Text, Whole
 from nodes._serial_link import SerialLink
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, SONAR_FRONT
+from robot.frames_tof import TofReader
 from robot.wire_tfluna import BAUD, Model, TofDecoder
 
 if TYPE_CHECKING:
@@ -73,7 +75,12 @@ class TofSonar(LessonNode):
         self._distances = self.create_publisher(Float32, topic, DEPTH)
         self._ranges = self.create_publisher(Range, f"{topic}/range", DEPTH)
         self._link = SerialLink(
-            self, int(self.number("baud")), self._hear, self._begin, self._publish_nothing
+            self,
+            int(self.number("baud")),
+            self._hear,
+            self._begin,
+            self._publish_nothing,
+            partial(TofReader, model=self._model),
         )
         tell_every_second(self, self._status)
         self.every(_LOOK_EVERY_S, self._look)
@@ -140,7 +147,7 @@ class TofSonar(LessonNode):
         }
 
     def _status(self) -> DiagnosticStatus:
-        status = self._link.status(self.get_name(), self._decoder.errors)
+        status = self._link.status(self.get_name(), self._decoder.errors, self._decoder.frames)
         if self._link.connected and self._silent:
             status.level = status.ERROR
             status.message = self.say.text(_SILENT, **self._who())

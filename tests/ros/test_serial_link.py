@@ -30,7 +30,12 @@ class Log:
 def link(request: pytest.FixtureRequest) -> Iterator[tuple[SerialLink, Log]]:
     log = Log()
     said: Any = Speech(log, request.param)  # type: ignore[arg-type]
-    node: Any = SimpleNamespace(say=said, text=lambda _name: "/dev/ttyACM0")
+    node: Any = SimpleNamespace(
+        say=said,
+        text=lambda _name: "/dev/ttyACM0",
+        create_publisher=lambda *_: None,
+        every=lambda *_: None,
+    )
     link = SerialLink(node, 9600, lambda _: None, lambda: None, lambda: None)
     yield link, log
     link.close()

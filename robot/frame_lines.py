@@ -1,0 +1,81 @@
+"""How drivers tell of frames on `~/frames`: lines of JSON, one a frame.
+
+`{"t": 1700000000.123, "way": "in", "kind": "frame", "hex": "5959...", "text": "distance 1.23 m"}`
+with the time in Unix seconds. A batch has at most `MOST` frames; a last line of kind `more` tells
+how many more there were.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robot.frames import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+MOST = 200
+"""Frames of one batch."""
+MOST_OCTETS = 128
+"""Bytes of one frame that are told; the text tells how many there were of noise."""
+LONGEST_TEXT = 400
+WAYS = ("in", "out")
+
+
+@dataclass(frozen=True)
+class FrameLine:
+    """One frame as it is told."""
+
+    time_s: float
+    way: str
+    """`in` from the device, or `out` to it."""
+    kind: Kind
+    octets: bytes
+    text: str
+    count: int = 0
+    """Of kind `more`: how many frames."""
+
+
+def encode(lines: Sequence[FrameLine]) -> str:
+    """The lines of a batch."""
+    return "\n".join(map(_encoded, lines))
+
+
+def _encoded(line: FrameLine) -> str:
+    fields: dict[str, object] = {
+        "t": round(line.time_s, 6),
+        "way": line.way,
+        "kind": line.kind.value,
+        "hex": line.octets[:MOST_OCTETS].hex(),
+        "text": line.text,
+    }
+    if line.kind is Kind.MORE:
+        fields["count"] = line.count
+    return json.dumps(fields, ensure_ascii=False, separators=(",", ":"))
+
+
+def decode(text: str) -> tuple[list[FrameLine], int]:
+    """The frames of a batch, whoever sent it, and how many of its lines made no sense.
+
+    Lines beyond twice of `MOST` are not looked at, but counted among the latter.
+    """
+    lines = text.split("\n") if text else []
+    read = [_decoded(line) for line in lines[: 2 * MOST]]
+    found = [line for line in read if line is not None]
+    return found, len(lines) - len(found)
+
+
+def _decoded(line: str) -> FrameLine | None:
+    try:
+        fields = json.loads(line[:10_000])
+        time_s, way, text = float(fields["t"]), fields["way"], fields["text"]
+        octets = bytes.fromhex(fields.get("hex", ""))
+        kind, count = Kind(fields.get("kind", "frame")), int(fields.get("count", 0))
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
+        return None
+    if way not in WAYS or not isinstance(text, str) or not math.isfinite(time_s):
+        return None
+    return FrameLine(time_s, way, kind, octets[:MOST_OCTETS], text[:LONGEST_TEXT], max(0, count))

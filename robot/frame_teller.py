@@ -1,0 +1,93 @@
+"""From the bytes of a serial port to batches of frames in words, bounded whatever comes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from robot.frame_lines import MOST, WAYS, FrameLine
+from robot.frames import Kind, Words, noise
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from robot.frames import FrameReader, Piece
+
+GIVE_UP_S = 0.3
+"""The rest of a frame that has not come after this long does not come any more."""
+_PHRASES = {
+    "frames": ("{count} more", "ещё {count}"),
+    "bytes": ("{count} more bytes", "ещё байт: {count}"),
+}
+
+
+class Chunk(NamedTuple):
+    """Bytes as they were read or written."""
+
+    time_s: float
+    way: str
+    octets: bytes
+
+
+class FrameTeller:
+    """Keeps a reader for each direction."""
+
+    def __init__(self, make: Callable[[str], FrameReader], language: str) -> None:
+        """`make` makes a reader that speaks a language (en or ru)."""
+        self._make, self._language = make, language
+        self._words = Words(language, _PHRASES)
+        self.restart()
+
+    def restart(self) -> None:
+        """Begin anew, somewhere in the stream."""
+        self._readers = {way: self._make(self._language) for way in WAYS}
+        self._heard_s = dict.fromkeys(WAYS, 0.0)
+        self._fresh = set(WAYS)
+
+    def tell(self, chunks: Iterable[Chunk], now_s: float, missed: int = 0) -> list[FrameLine]:
+        """The frames that these bytes complete, at most `MOST`, and how many more there were.
+
+        `missed` bytes have come after them that were not kept. Times are Unix seconds.
+        """
+        lines: list[FrameLine] = []
+        more: Counter[str] = Counter()
+        for chunk in chunks:
+            self._heard_s[chunk.way] = chunk.time_s
+            self._add(lines, more, chunk, self._read(chunk.way, chunk.octets))
+        for way, reader in self._readers.items():
+            if now_s - self._heard_s[way] > GIVE_UP_S:
+                self._add(lines, more, Chunk(now_s, way, b""), reader.flush())
+        lines += [self._mark(now_s, way, "frames", count) for way, count in more.items()]
+        if missed:
+            lines.append(self._mark(now_s, "in", "bytes", missed))
+            self.restart()
+        return lines
+
+    def _read(self, way: str, octets: bytes) -> list[Piece]:
+        pieces = self._readers[way].feed(octets)
+        if pieces and way in self._fresh:
+            self._fresh.discard(way)
+            if pieces[0].kind is not Kind.FRAME:
+                # Most likely the end of a frame whose beginning nobody was there to see.
+                return pieces[1:]
+        return pieces
+
+    def _add(
+        self, lines: list[FrameLine], more: Counter[str], chunk: Chunk, pieces: list[Piece]
+    ) -> None:
+        for piece in pieces:
+            last = lines[-1] if lines else None
+            if last and piece.kind is Kind.NOISE is last.kind and last.way == chunk.way:
+                octets = last.octets + piece.octets
+                lines[-1] = replace(last, octets=octets, text=noise(octets, self._language).text)
+            elif len(lines) >= MOST:
+                more[chunk.way] += 1
+            else:
+                lines.append(
+                    FrameLine(chunk.time_s, chunk.way, piece.kind, piece.octets, piece.text)
+                )
+
+    def _mark(self, time_s: float, way: str, key: str, count: int) -> FrameLine:
+        said = self._words(key, count=count)
+        return FrameLine(time_s, way, Kind.MORE, b"", said, count)

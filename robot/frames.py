@@ -1,0 +1,149 @@
+"""What goes over a serial wire, cut into frames and said in words, for a person who looks on.
+
+A reader gets the bytes of one direction in any cuts. What is no frame is shown all the same: a
+frame whose check failed as such, loose bytes as noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+
+class Kind(str, Enum):
+    """What a piece of a stream is."""
+
+    FRAME = "frame"
+    BAD = "bad"
+    """It looks like a frame, but its check or its content is wrong."""
+    NOISE = "noise"
+    """Bytes that belong to no frame."""
+    MORE = "more"
+    """A mark: frames that are counted, not shown."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Some bytes of a stream, and what they say in one line."""
+
+    octets: bytes
+    text: str
+    kind: Kind = Kind.FRAME
+
+
+class FrameReader(Protocol):
+    """Cuts one direction of a wire into pieces; keeps less than one frame."""
+
+    def feed(self, data: bytes) -> list[Piece]:
+        """The pieces that these bytes complete, oldest first."""
+
+    def flush(self) -> list[Piece]:
+        """What is left of a frame that nobody goes on with."""
+
+
+class Words:
+    """Phrases of one language."""
+
+    def __init__(self, language: str, phrases: Mapping[str, tuple[str, str]]) -> None:
+        """`phrases`: key to English and Russian, for `str.format`; `language` is en or ru."""
+        self.language = language
+        self._phrases, self._at = phrases, int(language == "ru")
+
+    def __call__(self, key: str, **values: object) -> str:
+        """The phrase with its values."""
+        return self._phrases[key][self._at].format(**values)
+
+
+_NOISE = {
+    "one": ("noise 1 byte", "шум, байт: 1"),
+    "many": ("noise {count} bytes", "шум, байт: {count}"),
+}
+
+
+def noise(octets: bytes, language: str) -> Piece:
+    """Bytes that belong to no frame."""
+    key = "one" if len(octets) == 1 else "many"
+    return Piece(octets, Words(language, _NOISE)(key, count=len(octets)), Kind.NOISE)
+
+
+_ENOUGH = 4
+"""Bytes by which the length of a frame can be told."""
+
+
+class HeadedReader:
+    """Reads frames that begin with a head of two bytes."""
+
+    def __init__(
+        self,
+        language: str,
+        head: bytes,
+        length: Callable[[bytes], int],
+        piece: Callable[[bytes], Piece],
+    ) -> None:
+        """`length`: how long a frame is that begins so, 0 if that cannot be told yet.
+
+        It is the length of the head alone if no frame begins so. `piece` says what so many bytes
+        are: a frame or, if they are none, what is wrong with them.
+        """
+        self._language, self._head, self._length, self._piece = language, head, length, piece
+        self._rest = b""
+
+    def feed(self, data: bytes) -> list[Piece]:
+        """The pieces that these bytes complete, oldest first."""
+        stream, at = self._rest + data, 0
+        found: list[Piece] = []
+        while True:
+            start = _find(stream, self._head, at)
+            if start > at:
+                found.append(noise(stream[at:start], self._language))
+            size = self._length(stream[start : start + _ENOUGH])
+            if not size or len(stream) - start < size:
+                break
+            found.append(self._at(stream, start, size))
+            at = start + len(found[-1].octets)
+        self._rest = stream[start:]
+        return found
+
+    def flush(self) -> list[Piece]:
+        """What is left of a frame that nobody goes on with."""
+        rest, self._rest = self._rest, b""
+        return [noise(rest, self._language)] if rest else []
+
+    def _at(self, stream: bytes, start: int, size: int) -> Piece:
+        piece = self._piece(stream[start : start + size])
+        if piece.kind is Kind.FRAME:
+            return piece
+        # With a head inside of it, the frame has lost its end, and the next one may be whole.
+        inner = stream.find(self._head, start + 1, start + size + 1)
+        if inner >= 0 or size <= len(self._head):
+            return noise(stream[start : inner if inner >= 0 else start + size], self._language)
+        return piece
+
+
+def _find(stream: bytes, head: bytes, at: int) -> int:
+    """Where the next head begins, or may begin; the end if there is none."""
+    found = stream.find(head, at)
+    if found >= 0:
+        return found
+    return len(stream) - (len(stream) > at and stream.endswith(head[:1]))
+
+
+class RawReader:
+    """Shows bytes as they come, where nobody knows what they mean."""
+
+    _PHRASES = {"raw": ("bytes: {count}", "байт: {count}")}  # noqa: RUF012
+
+    def __init__(self, language: str) -> None:
+        self._words = Words(language, self._PHRASES)
+
+    def feed(self, data: bytes) -> list[Piece]:
+        """One piece."""
+        return [Piece(data, self._words("raw", count=len(data)))] if data else []
+
+    def flush(self) -> list[Piece]:
+        """Nothing: nothing was kept."""
+        return []

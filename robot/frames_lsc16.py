@@ -1,0 +1,65 @@
+"""Frames of the LSC-16 servo controller in words, both ways."""
+
+from __future__ import annotations
+
+from robot.frames import HeadedReader, Kind, Piece, Words
+from robot.wire_lsc16 import (
+    ActionComplete,
+    ActionRun,
+    ActionStop,
+    Battery,
+    Move,
+    ServoFrame,
+    decode,
+)
+
+_HEAD = b"\x55\x55"
+_LENGTHS = range(2, 54)
+"""What the third byte may say: params + 2, with 16 servos at most."""
+_PHRASES = {
+    "move": ("move in {time} ms: {servos}", "движение за {time} мс: {servos}"),
+    "servo": ("servo {servo} to {pulse} us", "серво {servo} → {pulse} мкс"),
+    "run": ("group {group} runs {times} times", "группа {group} выполняется, раз: {times}"),
+    "complete": (
+        "group {group} has ended ({times} times)",
+        "группа {group} закончена (раз: {times})",
+    ),
+    "stop": ("group stops", "группа остановлена"),
+    "ask": ("how is the battery?", "сколько в батарее?"),
+    "battery": ("battery {volts:.2f} V", "батарея {volts:.2f} В"),
+    "bad": ("NO FRAME OF AN LSC-16", "НЕ КАДР LSC-16"),
+}
+
+
+class ServoReader(HeadedReader):
+    """Reads what is said to the controller, or what it says."""
+
+    def __init__(self, language: str) -> None:
+        self._words = Words(language, _PHRASES)
+        super().__init__(language, _HEAD, _length, self._read)
+
+    def _read(self, octets: bytes) -> Piece:
+        frame = decode(octets)
+        if frame is None:
+            return Piece(octets, self._words("bad"), Kind.BAD)
+        return Piece(octets, self._said(frame))
+
+    def _said(self, frame: ServoFrame) -> str:
+        words = self._words
+        if isinstance(frame, Move):
+            pairs = frame.pulses_us
+            servos = ", ".join(words("servo", servo=servo, pulse=pulse) for servo, pulse in pairs)
+            return words("move", time=frame.time_ms, servos=servos)
+        if isinstance(frame, (ActionRun, ActionComplete)):
+            key = "run" if isinstance(frame, ActionRun) else "complete"
+            return words(key, group=frame.group, times=frame.times)
+        if isinstance(frame, Battery):
+            return words("battery", volts=frame.millivolts / 1000)
+        return words("stop" if isinstance(frame, ActionStop) else "ask")
+
+
+def _length(start: bytes) -> int:
+    """Bytes of the frame; a length that cannot be is that of the head alone."""
+    if len(start) < 3:
+        return 0
+    return start[2] + 2 if start[2] in _LENGTHS else len(_HEAD)

@@ -1,0 +1,152 @@
+"""Lines of the Pico in words, both ways (see docs/pico-protocol.md)."""
+
+from __future__ import annotations
+
+import re
+
+from robot.frames import Kind, Piece, Words, noise
+from robot.wire_crc import crc16
+from robot.wire_line import LONGEST, unwrap
+from robot.wire_pico import (
+    FLAGS,
+    Drive,
+    Halt,
+    Hello,
+    Message,
+    Telemetry,
+    Welcome,
+    parse,
+)
+
+_LINE = re.compile(rb"([^\r\n]*)[\r\n]+")
+_CHECKED = re.compile(rb"\$([^$*]*)\*([0-9A-Fa-f]{4})")
+_PHRASES = {
+    "hello": ("hello, protocol {protocol}", "привет, протокол {protocol}"),
+    "drive": (
+        "drive left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad",
+        "ехать: левое {left:.2f} правое {right:.2f} рад/с, руль {steering:.2f} рад",
+    ),
+    "halt": ("EMERGENCY STOP", "АВАРИЙНАЯ ОСТАНОВКА"),
+    "release": ("emergency stop released", "аварийная остановка снята"),
+    "welcome": (
+        "the Pico answers: firmware {firmware}, protocol {protocol}",
+        "Pico отвечает: прошивка {firmware}, протокол {protocol}",
+    ),
+    "telemetry": (
+        "wheels left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad",
+        "колёса: левое {left:.2f} правое {right:.2f} рад/с, руль {steering:.2f} рад",
+    ),
+    "battery": (", {value:.2f} V", ", {value:.2f} В"),
+    "amperes": (", {side} {value:.2f} A", ", {side} {value:.2f} А"),
+    "left": ("left", "левый"),
+    "right": ("right", "правый"),
+    "flags": (", flags: {flags}", ", флаги: {flags}"),
+    "counts": (
+        ", obeyed {obeyed}, refused {refused}, up {uptime:.1f} s",
+        ", исполнено {obeyed}, отвергнуто {refused}, работает {uptime:.1f} с",
+    ),
+    "end": (", seq {seq}, crc ok", ", № {seq}, crc верна"),
+    "failed": (
+        "CRC FAILED: {told} came, {counted:04X} is right",
+        "CRC НЕ СОШЛАСЬ: пришла {told}, верно {counted:04X}",
+    ),
+    "unknown": ("UNKNOWN LINE, though its crc is right", "НЕИЗВЕСТНАЯ СТРОКА, хотя crc верна"),
+    "cut": ("NO WHOLE LINE", "НЕ ЦЕЛАЯ СТРОКА"),
+}
+_FLAGS_RU = {
+    "E": "аварийная остановка",
+    "W": "нет строк управления 250 мс",
+    "L": "авария левого драйвера",
+    "R": "авария правого драйвера",
+    "U": "батарея разряжена",
+    "H": "нет рукопожатия",
+    "A": "ждёт нулевой скорости",
+    "N": "без энкодеров",
+}
+
+
+class PicoReader:
+    """Reads what is said to the Pico, or what it says."""
+
+    def __init__(self, language: str) -> None:
+        self._language, self._words = language, Words(language, _PHRASES)
+        self._flags = _FLAGS_RU if language == "ru" else FLAGS
+        self._rest = b""
+
+    def feed(self, data: bytes) -> list[Piece]:
+        """The pieces that these bytes complete, oldest first."""
+        stream, at = self._rest + data, 0
+        found: list[Piece] = []
+        for match in _LINE.finditer(stream):
+            found += self._line(match[0], match[1])
+            at = match.end()
+        self._rest = stream[at:]
+        return found + (self.flush() if len(self._rest) >= LONGEST else [])
+
+    def flush(self) -> list[Piece]:
+        """What is left of a line that nobody goes on with."""
+        rest, self._rest = self._rest, b""
+        return [noise(rest, self._language)] if rest else []
+
+    def _line(self, octets: bytes, line: bytes) -> list[Piece]:
+        """The pieces of a line, with its end and without."""
+        start = line.rfind(b"$")
+        if start < 0:
+            return [noise(octets, self._language)] if line else []
+        loose = [noise(octets[:start], self._language)] if start else []
+        return [*loose, self._piece(octets[start:], line[start:])]
+
+    def _piece(self, octets: bytes, line: bytes) -> Piece:
+        body = unwrap(line) if len(line) < LONGEST else None
+        if body is None:
+            return Piece(octets, self._complaint(line), Kind.BAD)
+        message = parse(body)
+        if message is None:
+            return Piece(octets, self._words("unknown"), Kind.BAD)
+        return Piece(octets, self._said(message) + self._words("end", seq=message.seq))
+
+    def _complaint(self, line: bytes) -> str:
+        checked = _CHECKED.fullmatch(line)
+        if checked is None or crc16(checked[1]) == int(checked[2], 16):
+            return self._words("cut")
+        return self._words("failed", told=checked[2].decode(), counted=crc16(checked[1]))
+
+    def _said(self, message: Message) -> str:
+        words = self._words
+        if isinstance(message, Telemetry):
+            return self._telemetry(message)
+        if isinstance(message, Drive):
+            return words(
+                "drive",
+                left=message.left_rad_s,
+                right=message.right_rad_s,
+                steering=message.steering_rad,
+            )
+        if isinstance(message, Hello):
+            return words("hello", protocol=message.protocol)
+        if isinstance(message, Welcome):
+            return words("welcome", firmware=message.firmware, protocol=message.protocol)
+        return words("halt" if isinstance(message, Halt) else "release")
+
+    def _telemetry(self, message: Telemetry) -> str:
+        words = self._words
+        said = words(
+            "telemetry",
+            left=message.left_rad_s,
+            right=message.right_rad_s,
+            steering=message.steering_rad,
+        )
+        if message.flags:
+            said += words("flags", flags=", ".join(self._named(message.flags)))
+        if message.battery_v is not None:
+            said += words("battery", value=message.battery_v)
+        for side, value in (("left", message.left_a), ("right", message.right_a)):
+            if value is not None:
+                said += words("amperes", side=words(side), value=value)
+        uptime_s = message.uptime_ms / 1000
+        return said + words(
+            "counts", obeyed=message.obeyed, refused=message.refused, uptime=uptime_s
+        )
+
+    def _named(self, flags: frozenset[str]) -> list[str]:
+        return [name for letter, name in self._flags.items() if letter in flags]

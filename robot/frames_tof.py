@@ -1,0 +1,49 @@
+"""Frames of the ToF sonars in words."""
+
+from __future__ import annotations
+
+import math
+
+from robot.frames import HeadedReader, Kind, Piece, Words
+from robot.wire_crc import sum8
+from robot.wire_tfluna import SIZE, Model, TofFrame, decode
+
+_HEAD = b"\x59\x59"
+_PHRASES = {
+    "distance": ("distance {metres:.2f} m", "расстояние {metres:.2f} м"),
+    "far": ("nothing in range ({centimetres} cm)", "ничего не видно ({centimetres} см)"),
+    "near": ("too close to measure ({centimetres} cm)", "слишком близко ({centimetres} см)"),
+    "none": ("no valid reading ({centimetres} cm)", "негодное измерение ({centimetres} см)"),
+    "rest": (", strength {strength}, {celsius:.1f} °C", ", сила {strength}, {celsius:.1f} °C"),
+    "bad": (
+        "CHECKSUM FAILED: {told:02X} came, {counted:02X} is right",
+        "СУММА НЕ СОШЛАСЬ: пришла {told:02X}, верно {counted:02X}",
+    ),
+}
+
+
+class TofReader(HeadedReader):
+    """Reads what a sonar says; what is said to it is shown as noise."""
+
+    def __init__(self, language: str, model: Model = Model.LUNA) -> None:
+        self._words, self._model = Words(language, _PHRASES), model
+        super().__init__(language, _HEAD, _length, self._read)
+
+    def _read(self, octets: bytes) -> Piece:
+        frame = decode(octets)
+        if frame is not None:
+            return Piece(octets, self._said(frame))
+        said = self._words("bad", told=octets[-1], counted=sum8(octets[:-1]))
+        return Piece(octets, said, Kind.BAD)
+
+    def _said(self, frame: TofFrame) -> str:
+        metres = frame.distance_m(self._model)
+        key = "distance"
+        if not math.isfinite(metres):
+            key = "none" if math.isnan(metres) else "far" if metres > 0 else "near"
+        first = self._words(key, metres=metres, centimetres=frame.distance_cm)
+        return first + self._words("rest", strength=frame.strength, celsius=frame.temperature_c)
+
+
+def _length(_start: bytes) -> int:
+    return SIZE

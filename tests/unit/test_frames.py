@@ -1,0 +1,242 @@
+"""Frames in words: what a person sees of a wire, and what noise makes of it."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot import wire_lsc16, wire_pico, wire_tfluna
+from robot.frame_lines import MOST, FrameLine, decode, encode
+from robot.frame_teller import Chunk, FrameTeller
+from robot.frames import Kind, RawReader
+from robot.frames_lsc16 import ServoReader
+from robot.frames_pico import PicoReader
+from robot.frames_tof import TofReader
+from robot.wire_line import wrap
+from robot.wire_lsc16 import Battery, BatteryRequest, Move
+from robot.wire_pico import Drive, Halt, Hello, Release, Telemetry, Welcome
+from robot.wire_tfluna import TofFrame
+from tests.unit.streams import cut
+
+if TYPE_CHECKING:
+    from robot.frames import FrameReader, Piece
+
+READERS = (PicoReader, TofReader, ServoReader, RawReader)
+TELEMETRY = Telemetry(3, 61250, 2, 6.18, -6.15, 0.35, 7.42, 0.81, None, 0, frozenset("EN"))
+TELEMETRY_EN = (
+    "wheels left 6.18 right -6.15 rad/s steering 0.35 rad, flags: emergency stop latched,"
+    " no encoders: speeds are those asked for, 7.42 V, left 0.81 A, obeyed 2, refused 0,"
+    " up 61.2 s, seq 3, crc ok"
+)
+TELEMETRY_RU = (
+    "колёса: левое 6.18 правое -6.15 рад/с, руль 0.35 рад, флаги: аварийная остановка,"
+    " без энкодеров, 7.42 В, левый 0.81 А, исполнено 2, отвергнуто 0, работает 61.2 с,"
+    " № 3, crc верна"
+)
+NEAR = wire_tfluna.encode(TofFrame(123, 1000, 25.0))
+
+PARTS = st.one_of(
+    st.binary(max_size=60),
+    st.sampled_from([NEAR, wire_pico.encode(Halt(7)), wire_lsc16.encode(Battery(7400))]),
+    st.sampled_from([b"Y", b"YY", b"UU", b"U", b"$", b"*"]),
+)
+
+
+def said(reader: FrameReader, *chunks: bytes) -> list[tuple[str, str]]:
+    pieces = [piece for chunk in chunks for piece in reader.feed(chunk)]
+    return [(piece.kind.value, piece.text) for piece in pieces]
+
+
+@pytest.mark.parametrize(
+    ("message", "en", "ru"),
+    [
+        (Hello(0), "hello, protocol 1, seq 0, crc ok", "привет, протокол 1, № 0, crc верна"),
+        (
+            Drive(17, 3.2, 3.4, 0.1),
+            "drive left 3.20 right 3.40 rad/s steering 0.10 rad, seq 17, crc ok",
+            "ехать: левое 3.20 правое 3.40 рад/с, руль 0.10 рад, № 17, crc верна",
+        ),
+        (Halt(7), "EMERGENCY STOP, seq 7, crc ok", "АВАРИЙНАЯ ОСТАНОВКА, № 7, crc верна"),
+        (
+            Release(8),
+            "emergency stop released, seq 8, crc ok",
+            "аварийная остановка снята, № 8, crc верна",
+        ),
+        (
+            Welcome(0, 1, "1.0.0"),
+            "the Pico answers: firmware 1.0.0, protocol 1, seq 0, crc ok",
+            "Pico отвечает: прошивка 1.0.0, протокол 1, № 0, crc верна",
+        ),
+        (
+            TELEMETRY,
+            TELEMETRY_EN,
+            TELEMETRY_RU,
+        ),
+    ],
+)
+def test_lines_of_the_pico(message: wire_pico.Message, en: str, ru: str) -> None:
+    line = wire_pico.encode(message)
+    assert said(PicoReader("en"), line[:5], line[5:]) == [("frame", en)]
+    assert said(PicoReader("ru"), line) == [("frame", ru)]
+
+
+@pytest.mark.parametrize(
+    ("line", "kind", "words"),
+    [
+        (b"$D,2,6200,-6200,350*2673\n", "bad", "CRC FAILED: 2673 came, 2672 is right"),
+        (b"$D,2,6200,-62\r\n", "bad", "NO WHOLE LINE"),
+        (b"$D,2,6200,-6200,350*2672"[:-1] + b"\xff\n", "bad", "NO WHOLE LINE"),
+        (wrap("X,1"), "bad", "UNKNOWN LINE, though its crc is right"),
+        (b"MicroPython v1.25\n", "noise", "noise 18 bytes"),
+        (b"\x1b[31m" * 40, "noise", "noise 200 bytes"),
+    ],
+)
+def test_what_is_no_line_of_the_pico(line: bytes, kind: str, words: str) -> None:
+    assert said(PicoReader("en"), line) == [(kind, words)]
+
+
+def test_noise_before_a_line_is_told_apart_from_it() -> None:
+    found = said(PicoReader("en"), b"\r\n\n", b"ab$c" + wire_pico.encode(Halt(7)) + b"\r\n")
+    assert found == [("noise", "noise 4 bytes"), ("frame", "EMERGENCY STOP, seq 7, crc ok")]
+
+
+@pytest.mark.parametrize(
+    ("frame", "words"),
+    [
+        (TofFrame(123, 1000, 25.0), "distance 1.23 m, strength 1000, 25.0 °C"),
+        (TofFrame(0, 50, 30.0), "nothing in range (0 cm), strength 50, 30.0 °C"),
+        (TofFrame(10, 900, 30.0), "too close to measure (10 cm), strength 900, 30.0 °C"),
+        (TofFrame(0, 65535, 30.0), "no valid reading (0 cm), strength 65535, 30.0 °C"),
+    ],
+)
+def test_frames_of_a_sonar(frame: TofFrame, words: str) -> None:
+    assert said(TofReader("en"), wire_tfluna.encode(frame)) == [("frame", words)]
+
+
+def test_bad_frames_of_a_sonar_and_what_is_between() -> None:
+    bad = NEAR[:-1] + b"\x00"
+    found = said(TofReader("en"), b"noise" + bad[:4], bad[4:] + NEAR[:3] + NEAR, b"Y", b"Z" + NEAR)
+    assert found == [
+        ("noise", "noise 5 bytes"),
+        ("bad", "CHECKSUM FAILED: 00 came, E8 is right"),
+        ("noise", "noise 3 bytes"),
+        ("frame", "distance 1.23 m, strength 1000, 25.0 °C"),
+        ("noise", "noise 2 bytes"),
+        ("frame", "distance 1.23 m, strength 1000, 25.0 °C"),
+    ]
+    assert said(TofReader("ru"), bad) == [("bad", "СУММА НЕ СОШЛАСЬ: пришла 00, верно E8")]
+
+
+@pytest.mark.parametrize(
+    ("octets", "found"),
+    [
+        (
+            wire_lsc16.encode(Move(500, ((1, 1500), (2, 1700)))),
+            ("frame", "move in 500 ms: servo 1 to 1500 us, servo 2 to 1700 us"),
+        ),
+        (wire_lsc16.encode(Battery(7400)), ("frame", "battery 7.40 V")),
+        (wire_lsc16.encode(BatteryRequest()), ("frame", "how is the battery?")),
+        (wire_lsc16.encode(wire_lsc16.ActionRun(3, 2)), ("frame", "group 3 runs 2 times")),
+        (b"\x55\x55\x02\x07", ("frame", "group stops")),
+        (b"\x55\x55\x02\x63", ("bad", "NO FRAME OF AN LSC-16")),
+        (b"\x55\x55\xff", ("noise", "noise 2 bytes")),
+    ],
+)
+def test_frames_of_the_servos(octets: bytes, found: tuple[str, str]) -> None:
+    assert said(ServoReader("en"), octets)[0] == found
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+@given(parts=st.lists(PARTS, max_size=12), places=st.lists(st.integers(0, 500), max_size=6))
+def test_no_byte_of_noise_is_lost_or_said_twice(
+    language: str, parts: list[bytes], places: list[int]
+) -> None:
+    stream = b"".join(parts)
+    chunks = cut(stream, places)
+    for make in (TofReader, ServoReader):
+        reader: FrameReader = make(language)
+        pieces: list[Piece] = [piece for chunk in chunks for piece in reader.feed(chunk)]
+        assert b"".join(piece.octets for piece in [*pieces, *reader.flush()]) == stream
+    reader = PicoReader(language)
+    pieces = [piece for chunk in chunks for piece in reader.feed(chunk)]
+    together = b"".join(piece.octets for piece in [*pieces, *reader.flush()])
+    assert together.translate(None, b"\r\n") == stream.translate(None, b"\r\n")
+
+
+def test_ten_megabytes_of_noise_keep_less_than_a_frame() -> None:
+    block = bytes(range(256)) * 4096
+    for make in READERS:
+        reader = make("en")
+        for _ in range(10):
+            reader.feed(block)
+        assert sum(len(piece.octets) for piece in reader.flush()) < 128
+
+
+def test_a_batch_is_bounded_and_tells_what_it_left_out() -> None:
+    teller = FrameTeller(TofReader, "en")
+    lines = teller.tell([Chunk(1.0, "in", NEAR * (MOST + 12))], 1.0, missed=500)
+    assert [line.text for line in lines[-2:]] == ["12 more", "500 more bytes"]
+    assert (len(lines), lines[-2].kind, lines[-2].count) == (MOST + 2, Kind.MORE, 12)
+    assert FrameTeller(TofReader, "ru").tell([], 0.0, 7)[0].text == "ещё байт: 7"
+
+
+def test_who_comes_in_the_middle_of_a_frame_sees_no_noise() -> None:
+    teller = FrameTeller(TofReader, "en")
+    lines = teller.tell([Chunk(1.0, "in", NEAR[4:] + NEAR)], 1.0)
+    assert [line.kind for line in lines] == [Kind.FRAME]
+    lines = teller.tell([Chunk(1.1, "in", NEAR[4:])], 1.1)
+    assert [line.kind for line in lines] == [Kind.NOISE]
+
+
+def test_noise_in_drips_is_one_line_and_both_ways_keep_their_order() -> None:
+    teller = FrameTeller(PicoReader, "en")
+    teller.tell([Chunk(0.5, "in", wire_pico.encode(Halt(1)))], 0.5)
+    chunks = [Chunk(1.0 + at / 100, "in", b"x\n") for at in range(5)]
+    chunks += [Chunk(1.1, "out", wire_pico.encode(Halt(7))), Chunk(1.2, "in", b"y\n")]
+    lines = teller.tell(chunks, 1.2)
+    assert [(line.way, line.text) for line in lines] == [
+        ("in", "noise 10 bytes"),
+        ("out", "EMERGENCY STOP, seq 7, crc ok"),
+        ("in", "noise 2 bytes"),
+    ]
+    assert all(one.time_s <= other.time_s for one, other in pairwise(lines))
+
+
+def test_a_frame_that_does_not_end_is_given_up() -> None:
+    teller = FrameTeller(PicoReader, "en")
+    assert teller.tell([Chunk(1.0, "in", b"login: ")], 1.0) == []
+    assert teller.tell([], 1.2) == []
+    assert [line.text for line in teller.tell([], 1.4)] == ["noise 7 bytes"]
+
+
+def test_lines_are_told_and_read_again() -> None:
+    lines = [
+        FrameLine(1.5, "in", Kind.FRAME, NEAR, "distance 1.23 m\u2028"),
+        FrameLine(1.6, "out", Kind.MORE, b"", "ещё 3", 3),
+    ]
+    text = encode(lines)
+    assert decode(text) == (lines, 0)
+    first = json.loads(text.split("\n")[0])
+    assert first == {
+        "t": 1.5, "way": "in", "kind": "frame", "hex": NEAR.hex(), "text": "distance 1.23 m\u2028"
+    }  # fmt: skip
+
+
+def test_lines_of_another_make_are_read_as_far_as_they_make_sense() -> None:
+    text = '{"t": 1, "way": "in", "hex": "59 59", "text": "x"}\n{"t": 1}\nno json\n[1]\n'
+    found, odd = decode(text + '{"t": NaN, "way": "in", "text": ""}')
+    assert ([line.octets for line in found], odd) == ([b"YY"], 4)
+    assert decode("") == ([], 0)
+    assert decode("{}\n" * 5000)[1] > 4000
+    assert decode("[" * 100_000) == ([], 1)
+
+
+@given(st.text())
+def test_no_text_breaks_the_reading_of_lines(text: str) -> None:
+    decode(text)
+    decode(json.dumps({"t": 1, "way": "in", "hex": text, "text": text, "kind": text}))
