@@ -95,19 +95,19 @@ async def test_an_empty_domain_says_so() -> None:
 async def test_panels_come_with_their_topics_and_stay() -> None:
     async with watching(NOTHING) as (pilot, graph):
         deck = deck_of(pilot)
-        assert not deck._panels
+        assert not deck.panels
         sonar = topic("/sensor/sonar_front", "std_msgs/msg/Float32", 1.0)
         graph.show(lesson_update(topics=(sonar,), samples={}))
         await pilot.pause()
         await pilot.pause()
-        assert [type(panel).__name__ for panel in deck._panels] == ["SonarFeed"]
+        assert [type(panel).__name__ for panel in deck.panels] == ["SonarFeed"]
         graph.show(lesson_update(topics=TOPICS))
         await pilot.pause()
         await pilot.pause()
-        assert len(deck._panels) == 5
+        assert len(deck.panels) == 5
         graph.show(NOTHING)
         await pilot.pause()
-        assert len(deck._panels) == 5
+        assert len(deck.panels) == 5
 
 
 async def test_what_nodes_say_on_rosout_is_the_log() -> None:

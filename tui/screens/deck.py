@@ -14,45 +14,36 @@ from launcher.errors import LauncherError
 from launcher.status import Severity
 from tui.actions import bindings
 from tui.actions.deck import DECK_ACTIONS
-from tui.i18n import N_, _, said
+from tui.i18n import N_, said
 from tui.messages import SessionChanged
-from tui.panel_needs import panels_for
-from tui.panels.made import PANELS, make_panel
 from tui.panels.panel import row_of
-from tui.screens.base import DeckScreen
+from tui.screens.deck_panels import ScreenWithPanels
 from tui.widgets.command_line import CommandLine
 from tui.widgets.log_view_pane import LogPane
 from tui.widgets.nodes_table import NodesTable
 from tui.widgets.plain import plain
-from tui.widgets.watched import watched_words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
     from concurrent.futures import Future
 
     from textual.app import ComposeResult
     from textual.binding import BindingType
     from textual.events import Resize
 
-    from graph.data import GraphUpdate
     from tui.messages import (
         GraphChanged,
         LanguageChanged,
         LogArrived,
         StatusChanged,
     )
-    from tui.panels.panel import Panel
-    from tui.panels.shelf import Shelf
     from tui.widgets.log_filter import LogFilter
     from tui.widgets.rows import Rows
 
 DRIVER = "nodes.ai_driver"
 COMMANDS, COMMANDS_TYPE = "/ai_command", "std_msgs/msg/String"
-SMALL = (60, 18)
-"""Columns and rows of the terminal below which there is no room for panels."""
 
 
-class LessonDeck(DeckScreen):
+class LessonDeck(ScreenWithPanels):
     """Nodes above the log, panels at the right; on a small terminal panels beside the log."""
 
     tab: ClassVar[str] = "deck"
@@ -90,12 +81,6 @@ class LessonDeck(DeckScreen):
         &.-recorded.-shelved #board { grid-size: 1; grid-columns: 1fr; }
     }
     """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._shelf: Shelf | None = None
-        self._put: set[str] = set()
-        """Panels that were brought for topics that others publish."""
 
     def compose_body(self) -> ComposeResult:
         """The nodes above the log; panels come with the session."""
@@ -179,29 +164,7 @@ class LessonDeck(DeckScreen):
         """Back to the nodes."""
         self.table.focus()
 
-    @property
-    def pages(self) -> int:
-        """How many pages of panels there are."""
-        return 0 if self._shelf is None or self.has_class("-small") else self._shelf.pages
-
-    def turn_page(self) -> None:
-        """Show the panels that had no room."""
-        if self._shelf is not None:
-            self._shelf.turn()
-
     # What is shown
-
-    def watch_topics(self) -> set[str]:
-        """What the panels show."""
-        return set().union(*(panel.watched() for panel in self._panels))
-
-    def follow_topics(self) -> set[str]:
-        """What the panels must not miss."""
-        return set().union(*(panel.followed() for panel in self._panels))
-
-    @property
-    def _panels(self) -> Sequence[Panel]:
-        return () if self._shelf is None else self._shelf.panels
 
     def on_mount(self) -> None:
         """Begin at the nodes."""
@@ -209,8 +172,7 @@ class LessonDeck(DeckScreen):
 
     def on_resize(self, event: Resize) -> None:
         """Leave the panels out where there is no room for them."""
-        small = event.size.width < SMALL[0] or event.size.height < SMALL[1]
-        self.set_class(small, "-small")
+        self.measure_room(*event.size)
         self._lay_out(event.size.height)
 
     @on(SessionChanged)
@@ -224,8 +186,7 @@ class LessonDeck(DeckScreen):
         self.pane.save_folder = session.log_dir
         self.set_class(self.feed.replay is not None, "-recorded")
         self.set_class(self.feed.watching, "-watching")
-        self._put.clear()
-        await self._put_up(session.panels)
+        await self.put_up(session.panels)
         self._lay_out(self.size.height)
         self.topics_changed()
 
@@ -246,8 +207,11 @@ class LessonDeck(DeckScreen):
             self.notify(plain(message.update.error), severity="error", markup=False)
             return
         if self.feed.watching:
-            await self._look_at_others(message.update)
-        for panel in self._panels:
+            self.set_class(self.driven, "-driven")
+            if await self.put_up_for(message.update):
+                self._lay_out(self.size.height)
+                self.topics_changed()
+        for panel in self.panels:
             panel.show(message.update)
         row = row_of(message.update, COMMANDS)
         self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
@@ -258,11 +222,7 @@ class LessonDeck(DeckScreen):
         self.pane.words_changed()
         self._show_nodes()
         self.query_one(CommandLine).words_changed()
-        for panel in self._panels:
-            panel.words_changed()
-        if self._shelf is not None:
-            self._shelf.words_changed()
-        self._say_small()
+        self.words_of_panels_changed()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
         """Other keys are possible now."""
@@ -273,35 +233,6 @@ class LessonDeck(DeckScreen):
         """Listen to the node that was opened, alone."""
         message.stop()
         self.filter_log(self.log_filter.alone(message.key))
-
-    async def _look_at_others(self, update: GraphUpdate) -> None:
-        """Say who runs, and bring the panels for which topics have come; none is taken away."""
-        self.set_class(self.driven, "-driven")
-        words = watched_words(update, self.feed.session.domain if self.feed.session else 0)
-        watched = self.query_one("#watched", Static)
-        # Each update of a Static lays the screen out anew, and this comes with every look.
-        if words != watched.content:
-            watched.update(words)
-        wanted = panels_for({row.name for row in update.topics if row.publishers})
-        if not self._put.issuperset(wanted):
-            self._put |= set(wanted)
-            await self._put_up([name for name in PANELS if name in self._put])
-            self._lay_out(self.size.height)
-            self.topics_changed()
-
-    async def _put_up(self, names: Iterable[str]) -> None:
-        """Take away the panels of the session before and put up those of this one."""
-        if self._shelf is not None:
-            await self._shelf.remove()
-            self._shelf = None
-        panels = [make_panel(name) for name in names if name in PANELS]
-        self.set_class(bool(panels), "-shelved")
-        if panels:
-            from tui.panels.shelf import Shelf
-
-            self._shelf = Shelf(panels, id="shelf")
-            await self.query_one("#board").mount(self._shelf, after="#nodes")
-        self._say_small()
 
     def _show_nodes(self) -> None:
         chosen = self.log_filter
@@ -316,10 +247,6 @@ class LessonDeck(DeckScreen):
         wanted = len(self.feed.nodes) + 1
         rows = max(2, min(wanted, height * 9 // 20))
         self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
-
-    def _say_small(self) -> None:
-        words = _("Too small for panels: they need {columns}×{rows}")
-        self.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))
 
     def _file_of(self, node: str) -> str:
         session = self.feed.session
