@@ -2,8 +2,13 @@
 
 Request: `a` pan, `b` tilt, whole degrees from -90 to 90, + is left and up. Answer: `sum` 1 when
 the head is there, 0 when the request was refused. A request that comes while the head moves waits
-for its turn; more than `queue` waiting ones are refused. The movement is spread over `move_time`
-seconds and shown on /head_state in radians.
+for its turn; more than `queue` waiting ones are refused.
+
+Without a `port` the head is simulated: a movement is spread over `move_time` seconds. With one, an
+LSC-16 moves two servos at `speed`; nothing moves before the first request, and a request is refused
+while nobody answers at the port. /head_state (radians) is what was commanded, for the servos do not
+tell where they are; it has no positions while nobody knows: before the first movement, and after
+the controller was away.
 """
 
 from __future__ import annotations
@@ -13,40 +18,31 @@ import sys
 import time
 from collections import deque
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from example_interfaces.srv import AddTwoInts
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
 
+from nodes import _head_words as words
+from nodes._diagnostics import tell_every_second
 from nodes._life import run
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Whole
-from nodes._speech import Phrase
+from nodes._servo_client import WAS_AWAY, ServoClient
 from nodes._topics import DEPTH, HEAD_SERVICE, HEAD_STATE
-from robot.limits import HEAD_ANGLE
+from robot.head import turn_ms
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from nodes._parameters import Value
+    from nodes._speech import Phrase
 
 JOINTS = ("pan_joint", "tilt_joint")
-
-_STARTED = Phrase("The head is ready for {service}", "Голова готова, сервис {service}")
-_TURNING = Phrase(
-    "Turning the head to pan {pan}°, tilt {tilt}°", "Поворачиваю голову: pan {pan}°, tilt {tilt}°"
-)
-_DONE = Phrase(
-    "The head is there: pan {pan}°, tilt {tilt}°", "Голова на месте: pan {pan}°, tilt {tilt}°"
-)
-_WAITING = Phrase(
-    "The head is moving; pan {pan}°, tilt {tilt}° waits for its turn",
-    "Голова движется; pan {pan}°, tilt {tilt}° ждёт своей очереди",
-)
-_OUT_OF_RANGE = Phrase(
-    "Refused: pan {pan}°, tilt {tilt}° — both must be from {low:g}° to {high:g}°",
-    "Отказ: pan {pan}°, tilt {tilt}° — нужно от {low:g}° до {high:g}°",
-)
-_BUSY = Phrase(
-    "Refused: pan {pan}°, tilt {tilt}° — {count} requests are waiting already",
-    "Отказ: pan {pan}°, tilt {tilt}° — в очереди уже {count}",
-)
+_SETTLE_S = 0.1
+"""A command is 14 ms on the wire, and a servo lags behind what it is told."""
 
 
 @dataclass(frozen=True)
@@ -68,75 +64,167 @@ class HeadController(LessonNode):
 
     NAME = "head_controller"
     SETTINGS = (
-        Number("move_time", 1.0, "How long a movement takes", low=0.0, high=30.0, unit="s"),
+        Number("move_time", 1.0, "How long a simulated movement takes", high=30.0, unit="s"),
         Number("rate", 20.0, "/head_state while it moves", low=1.0, high=100.0, unit="Hz"),
         Number("rest_rate", 1.0, "/head_state while it rests", low=0.1, high=100.0, unit="Hz"),
         Whole("queue", 4, "Requests that may wait", low=0, high=64),
+        *words.SERVO_SETTINGS,
     )
 
     def __init__(self) -> None:
         super().__init__()
-        self._pose = self._from = self._goal = Pose(0, 0)
-        self._began_s = 0.0
+        self._servos = ServoClient(self) if self.text("port") else None
+        self._pose = self._from = Pose(0, 0) if self._servos is None else None
+        """None: nobody knows."""
+        self._pulses_us: tuple[int, int] | None = None
+        """What the servos were told last."""
+        self._began_s = self._length_s = 0.0
         self._turns: deque[tuple[Pose, Future]] = deque()
         """The first one is being moved to."""
+        self._read_joints()
         self._publisher = self.create_publisher(JointState, HEAD_STATE, DEPTH)
         # The request awaits the movement: it must not keep the timer's callback group.
         self.create_service(
             AddTwoInts, HEAD_SERVICE, self._serve, callback_group=ReentrantCallbackGroup()
         )
         self._timer = self.every(1.0 / self.number("rest_rate"), self._tick)
-        self.say.info(_STARTED, service=HEAD_SERVICE)
+        if self._servos is None:
+            self.say.info(words.STARTED, service=HEAD_SERVICE)
+        else:
+            self._start(self._servos)
+
+    def contradiction(self, values: Mapping[str, Value]) -> Phrase | None:
+        """Two joints at one servo, or one without room."""
+        return words.contradiction(values)
 
     def parameters_changed(self) -> None:
-        """Keep the new rates."""
+        """Keep the new rates; a new trim counts from the next movement on."""
+        self._read_joints()
         self._set_pace()
+
+    def before_end(self) -> None:
+        """Give the port back; a movement that has begun comes to its end by itself."""
+        if self._servos is not None:
+            self._servos.link.close()
+
+    def _start(self, servos: ServoClient) -> None:
+        tell_every_second(self, lambda: servos.status(self.get_name()))
+        self.say.info(words.STARTED_AT_PORT, port=servos.link.port, service=HEAD_SERVICE)
+        servos.link.start()
+
+    def _read_joints(self) -> None:
+        self._pan, self._tilt = (words.joint(self._values, name) for name in ("pan", "tilt"))
+
+    # ---------------------------------------------------------------- requests
 
     async def _serve(
         self, request: AddTwoInts.Request, response: AddTwoInts.Response
     ) -> AddTwoInts.Response:
         response.sum = 0
-        asked = {"pan": request.a, "tilt": request.b}
-        if request.a not in HEAD_ANGLE or request.b not in HEAD_ANGLE:
-            self.say.warn(_OUT_OF_RANGE, low=HEAD_ANGLE.low, high=HEAD_ANGLE.high, **asked)
+        asked = Pose(request.a, request.b)
+        if not self._reaches(asked):
             return response
+        if self._servos is not None:
+            self._look_after(self._servos)
+            trouble = self._servos.trouble()
+            if trouble is not None:
+                self._refuse(words.NO_HEAD, asked, reason=trouble)
+                return response
         if len(self._turns) > self.number("queue"):
-            self.say.warn(_BUSY, count=len(self._turns) - 1, **asked)
+            self._refuse(words.BUSY, asked, count=len(self._turns) - 1)
             return response
         arrival = Future()
-        self._turns.append((Pose(request.a, request.b), arrival))
+        self._turns.append((asked, arrival))
         if len(self._turns) == 1:
             self._begin()
         else:
-            self.say.info(_WAITING, **asked)
+            self.say.info(words.WAITING, pan=asked.pan, tilt=asked.tilt)
         response.sum = int(await arrival)
         return response
 
+    def _reaches(self, asked: Pose) -> bool:
+        pan, tilt = self._pan.reach, self._tilt.reach
+        if asked.pan in pan and asked.tilt in tilt:
+            return True
+        self._refuse(
+            words.OUT_OF_RANGE,
+            asked,
+            pan_low=pan.low,
+            pan_high=pan.high,
+            tilt_low=tilt.low,
+            tilt_high=tilt.high,
+        )
+        return False
+
+    def _refuse(self, phrase: Phrase, asked: Pose, **values: object) -> None:
+        self.say.warn(phrase, every_s=0.0, pan=asked.pan, tilt=asked.tilt, **values)
+
+    # ---------------------------------------------------------------- movements
+
     def _begin(self) -> None:
-        self._from, self._goal = self._pose, self._turns[0][0]
-        self._began_s = time.monotonic()
+        """Move to the first of the requests, if there is one that can be moved to."""
+        # The trim may have changed since it came.
+        while self._turns and not self._reaches(self._turns[0][0]):
+            self._answer(arrived=False)
         self._set_pace()
-        self.say.info(_TURNING, pan=self._goal.pan, tilt=self._goal.tilt)
+        if not self._turns:
+            return
+        goal = self._turns[0][0]
+        self._from, self._began_s = self._pose, time.monotonic()
+        if self._servos is None:
+            self._length_s = self.number("move_time")
+        elif not self._command(self._servos, goal):
+            self._give_up(self._servos)
+            return
+        self.say.info(words.TURNING, pan=goal.pan, tilt=goal.tilt)
+
+    def _command(self, servos: ServoClient, goal: Pose) -> bool:
+        pan, tilt = self._pan, self._tilt
+        pan_us, tilt_us = self._pulses_us or (None, None)
+        way_deg = max(pan.way_deg(pan_us, goal.pan), tilt.way_deg(tilt_us, goal.tilt))
+        time_ms = turn_ms(way_deg, self.number("speed"))
+        self._length_s = time_ms / 1000 + _SETTLE_S
+        self._pulses_us = pan.pulse_us(goal.pan), tilt.pulse_us(goal.tilt)
+        pairs = zip((pan.servo, tilt.servo), self._pulses_us, strict=True)
+        return servos.move(tuple(pairs), time_ms)
+
+    def _look_after(self, servos: ServoClient) -> None:
+        if servos.was_away():
+            self._give_up(servos)
+
+    def _give_up(self, servos: ServoClient) -> None:
+        """Nobody knows where the head looks any more."""
+        self._pose = self._pulses_us = None
+        if not self._turns:
+            return
+        reason = servos.trouble() or self.say.text(WAS_AWAY)
+        while self._turns:
+            self._refuse(words.NO_HEAD, self._turns[0][0], reason=reason)
+            self._answer(arrived=False)
+        self._set_pace()
+
+    def _answer(self, *, arrived: bool) -> None:
+        _goal, arrival = self._turns.popleft()
+        arrival.set_result(arrived)
 
     def _tick(self) -> None:
+        if self._servos is not None:
+            self._look_after(self._servos)
         if self._turns:
             self._move()
         self._publish()
 
     def _move(self) -> None:
-        move_time_s = self.number("move_time")
+        goal = self._turns[0][0]
         passed_s = time.monotonic() - self._began_s
-        if passed_s < move_time_s:
-            self._pose = self._from.towards(self._goal, passed_s / move_time_s)
+        if passed_s < self._length_s:
+            if self._from is not None:
+                self._pose = self._from.towards(goal, passed_s / self._length_s)
             return
-        self._pose = self._goal
-        self.say.info(_DONE, pan=self._goal.pan, tilt=self._goal.tilt)
-        _goal, arrival = self._turns.popleft()
-        arrival.set_result(True)
-        if self._turns:
-            self._begin()
-        else:
-            self._set_pace()
+        self._pose = goal
+        self.say.info(words.DONE, pan=goal.pan, tilt=goal.tilt)
+        self._answer(arrived=True)
+        self._begin()
 
     def _set_pace(self) -> None:
         change_period(self._timer, 1.0 / self.number("rate" if self._turns else "rest_rate"))
@@ -145,7 +233,8 @@ class HeadController(LessonNode):
         message = JointState()
         message.header.stamp = self.get_clock().now().to_msg()
         message.name = list(JOINTS)
-        message.position = [math.radians(self._pose.pan), math.radians(self._pose.tilt)]
+        if self._pose is not None:
+            message.position = [math.radians(self._pose.pan), math.radians(self._pose.tilt)]
         self._publisher.publish(message)
 
 
