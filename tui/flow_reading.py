@@ -105,7 +105,7 @@ class FlowReader:
         before, self._looked = self._looked, looks
         if before is None:
             return
-        still = all(abs(a - b) < STILL_RAD for a, b in zip(looks, before, strict=True))
+        still = all(map(_is_still, looks, before))
         if not still:
             self._head_s = time_s
         if still == self._head_moves:
@@ -113,6 +113,11 @@ class FlowReader:
             kind = Kind.HEAD_THERE if still else Kind.HEAD_MOVES
             # It has been there since the last message that was news.
             yield Step(self._head_s, Lane.HEAD, HEAD, said_by, kind, figures=looks)
+
+
+def _is_still(now_rad: float, before_rad: float) -> bool:
+    """Whether a joint is where it was; one of which nobody knows that is, too."""
+    return abs(now_rad - before_rad) < STILL_RAD or (math.isnan(now_rad) and math.isnan(before_rad))
 
 
 def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Step]:

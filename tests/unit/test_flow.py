@@ -218,6 +218,14 @@ def test_a_movement_of_the_head_is_its_beginning_and_its_end() -> None:
     ]
 
 
+def test_a_head_of_which_nobody_knows_where_it_looks_does_not_move() -> None:
+    unknown = [replace(head(0.0, at_s), value={"name": ["pan_joint"]}) for at_s in (0.0, 0.5, 1.0)]
+    reader = FlowReader()
+    assert read(reader, *unknown) == []
+    steps = read(reader, head(30.0, 1.5), head(30.0, 2.0))
+    assert [one.kind for one in steps] == [Kind.HEAD_MOVES, Kind.HEAD_THERE]
+
+
 def test_silence_in_the_microphone_says_nothing_and_a_loud_sound_does() -> None:
     quiet = sound("/audio/mic_raw", "", 0.0)
     quiet.value["data"] = b"\x01\x00" * 800  # type: ignore[index]

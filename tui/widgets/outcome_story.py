@@ -185,6 +185,9 @@ class Story:
         if self._target is None or (had and had[0].mark == "✓"):
             return
         looks = words.joint(sample.value, "pan_joint"), words.joint(sample.value, "tilt_joint")
+        if any(map(math.isnan, looks)):
+            # Nobody knows yet where servos look that were not moved.
+            return
         there = all(abs(a - b) < NEAR_RAD for a, b in zip(looks, self._target, strict=True))
         entry = Entry(
             "✓" if there else "·", HEAD, words.head_words(*looks), delay_s if there else None
