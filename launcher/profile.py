@@ -17,6 +17,7 @@ from launcher.profile_check import applies, check_module, check_needs, check_nod
 from launcher.profile_devices import with_devices
 from launcher.profile_extends import read_profile
 from launcher.profile_params import flatten
+from launcher.profile_references import used_devices
 from launcher.profile_sets import read_sets
 from launcher.profile_spec import NodeSpec, Profile, Ready
 from launcher.profile_text import shown
@@ -69,9 +70,10 @@ def load_profile(
     if tree is None or problems.found:
         raise ProfileError(problems.in_order())
     places = {"run_dir": str(run_path(env).absolute()), "domain": _early_domain(tree, domain, env)}
+    used = used_devices(tree, hardware)
     tree = with_devices(tree, hardware, places, env, problems, ports)
     document, valid = validate(tree, problems)
-    reader = _Reader(path.absolute(), tree, problems)
+    reader = _Reader(path.absolute(), tree, problems, used)
     nodes = reader.nodes(valid, hardware)
     nodes = read_sets(overrides, nodes, set(valid) - set(nodes), problems)
     if problems.found or document is None:
@@ -97,6 +99,8 @@ class _Reader:
     path: Path
     tree: Branch
     problems: Problems
+    used: set[str]
+    """Devices that nodes name."""
 
     def nodes(self, valid: Mapping[str, NodeDocument], hardware: str) -> dict[str, NodeSpec]:
         """Return the nodes that run, those with problems too."""
@@ -168,6 +172,7 @@ class _Reader:
             discovery=document.discovery,
             hardware=hardware,
             devices=document.devices,
+            used=tuple(name for name in document.devices if name in self.used),
             panels=document.panels,
             steps=document.steps,
             warnings=self._warnings(document),

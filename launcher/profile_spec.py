@@ -97,6 +97,8 @@ class Profile:
     discovery: Discovery = "localhost"
     hardware: str = "mock"
     devices: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    used: tuple[str, ...] = ()
+    """The devices that its nodes name, in the order of the file."""
     panels: tuple[str, ...] = ()
     steps: tuple[Mapping[str, Any], ...] = ()
     warnings: tuple[ProfileProblem, ...] = ()

@@ -135,8 +135,13 @@ def _add_check(parser: Parser) -> None:
     parser.add_argument(
         "profile", nargs="?", metavar="PROFILE", help=_("name or file; without it all of them")
     )
+    parser.add_argument(
+        "--preflight",
+        action="store_true",
+        help=_("ask the devices too, with --hardware real: found, permitted, free, answering"),
+    )
     _add_profile_options(parser)
-    parser.epilog = _("Exit code: 0 if all is well, 2 if not.")
+    parser.epilog = _("Exit code: 0 if all is well, 2 if not. Nothing moves by it.")
 
 
 def _add_up(parser: Parser) -> None:

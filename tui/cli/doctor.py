@@ -13,6 +13,7 @@ from tui.i18n import N_, _
 
 if TYPE_CHECKING:
     from argparse import Namespace
+    from collections.abc import Iterable
 
     from tui.doctor import Finding
 
@@ -29,11 +30,15 @@ def doctor_command(options: Namespace) -> int:
     if options.json:
         write(json.dumps([asdict(finding) for finding in findings], ensure_ascii=False, indent=2))
     else:
-        paint = Paint(sys.stdout)
-        width = max(len(_(word)) for word, _colour in LOOKS.values())
-        for finding in findings:
-            _show(finding, paint, width)
+        show(findings, Paint(sys.stdout))
     return 1 if any(finding.level is Level.FAIL for finding in findings) else 0
+
+
+def show(findings: Iterable[Finding], paint: Paint) -> None:
+    """Write a line for each finding, and below it the mend."""
+    width = max(len(_(word)) for word, _colour in LOOKS.values())
+    for finding in findings:
+        _show(finding, paint, width)
 
 
 def _show(finding: Finding, paint: Paint, width: int) -> None:

@@ -42,7 +42,11 @@ def list_command(options: Namespace) -> int:
 
 
 def check_command(options: Namespace) -> int:
-    """Say what is wrong with one profile or with all; 0 if nothing is."""
+    """Say what is wrong with one profile or with all, or with devices; 0 if nothing is."""
+    if options.preflight:
+        from tui.cli.preflight import preflight_command
+
+        return preflight_command(options)
     if options.profile:
         paths = [find_profile(options.profile)]
     else:

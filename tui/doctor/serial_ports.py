@@ -72,24 +72,29 @@ def judge(facts: SerialFacts) -> list[Finding]:
     return [_port(port, facts) for port in facts.ports]
 
 
+def permission_mend(device: str) -> str:
+    """Return how this user comes to be allowed to open a device."""
+    groups = tuple(map(_name, os.getgroups()))
+    return _mend(_group_of(device), os.environ.get("USER", ""), groups)
+
+
+def _mend(group: str, user: str, groups: tuple[str, ...]) -> str:
+    user, group = user or "$USER", group or "dialout"
+    if group in groups:
+        mend = _("the group {group} is yours, but the port forbids it: look at its udev rule")
+        return mend.format(group=group)
+    mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
+    return mend.format(group=group, user=user)
+
+
 def _port(port: SerialPort, facts: SerialFacts) -> Finding:
     name = port.by_id or port.device
     what = f" ({port.description})" if port.description not in ("", "n/a") else ""
     text = _("serial port {name}").format(name=name) + what
     if port.allowed:
         return ok("serial", text)
-    user, group = facts.user or "$USER", port.group or "dialout"
-    if group in facts.groups:
-        mend = _("the group {group} is yours, but the port forbids it: look at its udev rule")
-        return warn(
-            "serial", _("{what}: no permission").format(what=text), mend.format(group=group)
-        )
-    mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
-    return warn(
-        "serial",
-        _("{what}: no permission").format(what=text),
-        mend.format(group=group, user=user),
-    )
+    text = _("{what}: no permission").format(what=text)
+    return warn("serial", text, _mend(port.group, facts.user, facts.groups))
 
 
 def _group_of(device: str) -> str:

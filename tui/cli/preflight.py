@@ -1,0 +1,56 @@
+"""`deck check PROFILE --hardware real --preflight`: one line a device, and its mend."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from launcher.catalog import find_profile
+from launcher.errors import UsageError
+from launcher.profile import load_profile
+from launcher.words import say
+from tui.cli.doctor import show
+from tui.cli.output import Paint, write
+from tui.doctor.finding import Level
+from tui.i18n import _, ngettext
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+NOT_READY = 2
+
+
+def preflight_command(options: Namespace) -> int:
+    """Ask every device of a profile; 2 if one of them is not as it should be.
+
+    Raises:
+        UsageError: without a profile, or on mock hardware, which has no devices before it runs.
+    """
+    if not options.profile:
+        raise UsageError(say("--preflight needs a profile: deck check robot --preflight"))
+    if options.hardware != "real":
+        raise UsageError(say("--preflight asks real devices: add --hardware real"))
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+    )
+    from tui.preflight import examine
+
+    findings = examine(profile)
+    if not findings:
+        write(_("{name} names no serial device").format(name=profile.name))
+        return 0
+    show(findings, Paint(sys.stdout))
+    bad = sum(finding.level is Level.FAIL for finding in findings)
+    if not bad:
+        write(_("every device answers; nothing was moved"))
+        return 0
+    words = ngettext(
+        "{count} device is not ready; nothing was moved",
+        "{count} devices are not ready; nothing was moved",
+        bad,
+    )
+    write(words.format(count=bad))
+    return NOT_READY

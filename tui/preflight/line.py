@@ -1,0 +1,68 @@
+"""A port that was opened to be asked: bytes in and out, each with a deadline."""
+
+from __future__ import annotations
+
+import contextlib
+import termios
+import time
+from typing import TYPE_CHECKING
+
+import serial
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+BAD = (OSError, termios.error, serial.SerialException, TypeError)
+"""What pyserial raises when a cable is pulled."""
+_READ_S, _WRITE_S = 0.05, 0.3
+_MOST = 4096
+
+
+class Line:
+    """An open port, to be closed."""
+
+    def __init__(self, path: str, baud: int) -> None:
+        """Open it for this program alone.
+
+        Raises:
+            OSError, ValueError: if that cannot be.
+        """
+        self.baud = baud
+        self._port = serial.Serial(
+            path, baud, timeout=_READ_S, write_timeout=_WRITE_S, exclusive=True
+        )
+
+    def close(self) -> None:
+        """Give it back."""
+        with contextlib.suppress(*BAD):
+            self._port.close()
+
+    def hear(self, seconds: float, enough: Callable[[bytes], bool]) -> bytes:
+        """Return what comes within so many seconds; sooner once `enough`, asked of each piece.
+
+        Raises:
+            OSError: if the device goes.
+        """
+        end_s, heard = time.monotonic() + seconds, b""
+        try:
+            while time.monotonic() < end_s:
+                data = self._port.read(1)
+                data += self._port.read(min(self._port.in_waiting, _MOST))
+                heard += data
+                if data and enough(data):
+                    break
+        except (termios.error, TypeError) as error:
+            raise OSError(str(error)) from error
+        return heard
+
+    def say(self, data: bytes) -> None:
+        """Send, whether or not anybody takes it.
+
+        Raises:
+            OSError: if the device goes.
+        """
+        try:
+            with contextlib.suppress(serial.SerialTimeoutException):
+                self._port.write(data)
+        except (termios.error, TypeError) as error:
+            raise OSError(str(error)) from error
