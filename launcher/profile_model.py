@@ -17,7 +17,7 @@ from launcher.serial_choice import KINDS
 from launcher.words import Words, say
 
 Restart = Literal["never", "on-failure", "always"]
-Panel = Literal["sonar", "wheels", "camera", "head", "voice", "composer"]
+Panel = Literal["sonar", "wheels", "map", "camera", "head", "voice", "composer"]
 
 NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 LONGEST_NODE_NAME = 255

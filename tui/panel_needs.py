@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 NEEDS = {
     "sonar": {"/sensor/sonar_front", "/sensor/sonar_rear"},
     "wheels": {"/wheel_commands", "/joint_states"},
+    "map": {"/odom", "/map"},
     "camera": {"/camera/color/image_raw"},
     "head": {"/head_state"},
     "voice": {"/audio/mic_raw", "/audio/speaker_raw"},

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 PANELS = {
     "sonar": ("tui.panels.sonar", "SonarFeed"),
     "wheels": ("tui.panels.wheels", "WheelsFeed"),
+    "map": ("tui.panels.map", "MapFeed"),
     "camera": ("tui.panels.camera", "CameraFeed"),
     "head": ("tui.panels.head", "HeadFeed"),
     "voice": ("tui.panels.voice", "VoiceFeed"),

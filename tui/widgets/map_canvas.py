@@ -1,0 +1,128 @@
+"""A field of braille dots that many things are drawn on at once, two by four in every cell.
+
+Like `tui.widgets.dots`, in arrays: a room has thousands of dots, and is copied for every frame.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tui.widgets.drawing import LOOKS, Ink, Line
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from tui.widgets.dots import Point
+
+_BLANK, _BRAILLE = 0x20, 0x2800
+_WEIGHTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.uint16)
+_LOOKS = ("", *LOOKS)
+_NUMBER = {look: number for number, look in enumerate(_LOOKS)}
+
+
+class Canvas:
+    """A grid of cells; a cell takes the look of the last thing drawn in it."""
+
+    def __init__(self, columns: int, rows: int) -> None:
+        """So many cells, all blank."""
+        self.columns, self.rows = columns, rows
+        self.width, self.height = 2 * columns, 4 * rows
+        self._on = np.zeros((self.height, self.width), dtype=np.bool_)
+        self._looks = np.zeros((rows, columns), dtype=np.uint8)
+        self._signs: dict[tuple[int, int], str] = {}
+
+    def copy(self) -> Canvas:
+        """Another one that looks alike, to be drawn on."""
+        other = Canvas(self.columns, self.rows)
+        other._on, other._looks = self._on.copy(), self._looks.copy()
+        other._signs = dict(self._signs)
+        return other
+
+    def dots(self, x: NDArray[np.float64], y: NDArray[np.float64], look: str = "") -> None:
+        """Set dots, x to the right and y downwards; those outside are left out."""
+        inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
+        column, row = x[inside].astype(np.intp), y[inside].astype(np.intp)
+        self._on[row, column] = True
+        self._looks[row // 4, column // 2] = _NUMBER[look]
+
+    def line(
+        self, start: Point, end: Point, look: str = "", dash: tuple[int, int] = (1, 0)
+    ) -> None:
+        """A straight line; `dash` is how many dots are set and how many left out in turn."""
+        clipped = self._clipped(start, end)
+        if clipped is None:
+            return
+        (x0, y0), (x1, y1) = clipped
+        steps = max(1, int(np.ceil(max(abs(x1 - x0), abs(y1 - y0)))))
+        shares = np.linspace(0.0, 1.0, steps + 1)
+        shares = shares[np.arange(steps + 1) % sum(dash) < dash[0]]
+        self.dots(x0 + (x1 - x0) * shares, y0 + (y1 - y0) * shares, look)
+
+    def outline(self, corners: list[Point], look: str = "") -> None:
+        """A closed figure."""
+        for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
+            self.line(start, end, look)
+
+    def fill(self, corners: list[Point], look: str = "") -> None:
+        """A closed convex figure with all dots whose middle is in it."""
+        shape = np.array(corners)
+        least = np.clip(np.floor(shape.min(axis=0)), 0, (self.width, self.height)).astype(int)
+        most = np.clip(np.ceil(shape.max(axis=0)), 0, (self.width, self.height)).astype(int)
+        x, y = np.meshgrid(np.arange(least[0], most[0]) + 0.5, np.arange(least[1], most[1]) + 0.5)
+        along = np.roll(shape, -1, axis=0) - shape
+        sides = [
+            dx * (y - y0) - dy * (x - x0)
+            for (x0, y0), (dx, dy) in zip(shape.tolist(), along.tolist(), strict=True)
+        ]
+        inside = np.all([side >= 0 for side in sides], axis=0)
+        inside |= np.all([side <= 0 for side in sides], axis=0)
+        self.dots(x[inside], y[inside], look)
+
+    def sign(self, place: Point, char: str, look: str = "") -> None:
+        """A character in place of the dots of a cell; one outside is left out."""
+        if 0 <= place[0] < self.width and 0 <= place[1] < self.height:
+            row, column = int(place[1]) // 4, int(place[0]) // 2
+            self._signs[row, column] = char
+            self._looks[row, column] = _NUMBER[look]
+
+    def lines(self) -> list[Line]:
+        """The canvas as lines of ink; neighbours that look alike share one."""
+        cells = self._on.reshape(self.rows, 4, self.columns, 2)
+        bits = np.einsum("rycx,yx->rc", cells, _WEIGHTS)
+        codes = np.where(bits > 0, bits + _BRAILLE, _BLANK).astype("<u2")
+        for place, char in self._signs.items():
+            codes[place] = ord(char)
+        looks = np.where(codes == _BLANK, 0, self._looks)
+        return [_line(codes[row], looks[row]) for row in range(self.rows)]
+
+    def _clipped(self, start: Point, end: Point) -> tuple[Point, Point] | None:
+        """The part of a line within the canvas, after Liang and Barsky; None if there is none."""
+        first, last = 0.0, 1.0
+        for begin, way, most in (
+            (start[0], end[0] - start[0], self.width),
+            (start[1], end[1] - start[1], self.height),
+        ):
+            if way == 0.0:
+                if not 0 <= begin <= most:
+                    return None
+                continue
+            near, far = sorted((-begin / way, (most - begin) / way))
+            first, last = max(first, near), min(last, far)
+        if not first <= last:
+            return None
+        x, y = end[0] - start[0], end[1] - start[1]
+        return (
+            (start[0] + x * first, start[1] + y * first),
+            (start[0] + x * last, start[1] + y * last),
+        )
+
+
+def _line(codes: NDArray[np.uint16], looks: NDArray[np.uint8]) -> Line:
+    text = codes.tobytes().decode("utf-16-le")
+    starts = [0, *(np.flatnonzero(np.diff(looks)) + 1).tolist()]
+    return [
+        Ink(text[start:end], _LOOKS[looks[start]])
+        for start, end in zip(starts, (*starts[1:], len(text)), strict=True)
+    ]

@@ -1,0 +1,100 @@
+"""Which part of the floor is shown, and where a place of it is on the canvas.
+
+Seen from above as on paper: x to the right, y upwards, so that a turn to the left is one to the
+left. A metre is as long across as it is upwards.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tui.widgets.dots import Point
+
+BAR_M = (1, 2, 5)
+"""First digits of the length of a scale bar."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """A rectangle of the floor, metres."""
+
+    left_m: float
+    right_m: float
+    bottom_m: float
+    top_m: float
+
+    def holding(self, *places: Point) -> Extent:
+        """Large enough for these places too."""
+        across, up = [x for x, _y in places], [y for _x, y in places]
+        return Extent(
+            min([self.left_m, *across]),
+            max([self.right_m, *across]),
+            min([self.bottom_m, *up]),
+            max([self.top_m, *up]),
+        )
+
+    def joined(self, other: Extent) -> Extent:
+        """Large enough for both."""
+        return self.holding((other.left_m, other.bottom_m), (other.right_m, other.top_m))
+
+    def widened(self, margin_m: float) -> Extent:
+        """Larger by a margin on each side."""
+        return Extent(
+            self.left_m - margin_m,
+            self.right_m + margin_m,
+            self.bottom_m - margin_m,
+            self.top_m + margin_m,
+        )
+
+    def rounded(self) -> Extent:
+        """Outwards to steps of about a tenth of it: the view must not creep with the robot."""
+        width_m, height_m = self.right_m - self.left_m, self.top_m - self.bottom_m
+        step_m = 10.0 ** math.floor(math.log10(max(width_m, height_m, 1.0)))
+        return Extent(
+            math.floor(self.left_m / step_m) * step_m,
+            math.ceil(self.right_m / step_m) * step_m,
+            math.floor(self.bottom_m / step_m) * step_m,
+            math.ceil(self.top_m / step_m) * step_m,
+        )
+
+
+@dataclass(frozen=True)
+class Field:
+    """An extent in the middle of so many dots."""
+
+    left_m: float
+    top_m: float
+    """What is at the upper left corner of the first dot."""
+    dots_per_m: float
+    columns: int
+    rows: int
+    """Cells."""
+
+    def place(self, x_m: float, y_m: float) -> Point:
+        """Where a place of the floor is, in dots."""
+        return (x_m - self.left_m) * self.dots_per_m, (self.top_m - y_m) * self.dots_per_m
+
+
+def fitted(extent: Extent, columns: int, rows: int) -> Field:
+    """Show all of an extent as large as so many cells allow."""
+    width_m = max(1e-6, extent.right_m - extent.left_m)
+    height_m = max(1e-6, extent.top_m - extent.bottom_m)
+    # The outermost dot belongs to what lies on the edge.
+    scale = min((2 * columns - 1) / width_m, (4 * rows - 1) / height_m)
+    return Field(
+        (extent.left_m + extent.right_m) / 2 - columns / scale,
+        (extent.bottom_m + extent.top_m) / 2 + 2 * rows / scale,
+        scale,
+        columns,
+        rows,
+    )
+
+
+def bar_length_m(field: Field, cells: int) -> float:
+    """The longest of 1, 2, 5, 10, ... metres, or parts, that so many cells have room for."""
+    most_m = max(1, cells) * 2 / field.dots_per_m
+    power = 10.0 ** math.floor(math.log10(most_m))
+    return max(digit * power for digit in BAR_M if digit * power <= most_m * (1 + 1e-9))
