@@ -50,14 +50,14 @@ def test_one_utterance(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("flow", pad()), terminal_size=look.size, run_before=spoken())
 
 
-@every_look
+@each_size
 def test_nobody_has_spoken(look: Look, snap_compare: SnapCompare) -> None:
     """Why it is empty, and what to do: wait for the microphone, or type a word."""
     app = look.app("flow", pad())
     assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
-@every_look
+@each_size
 def test_two_utterances(look: Look, snap_compare: SnapCompare) -> None:
     """The newest on top; the cursor is on the older one, at its third step."""
     before = spoken("n", "down", "down", "down", twice=True)

@@ -112,7 +112,7 @@ def test_a_node_that_does_not_answer(look: Look, snap_compare: SnapCompare) -> N
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@every_look
+@each_size
 def test_a_service(look: Look, snap_compare: SnapCompare) -> None:
     """Type and nodes as links, a form that fits, sum 1 with its time; below the call itself."""
     before = at(SERVICE, "enter", "ctrl+s")
@@ -140,14 +140,14 @@ def test_a_call_under_way_and_one_that_failed(look: Look, snap_compare: SnapComp
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@every_look
+@each_size
 def test_an_action(look: Look, snap_compare: SnapCompare) -> None:
     """Goal form, two goals: one succeeded, one executing with its twelfth feedback shown."""
     before = at(ACTION, "enter", "ctrl+s", "ctrl+s", executing)
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@every_look
+@each_size
 def test_a_type(look: Look, snap_compare: SnapCompare) -> None:
     """JointState down to its fields, the header unfolded; below the topics that are of it."""
     before = at(TYPE, "enter", "right")

@@ -91,14 +91,14 @@ def test_a_form(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app, terminal_size=look.size, run_before=filled(nothing))
 
 
-@every_look
+@each_size
 def test_an_error(look: Look, snap_compare: SnapCompare) -> None:
     """A word for a number: line marked, value underlined, field named, nothing sent."""
     app = look.app("topics")
     assert snap_compare(app, terminal_size=look.size, run_before=filled(wrong, "ctrl+s"))
 
 
-@every_look
+@each_size
 def test_running(look: Look, snap_compare: SnapCompare) -> None:
     """Three publications with rate, count and listeners; the third has ended and says why."""
 
