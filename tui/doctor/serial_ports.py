@@ -5,16 +5,14 @@ from __future__ import annotations
 import grp
 import os
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from launcher.serial_ports import serial_ports
 from tui.doctor.finding import ok, warn
-from tui.i18n import _
+from tui.i18n import _, said
 
 if TYPE_CHECKING:
     from tui.doctor.finding import Finding
-
-BY_ID = Path("/dev/serial/by-id")
 
 
 @dataclass(frozen=True)
@@ -29,6 +27,8 @@ class SerialPort:
     group: str = ""
     allowed: bool = True
     """Whether this user may read and write it."""
+    kind: str = ""
+    """What it looks like by its USB ids, empty if they tell nothing."""
 
 
 @dataclass(frozen=True)
@@ -45,20 +45,19 @@ class SerialFacts:
 def look() -> SerialFacts:
     """Find out; ports of the motherboard without anything behind them are left out."""
     try:
-        from serial.tools import list_ports
+        found = serial_ports()
     except ImportError as error:
         return SerialFacts(error=str(error))
-    names = {os.path.realpath(path): str(path) for path in sorted(BY_ID.glob("*"))}
     ports = tuple(
         SerialPort(
             device=port.device,
-            description=port.description or "",
-            by_id=names.get(os.path.realpath(port.device), ""),
+            description=port.description,
+            by_id=port.name,
             group=_group_of(port.device),
             allowed=os.access(port.device, os.R_OK | os.W_OK),
+            kind=port.kind,
         )
-        for port in sorted(list_ports.comports(), key=lambda port: port.device)
-        if port.hwid != "n/a"
+        for port in found
     )
     return SerialFacts(ports, os.environ.get("USER", ""), tuple(map(_name, os.getgroups())))
 
@@ -89,8 +88,8 @@ def _mend(group: str, user: str, groups: tuple[str, ...]) -> str:
 
 def _port(port: SerialPort, facts: SerialFacts) -> Finding:
     name = port.by_id or port.device
-    what = f" ({port.description})" if port.description not in ("", "n/a") else ""
-    text = _("serial port {name}").format(name=name) + what
+    what = ", ".join(part for part in (port.description, said(port.kind)) if part)
+    text = _("serial port {name}").format(name=name) + (f" ({what})" if what else "")
     if port.allowed:
         return ok("serial", text)
     text = _("{what}: no permission").format(what=text)
