@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from textual.screen import Screen
 
@@ -14,8 +14,11 @@ from tui.widgets.replay_bar import ReplayBar
 from tui.widgets.title_bar import TitleBar
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from textual.app import ComposeResult
 
+    from tui.actions import Action
     from tui.app import DeckApp
     from tui.feed import Feed
 
@@ -77,6 +80,10 @@ class DeckScreen(Screen[None], Acting):
     def follow_topics(self) -> set[str]:
         """Return the topics of which every message is wanted, also while another is in front."""
         return set()
+
+    def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
+        """Yield headings and actions of parts of the screen that have keys of their own."""
+        yield from ()
 
     def topics_changed(self) -> None:
         """Tell the app that `watch_topics`, `follow_topics` or `measure_all` answer otherwise."""

@@ -14,10 +14,12 @@ from launcher.errors import LauncherError
 from launcher.status import Severity
 from tui.actions import bindings
 from tui.actions.deck import DECK_ACTIONS
+from tui.actions.teleop import OpenTeleop
 from tui.i18n import N_, said
 from tui.messages import SessionChanged
 from tui.panels.panel import row_of
 from tui.screens.deck_panels import ScreenWithPanels
+from tui.screens.deck_teleop import DrivenScreen
 from tui.widgets.command_line import CommandLine
 from tui.widgets.log_view_pane import LogPane
 from tui.widgets.nodes_table import NodesTable
@@ -43,7 +45,7 @@ DRIVER = "nodes.ai_driver"
 COMMANDS, COMMANDS_TYPE = "/ai_command", "std_msgs/msg/String"
 
 
-class LessonDeck(ScreenWithPanels):
+class LessonDeck(ScreenWithPanels, DrivenScreen):
     """Nodes above the log, panels at the right; on a small terminal panels beside the log."""
 
     tab: ClassVar[str] = "deck"
@@ -53,7 +55,7 @@ class LessonDeck(ScreenWithPanels):
         "nodes say on their topics."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
-        *bindings(*DECK_ACTIONS),
+        *bindings(*DECK_ACTIONS, OpenTeleop),
         Binding("escape", "leave_field", show=False),
     ]
     DEFAULT_CSS = """
@@ -160,9 +162,13 @@ class LessonDeck(ScreenWithPanels):
         if error is not None:
             self.notify(plain(str(error)), severity="error", markup=False)
 
+    def focus_usual(self) -> None:
+        """Go to the nodes."""
+        self.table.focus()
+
     def action_leave_field(self) -> None:
         """Back to the nodes."""
-        self.table.focus()
+        self.focus_usual()
 
     # What is shown
 

@@ -49,11 +49,11 @@ class ScreenWithPanels(DeckScreen):
 
     def watch_topics(self) -> set[str]:
         """What the panels show."""
-        return set().union(*(panel.watched() for panel in self.panels))
+        return super().watch_topics().union(*(panel.watched() for panel in self.panels))
 
     def follow_topics(self) -> set[str]:
         """What the panels must not miss."""
-        return set().union(*(panel.followed() for panel in self.panels))
+        return super().follow_topics().union(*(panel.followed() for panel in self.panels))
 
     def measure_room(self, columns: int, rows: int) -> None:
         """Leave the panels out where there is no room for them."""

@@ -83,6 +83,9 @@ class HelpScreen(ModalScreen[None], Acting):
             yield Entry()
             yield Entry(_(screen.about))
         yield from self._section(_("Keys of this screen"), list(bound(screen)))
+        if isinstance(screen, DeckScreen):
+            for heading, actions in screen.more_keys():
+                yield from self._section(heading, list(actions))
         yield from self._section(_("Keys of every screen"), self._everywhere())
         yield Entry()
         yield Entry(
