@@ -9,6 +9,8 @@ from tui import clock, emergency
 from tui.emergency import Emergency, listeners
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from graph.data import GraphUpdate
     from tui.app import DeckApp
 
@@ -25,13 +27,15 @@ class Brake:
 
     def engage(self) -> None:
         """Stop the wheels: said on the topic, or by stopping the nodes if nobody hears."""
+        # On its way before anything is drawn, or waits for its turn.
+        sent = self._publish(engaged=True)
         self._set(self.state.pressed(clock.now()))
-        self._app.run_worker(self._stop(), group="brake")
+        self._app.run_worker(self._stop(sent), group="brake")
 
     def release(self) -> None:
         """Let the wheels turn again."""
         self._set(self.state.released(clock.now()))
-        self._app.run_worker(self._send(engaged=False), group="brake")
+        self._app.run_worker(self._reached(self._publish(engaged=False)), group="brake")
 
     def see(self, update: GraphUpdate) -> None:
         """Take in what others have done."""
@@ -49,11 +53,11 @@ class Brake:
             # If it cannot be made, publishing will say so.
             prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
 
-    async def _stop(self) -> None:
-        """Publish; where that cannot have reached anybody, stop all nodes as well."""
+    async def _stop(self, sent: Future[int] | None) -> None:
+        """Where the stop cannot have reached anybody, stop all nodes as well."""
         feed = self._app.feed
         reached = listeners(feed.update) > 0
-        sending = asyncio.ensure_future(self._send(engaged=True))
+        sending = asyncio.ensure_future(self._reached(sent))
         if reached and await sending:
             return
         unheard = emergency.NO_GRAPH if reached else _unheard(feed.update)
@@ -62,15 +66,20 @@ class Brake:
             await feed.link.stop()
         await sending
 
-    async def _send(self, *, engaged: bool) -> bool:
-        """Publish the latched word; return whether ROS took it."""
+    def _publish(self, *, engaged: bool) -> Future[int] | None:
+        """Publish the latched word; None without a graph."""
         graph = self._app.feed.graph
         if graph is None:
-            return False
+            return None
         message = {"data": engaged}
-        future = graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, message, latched=True)
+        return graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, message, latched=True)
+
+    async def _reached(self, sent: Future[int] | None) -> bool:
+        """Return whether ROS took it."""
+        if sent is None:
+            return False
         try:
-            await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
+            await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
         except Exception:  # noqa: BLE001 - whatever it was, the nodes are stopped in its place
             return False
         return True

@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from tui.i18n import N_, _
+from tui.teleop_gate import Gate, gate_in, held_words
+from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
@@ -37,6 +39,8 @@ class Emergency:
     """Why the nodes are stopped in its place (a message id), empty if it reached somebody."""
     blocked: str = ""
     """Why the safety node holds the wheels, in its own words; empty if it does not."""
+    gate: Gate | None = None
+    """What the gate said, to be told in the language of the screen; None if it said nothing."""
 
     def pressed(self, now_s: float) -> Emergency:
         """Engage it from here."""
@@ -58,7 +62,7 @@ class Emergency:
             if engaged != state.engaged and sample.received_s > state.since_s:
                 state = replace(state, engaged=engaged, ours=False, fallback="")
         for sample in update.samples.get(SAFETY_TOPIC, ()):
-            state = replace(state, blocked=blocked_reason(sample))
+            state = replace(state, blocked=blocked_reason(sample), gate=gate_in(sample))
         return state
 
 
@@ -69,6 +73,12 @@ def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:
     if state.fallback:
         return (f"{words} · {_(state.fallback)} · {release}", f"{words} · {release}")
     return (f"{words} · {release}",)
+
+
+def held_reason(state: Emergency) -> str:
+    """Return why the wheels are held, in the screen's language where it is known."""
+    own = "" if state.gate is None else held_words(state.gate)
+    return own or plain(state.blocked, 400)
 
 
 def listeners(update: GraphUpdate | None) -> int:

@@ -14,7 +14,7 @@ from tui.actions.app import (
     ShowLogs,
     ShowTopics,
 )
-from tui.emergency import stop_words
+from tui.emergency import held_reason, stop_words
 from tui.i18n import _, ngettext, pick, said
 from tui.widgets.plain import plain
 
@@ -54,7 +54,7 @@ def states(app: DeckApp) -> Sequence[str]:
     if app.brake.state.engaged:
         return stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0])
     if app.brake.state.blocked:
-        reason = plain(app.brake.state.blocked, 400)
+        reason = held_reason(app.brake.state)
         return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
 
