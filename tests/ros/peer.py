@@ -49,6 +49,7 @@ class Peer:
         self._subscriptions: list[Subscription[Any]] = []
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
+        self._closing = False
         self._thread = threading.Thread(target=self._spin, name="peer", daemon=True)
         self._thread.start()
 
@@ -60,10 +61,12 @@ class Peer:
 
     def close(self) -> None:
         """End the node and its thread."""
-        self._context.try_shutdown()
+        self._closing = True
+        self._executor.create_task(lambda: None)
         self._thread.join(timeout=10)
         self._executor.shutdown()
         self.node.destroy_node()
+        self._context.try_shutdown()
 
     def hear(self, topic: str, kind: type, qos: QoSProfile | int = 100) -> list[Any]:
         """A list that grows with every message of the topic from now on."""
@@ -115,5 +118,7 @@ class Peer:
         return node in self.node.get_node_names()
 
     def _spin(self) -> None:
+        # Not until its context is shut down: that fails now and then in the middle of a callback.
         with contextlib.suppress(ExternalShutdownException):
-            self._executor.spin()
+            while not self._closing:
+                self._executor.spin_once()
