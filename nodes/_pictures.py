@@ -48,3 +48,22 @@ def bgr(message: Image) -> NDArray[np.uint8]:
     rows = np.frombuffer(message.data, np.uint8).reshape(height, step)
     picture = rows[:, :row].reshape(height, width, CHANNELS)
     return picture if message.encoding == "bgr8" else picture[:, :, ::-1]
+
+
+def fit(picture: NDArray[np.uint8], into: NDArray[np.uint8]) -> None:
+    """Copy a picture into an array of (rows, columns, 3), blue first.
+
+    One of another size is scaled, with black bars where the shape differs; a grey one is taken too.
+    """
+    if picture.shape == into.shape:
+        into[:] = picture
+        return
+    import cv2
+
+    rows, columns = picture.shape[:2]
+    scale = min(into.shape[0] / rows, into.shape[1] / columns)
+    height, width = max(1, round(rows * scale)), max(1, round(columns * scale))
+    top, left = (into.shape[0] - height) // 2, (into.shape[1] - width) // 2
+    scaled = cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA)
+    into[:] = 0
+    into[top : top + height, left : left + width] = scaled.reshape(height, width, -1)

@@ -1,0 +1,166 @@
+"""A camera, a video file or a stream, by OpenCV: the newest picture, `rate` times a second.
+
+`source` is the number of a camera (0 is /dev/video0), a /dev path (best one of /dev/v4l/by-id, as
+it stays the same), a video file, or a URL (http, rtsp). What comes in another size is scaled, with
+black bars where the shape differs. It connects again by itself; a file begins anew when it is over.
+How it is goes to /diagnostics once a second.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from array import array
+from typing import TYPE_CHECKING
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from sensor_msgs.msg import Image
+
+from nodes._camera_source import CameraSource, SourceSetting
+from nodes._capture import SILENT_S, THREAD, Capture
+from nodes._diagnostics import tell_every_second
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._parameters import Choice, Number, Switch, Text, Whole
+from nodes._pictures import CHANNELS, fit
+from nodes._speech import Phrase
+from nodes._topics import CAMERA, NEWEST
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_LOOK_EVERY_S = 0.5
+
+_STARTED = Phrase(
+    "The camera publishes {width}x{height} {encoding} from {source}",
+    "Камера публикует {width}x{height} {encoding} из {source}",
+)
+_SILENT = Phrase(
+    "{source} is open, but no picture came for {seconds:g} s",
+    "{source} открыт, но кадров нет уже {seconds:g} с",
+)
+_SINCE = Phrase(
+    "connected to {source} for {seconds:.0f} s", "подключено: {source}, {seconds:.0f} с"
+)
+_NOT_YET = Phrase("not yet connected to {source}", "ещё не подключено: {source}")
+
+
+class Camera(LessonNode):
+    """Publishes from the thread that reads the camera."""
+
+    NAME = "camera"
+    SETTINGS = (
+        SourceSetting("source", "0", "Camera, video file or stream", fixed=True),
+        Text("topic", CAMERA, "Where the pictures are published", fixed=True),
+        Number("rate", 10.0, "Pictures a second, at most", low=0.1, high=120.0, unit="Hz"),
+        Whole("width", 640, "Columns", low=16, high=4096, fixed=True),
+        Whole("height", 480, "Rows", low=16, high=4096, fixed=True),
+        Choice("encoding", "bgr8", "Order of colours", choices=("bgr8", "rgb8"), fixed=True),
+        Text("frame_id", "camera_color_optical_frame", "Frame of the pictures", fixed=True),
+        Switch("loop", True, "Whether a file begins anew when it is over", fixed=True),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        width, height = int(self.number("width")), int(self.number("height"))
+        encoding = self.text("encoding")
+        self._message = Image(height=height, width=width, encoding=encoding, step=CHANNELS * width)
+        self._message.header.frame_id = self.text("frame_id")
+        self._message.data = array("B", bytes(height * width * CHANNELS))
+        # The picture is written straight into the message, blue first.
+        picture = np.frombuffer(self._message.data, np.uint8).reshape(height, width, CHANNELS)
+        self._picture = picture if encoding == "bgr8" else picture[:, :, ::-1]
+        self._publisher = self.create_publisher(Image, self.text("topic"), NEWEST)
+        self._capture = Capture(
+            self.say,
+            CameraSource(self.text("source")),
+            (width, height),
+            lambda: self.number("rate"),
+            self._publish,
+            loop=self.switch("loop"),
+        )
+        self._told = (time.monotonic(), 0, 0)
+        tell_every_second(self, self._status)
+        self.every(_LOOK_EVERY_S, self._look)
+        source = self._capture.source
+        self.say.info(_STARTED, width=width, height=height, encoding=encoding, source=source)
+        self._capture.start()
+
+    def before_end(self) -> None:
+        """Give the camera back."""
+        self._capture.close()
+
+    # ---------------------------------------------------------------- the capture's thread
+
+    def _publish(self, picture: NDArray[np.uint8]) -> None:
+        stamp = self.get_clock().now().to_msg()
+        fit(picture, self._picture)
+        self._message.header.stamp = stamp
+        if self.context.ok():
+            self._publisher.publish(self._message)
+
+    # ---------------------------------------------------------------- the node's thread
+
+    def _look(self) -> None:
+        if self._capture.silent:
+            self.say.warn(_SILENT, every_s=10.0, source=self._capture.source, seconds=SILENT_S)
+
+    def _status(self) -> DiagnosticStatus:
+        capture = self._capture
+        seconds = time.monotonic() - capture.changed_s
+        values = {
+            "port": str(capture.source),
+            "connected": str(capture.connected).lower(),
+            "connected_since": capture.since,
+            "seconds": f"{seconds:.1f}",
+            "connections": str(capture.pictures.connections),
+            "reconnects": str(max(0, capture.pictures.connections - 1)),
+            **self._rates(),
+        }
+        level, message = (
+            DiagnosticStatus.OK,
+            self.say.text(_SINCE, source=capture.source, seconds=seconds),
+        )
+        if not capture.connected:
+            level = DiagnosticStatus.OK if capture.over else DiagnosticStatus.ERROR
+            message = capture.problem or self.say.text(_NOT_YET, source=capture.source)
+        elif capture.silent:
+            level = DiagnosticStatus.ERROR
+            message = self.say.text(_SILENT, source=capture.source, seconds=SILENT_S)
+        return DiagnosticStatus(
+            level=level,
+            name=self.get_name(),
+            message=message,
+            hardware_id=str(capture.source),
+            values=[KeyValue(key=key, value=value) for key, value in values.items()],
+        )
+
+    def _rates(self) -> dict[str, str]:
+        """Pictures a second since this was asked last."""
+        now_s, pictures = time.monotonic(), self._capture.pictures
+        came, taken = pictures.came, pictures.taken
+        before_s, *before = self._told
+        passed_s = max(1e-3, now_s - before_s)
+        self._told = now_s, came, taken
+        return {
+            "pictures_in_per_s": f"{(came - before[0]) / passed_s:.1f}",
+            "pictures_out_per_s": f"{(taken - before[1]) / passed_s:.1f}",
+        }
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    code = run(Camera, args)
+    if any(thread.name == THREAD for thread in threading.enumerate()):
+        # OpenCV is in a read that does not come back: the interpreter must not wait for it.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
