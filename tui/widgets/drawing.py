@@ -5,6 +5,7 @@ It shows why there is nothing to draw, and greys what is no longer true.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import ClassVar, NamedTuple
 
@@ -21,6 +22,8 @@ from tui.widgets.plain import plain
 from tui.widgets.trouble import no_data_words, trouble_words
 from tui.widgets.words import word_strips
 
+_ONE_CELL_EACH = re.compile("[ -~\u0400-\u0482\u2500-\u25ff\u2800-\u28ff]*")
+"""Text whose characters need not be measured one by one."""
 LOOKS = ("muted", "good", "warn", "bad", "stop", "accent", "second", "strong", "alert")
 
 
@@ -63,6 +66,7 @@ class Drawing(Widget):
         self._trouble: Trouble | None = None
         self._detail = ""
         self._age_s: float | None = None
+        self._styles: dict[str, Style] = {}
 
     @property
     def has_value(self) -> bool:
@@ -130,16 +134,25 @@ class Drawing(Widget):
         """Draw anew in another language."""
         self.on_resize()
 
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Some lines, all in the styles of this moment: Textual works one out in 0.2 ms."""
+        self._styles.clear()
+        return super().render_lines(crop)
+
     def render_line(self, y: int) -> Strip:
         """One line: of the drawing, or of words in place of it."""
-        width, base = self.size.width, self.rich_style
+        width = self.size.width
         if not self.has_value:
             return self._words(y, width)
         segments = [Segment(ink.text, self._style(ink.look)) for ink in _at(self._lines, y)]
-        return Strip(segments).adjust_cell_length(width, base)
+        return Strip(segments).adjust_cell_length(width, self._style(""))
 
     def _style(self, look: str) -> Style:
-        return self.get_component_rich_style(f"drawing--{look}") if look else self.rich_style
+        style = self._styles.get(look)
+        if style is None:
+            style = self.get_component_rich_style(f"drawing--{look}") if look else self.rich_style
+            self._styles[look] = style
+        return style
 
     def _words(self, y: int, width: int) -> Strip:
         headline = _("waiting for the first message")
@@ -173,6 +186,9 @@ def _cells(line: Line, width: int) -> list[tuple[str, str]]:
     """(character, look) of each cell; the second cell of a wide character is empty."""
     cells: list[tuple[str, str]] = []
     for text, look in line:
+        if _ONE_CELL_EACH.fullmatch(text):
+            cells.extend([(char, look) for char in text])
+            continue
         for char in text:
             cells.append((char, look))
             cells.extend([("", look)] * (cell_len(char) - 1))
