@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, JointState
+from std_msgs.msg import Header
 
 from nodes._drive import FRAME
 from robot.geometry import quaternion_from_rpy
@@ -34,6 +35,7 @@ class DeadReckoning:
         self._wheelbase_m, self._radius_m = wheelbase_m, radius_m
         self._uptime_ms: int | None = None
         self._angles = [0.0, 0.0]
+        self._odometry = Odometry(header=Header(frame_id=ODOM), child_frame_id=FRAME)
         self.pose = Pose()
 
     def take(self, telemetry: Telemetry) -> None:
@@ -59,36 +61,37 @@ class DeadReckoning:
         return message
 
     def odometry(self, telemetry: Telemetry, stamp: Time) -> Odometry:
-        """For /odom."""
-        message = Odometry()
+        """For /odom: the same message each time, filled anew."""
+        message = self._odometry
         message.header.stamp = stamp
-        message.header.frame_id, message.child_frame_id = ODOM, FRAME
-        place, turn = message.pose.pose.position, message.pose.pose.orientation
-        place.x, place.y = self.pose.x_m, self.pose.y_m
-        rotation = quaternion_from_rpy(0.0, 0.0, self.pose.heading_rad)
-        turn.x, turn.y, turn.z, turn.w = rotation.x, rotation.y, rotation.z, rotation.w
+        message.pose.pose.position.x = self.pose.x_m
+        message.pose.pose.position.y = self.pose.y_m
+        message.pose.pose.orientation = self._orientation()
         command = self._command(telemetry)
         radius_m = turning_radius(command.steering_rad, self._wheelbase_m)
         message.twist.twist.linear.x = command.speed_m_s
         message.twist.twist.angular.z = command.speed_m_s / radius_m
         return message
 
+    def transform(self, stamp: Time) -> TransformStamped:
+        """For /tf: odom to base_link."""
+        message = TransformStamped()
+        message.header = Header(stamp=stamp, frame_id=ODOM)
+        message.child_frame_id = FRAME
+        moved = message.transform.translation
+        moved.x, moved.y = self.pose.x_m, self.pose.y_m
+        message.transform.rotation = self._orientation()
+        return message
+
+    def _orientation(self) -> Quaternion:
+        turn = quaternion_from_rpy(0.0, 0.0, self.pose.heading_rad)
+        return Quaternion(x=turn.x, y=turn.y, z=turn.z, w=turn.w)
+
     def _command(self, telemetry: Telemetry) -> DriveSetpoint:
         """What the robot does, as a drive."""
         mean_rad_s = (telemetry.left_rad_s + telemetry.right_rad_s) / 2
         steering = max(-_SHARPEST_RAD, min(_SHARPEST_RAD, telemetry.steering_rad))
         return DriveSetpoint(mean_rad_s * self._radius_m, steering)
-
-
-def transform(odometry: Odometry) -> TransformStamped:
-    """For /tf: odom to base_link."""
-    message = TransformStamped()
-    message.header, message.child_frame_id = odometry.header, odometry.child_frame_id
-    place = odometry.pose.pose.position
-    moved = message.transform.translation
-    moved.x, moved.y, moved.z = place.x, place.y, place.z
-    message.transform.rotation = odometry.pose.pose.orientation
-    return message
 
 
 def battery(telemetry: Telemetry, stamp: Time) -> BatteryState:

@@ -20,6 +20,7 @@ import serial
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes._serial_frames import SerialFrames
+from nodes._serial_reads import SerialReads
 from nodes._speech import Phrase
 from robot.frames import RawReader
 
@@ -32,10 +33,7 @@ if TYPE_CHECKING:
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
 """What pyserial raises when a cable is pulled; TypeError is how it sees its port closed."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.1, 1.0
-_READ_S = 0.1
-"""How long a read may wait before the thread looks whether it shall end."""
 _WRITE_S = 0.1
-_CHUNK = 4096
 _SAY_EVERY_S = 10.0
 
 _OPEN = Phrase("Connected to {port}, {baud} baud", "Подключено: {port}, {baud} бод")
@@ -112,10 +110,6 @@ class SerialLink:
     def close(self) -> None:
         """End the thread and close the port."""
         self._ending.set()
-        port = self._serial
-        if port is not None:
-            with contextlib.suppress(*BAD):
-                port.cancel_read()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
             self._thread.join(0.4)
 
@@ -127,10 +121,8 @@ class SerialLink:
             try:
                 self._serial.write(data)
             except BAD as error:
-                self._problem = _words(error)
                 # The reader finds out by itself, and opens the port anew.
-                with contextlib.suppress(*BAD):
-                    self._serial.cancel_read()
+                self._problem = _words(error)
                 return False
             self.traffic.octets_out += len(data)
             self._frames.note("out", data)
@@ -196,9 +188,7 @@ class SerialLink:
 
     def _open(self) -> serial.Serial | None:
         try:
-            port = serial.Serial(
-                self.port, self.baud, timeout=_READ_S, write_timeout=_WRITE_S, exclusive=True
-            )
+            port = serial.Serial(self.port, self.baud, write_timeout=_WRITE_S, exclusive=True)
         except (*BAD, ValueError) as error:
             self._problem = self._explain(error)
             self._say.warn(_CANNOT, every_s=_SAY_EVERY_S, port=self.port, problem=self._problem)
@@ -212,11 +202,10 @@ class SerialLink:
 
     def _read(self, port: serial.Serial) -> None:
         try:
+            reads = SerialReads(port)
             while not self._ending.is_set():
-                # One byte, then what came with it: no more is waited for.
-                data = port.read(1)
+                data = reads.read()
                 if data:
-                    data += port.read(min(port.in_waiting, _CHUNK))
                     self.traffic.octets_in += len(data)
                     self._frames.note("in", data)
                     self._heard(data)

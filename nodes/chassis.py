@@ -2,16 +2,18 @@
 
 A drive line goes out `rate` times a second, whether there is a command or not: it is the heartbeat
 without which the Pico stops within 250 ms. A command that is older than `max_age_s`, is no number,
-or came before the emergency stop, is a stop. /emergency_stop is latched here and in the Pico.
+or came before an emergency stop, a fault or a new connection was over, is a stop. /emergency_stop
+is latched here and in the Pico.
 
-Published with every telemetry (50 Hz): /joint_states, /odom, /tf; /battery and /diagnostics once a
-second. It connects again by itself. At its end it leaves a stop behind.
+Published with every telemetry (50 Hz), to who listens: /joint_states, /odom, /tf; /battery and
+/diagnostics once a second. It connects again by itself. At its end it leaves a stop behind.
 """
 
 from __future__ import annotations
 
 import math
 import sys
+import threading
 import time
 from typing import TYPE_CHECKING
 
@@ -20,7 +22,7 @@ from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
-from nodes._chassis_messages import JOINTS, DeadReckoning, battery, transform
+from nodes._chassis_messages import JOINTS, DeadReckoning, battery
 from nodes._chassis_words import (
     COMMAND_OLD,
     EMERGENCY,
@@ -34,7 +36,9 @@ from nodes._chassis_words import (
 from nodes._diagnostics import tell_every_second
 from nodes._emergency import EmergencyStop
 from nodes._life import run
-from nodes._node import LessonNode, change_period
+from nodes._nap import Nap
+from nodes._node import LessonNode
+from nodes._pace import Pace
 from nodes._parameters import Number, Text, Whole
 from nodes._pico_client import PicoClient
 from nodes._topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
@@ -48,11 +52,15 @@ if TYPE_CHECKING:
 JOINT_STATES, BATTERY = "/joint_states", "/battery"
 _MOST_RAD_S, _MOST_RAD = 200.0, 1.5
 _STILL = (0.0, 0.0, 0.0)
+_REARMS = frozenset("ELRUHA")
+"""Flags of the Pico after which only a new command counts."""
 _BATTERY_EVERY_S = 1.0
+_AWAY_S = 0.5
+"""Who was stopped for longer believes no command that has waited meanwhile."""
 
 
 class Chassis(LessonNode):
-    """Sends from the node's thread, publishes from the reader's."""
+    """Sends at a pace of its own and at each command, publishes from the reader's thread."""
 
     NAME = "chassis"
     SETTINGS = (
@@ -86,6 +94,8 @@ class Chassis(LessonNode):
         self._commanded_s = -math.inf
         self._flags: frozenset[str] = frozenset()
         self._release_wanted = False
+        self._nap = Nap()
+        self._sending = threading.Lock()
         self._reckoning = DeadReckoning(self.number("wheelbase"), self.number("wheel_radius"))
         self._pico = PicoClient(self, int(self.number("baud")), self._hear)
         self._joints = self.create_publisher(JointState, JOINT_STATES, DEPTH)
@@ -95,26 +105,29 @@ class Chassis(LessonNode):
         self._emergency = EmergencyStop(self, self._emergency_changed)
         # Heard even if this node never saw the stop: the Pico may have kept it.
         self.create_subscription(Bool, EMERGENCY_STOP, self._hear_release, DEPTH)
-        self.create_subscription(JointState, WHEEL_COMMANDS, self._take, DEPTH)
-        self._timer = self.every(1.0 / self.number("rate"), self._drive)
+        self.create_subscription(JointState, WHEEL_COMMANDS, self._obey, DEPTH)
+        self._pace = Pace(1.0 / self.number("rate"), self._drive)
         self.every(_BATTERY_EVERY_S, self._publish_battery)
         tell_every_second(self, self._status)
         self.say.info(STARTED, port=self._pico.link.port, topic=WHEEL_COMMANDS)
         self._pico.link.start()
+        self._pace.start()
 
     def parameters_changed(self) -> None:
         """Keep the new rate."""
-        change_period(self._timer, 1.0 / self.number("rate"))
+        self._pace.period_s = 1.0 / self.number("rate")
 
     def before_end(self) -> None:
         """Leave the wheels standing, and give the port back."""
-        self._command = _STILL
+        self._pace.close()
         self._pico.drive(*_STILL)
         self._pico.link.close()
 
     # ---------------------------------------------------------------- the node's thread
 
-    def _take(self, message: JointState) -> None:
+    def _obey(self, message: JointState) -> None:
+        if self._nap.lasted(_AWAY_S):
+            return
         velocity = dict(zip(message.name, message.velocity, strict=False))
         position = dict(zip(message.name, message.position, strict=False))
         asked = (
@@ -122,49 +135,31 @@ class Chassis(LessonNode):
             velocity.get(JOINTS[1], math.nan),
             position.get(JOINTS[2], math.nan),
         )
-        self._commanded_s = time.monotonic()
         if not all(map(math.isfinite, asked)):
             self.say.error(NO_NUMBER, every_s=1.0, left=asked[0], right=asked[1], steering=asked[2])
             asked = _STILL
         if self._emergency.active:
             asked = _STILL
         left, right = (max(-_MOST_RAD_S, min(_MOST_RAD_S, speed)) for speed in asked[:2])
-        self._command = (left, right, max(-_MOST_RAD, min(_MOST_RAD, asked[2])))
-        self._drive()
-
-    def _drive(self) -> None:
-        late = time.monotonic() - self._commanded_s > self.number("max_age_s")
-        if late and self._command[:2] != _STILL[:2]:
-            self.say.warn(COMMAND_OLD, seconds=self.number("max_age_s"))
-            self._command = (0.0, 0.0, self._command[2])
-        telemetry = self._pico.telemetry
-        if self._emergency.active and telemetry is not None and "E" not in telemetry.flags:
-            self._pico.halt()
-        if self._release_wanted and telemetry is not None:
-            # Said until it is heard, for a line may be lost.
-            self._release_wanted = "E" in telemetry.flags
-            if self._release_wanted:
-                self._pico.release()
-        self._pico.drive(*self._command)
-        self._tell(telemetry)
+        with self._sending:
+            self._commanded_s = time.monotonic()
+            self._command = (left, right, max(-_MOST_RAD, min(_MOST_RAD, asked[2])))
+            self._send()
 
     def _emergency_changed(self, active: bool) -> None:
-        self._command, self._release_wanted = _STILL, not active
+        with self._sending:
+            self._command, self._release_wanted = _STILL, not active
+            if active:
+                self._pico.halt()
+            else:
+                self._pico.release()
         if active:
-            self._pico.halt()
             self.say.error(EMERGENCY)
         else:
-            self._pico.release()
             self.say.warn(RELEASED)
 
     def _hear_release(self, message: Bool) -> None:
         self._release_wanted = not message.data
-
-    def _tell(self, telemetry: Telemetry | None) -> None:
-        flags = telemetry.flags & frozenset("LRUH") if telemetry is not None else frozenset()
-        if flags - self._flags:
-            self.say.error(STANDS, reasons=reasons(self.say, flags))
-        self._flags = flags
 
     def _publish_battery(self) -> None:
         telemetry = self._pico.telemetry
@@ -176,6 +171,42 @@ class Chassis(LessonNode):
         status = pico.link.status(self.get_name(), pico.errors, pico.frames)
         return diagnosis(self.say, status, pico, self._emergency.active)
 
+    # ---------------------------------------------------------------- at a pace
+
+    def _drive(self) -> None:
+        away = self._nap.lasted(_AWAY_S)
+        with self._sending:
+            late = away or time.monotonic() - self._commanded_s > self.number("max_age_s")
+            if late and self._command[:2] != _STILL[:2]:
+                self.say.warn(COMMAND_OLD, seconds=self.number("max_age_s"))
+                self._stand()
+            self._send()
+        self._tell(self._pico.telemetry)
+
+    def _send(self) -> None:
+        telemetry = self._pico.telemetry
+        flags = telemetry.flags if telemetry is not None else _REARMS
+        if flags & _REARMS:
+            self._stand()
+        if telemetry is not None:
+            if self._emergency.active and "E" not in flags:
+                self._pico.halt()
+            # Said until it is heard, for a line may be lost.
+            self._release_wanted = self._release_wanted and "E" in flags
+            if self._release_wanted:
+                self._pico.release()
+        self._pico.drive(*self._command)
+
+    def _stand(self) -> None:
+        """Forget the command; the steering stays as it is."""
+        self._command = (0.0, 0.0, self._command[2])
+
+    def _tell(self, telemetry: Telemetry | None) -> None:
+        flags = telemetry.flags & frozenset("LRUH") if telemetry is not None else frozenset()
+        if flags - self._flags:
+            self.say.error(STANDS, reasons=reasons(self.say, flags))
+        self._flags = flags
+
     # ---------------------------------------------------------------- the reader's thread
 
     def _hear(self, telemetry: Telemetry) -> None:
@@ -183,10 +214,12 @@ class Chassis(LessonNode):
             return
         self._reckoning.take(telemetry)
         stamp = self.get_clock().now().to_msg()
-        odometry = self._reckoning.odometry(telemetry, stamp)
-        self._joints.publish(self._reckoning.joints(telemetry, stamp))
-        self._odometry.publish(odometry)
-        self._transforms.publish(TFMessage(transforms=[transform(odometry)]))
+        if self._joints.get_subscription_count():
+            self._joints.publish(self._reckoning.joints(telemetry, stamp))
+        if self._odometry.get_subscription_count():
+            self._odometry.publish(self._reckoning.odometry(telemetry, stamp))
+        if self._transforms.get_subscription_count():
+            self._transforms.publish(TFMessage(transforms=[self._reckoning.transform(stamp)]))
 
 
 def main(args: list[str] | None = None) -> int:

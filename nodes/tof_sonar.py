@@ -20,6 +20,7 @@ from std_msgs.msg import Float32
 from nodes._diagnostics import tell_every_second
 from nodes._life import run
 from nodes._node import LessonNode
+from nodes._pace import Pace
 from nodes._parameters import Choice, Number, Text, Whole
 from nodes._serial_link import SerialLink
 from nodes._speech import Phrase
@@ -83,12 +84,14 @@ class TofSonar(LessonNode):
             partial(TofReader, model=self._model),
         )
         tell_every_second(self, self._status)
-        self.every(_LOOK_EVERY_S, self._look)
+        self._pace = Pace(_LOOK_EVERY_S, self._look)
         self.say.info(_STARTED, port=self._link.port, topic=topic)
         self._link.start()
+        self._pace.start()
 
     def before_end(self) -> None:
         """Give the port back."""
+        self._pace.close()
         self._link.close()
 
     # ---------------------------------------------------------------- the reader's thread
@@ -111,6 +114,8 @@ class TofSonar(LessonNode):
         if not self.context.ok():
             return
         self._distances.publish(Float32(data=metres))
+        if not self._ranges.get_subscription_count():
+            return
         message = Range(
             radiation_type=Range.INFRARED,
             field_of_view=self._model.view_rad,
@@ -122,7 +127,7 @@ class TofSonar(LessonNode):
         message.header.frame_id = self.text("frame_id")
         self._ranges.publish(message)
 
-    # ---------------------------------------------------------------- the node's thread
+    # ---------------------------------------------------------------- at a pace
 
     @property
     def _silent(self) -> bool:

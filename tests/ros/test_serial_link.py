@@ -69,18 +69,13 @@ def test_every_way_in_which_pyserial_fails_leads_to_a_new_try(
     closed = []
 
     class Broken:
-        in_waiting = 0
-
         def __init__(self, *_: object, **__: object) -> None:
             pass
 
-        def read(self, _count: int) -> NoReturn:
+        def fileno(self) -> NoReturn:
             raise error
 
         def write(self, _data: bytes) -> NoReturn:
-            raise error
-
-        def cancel_read(self) -> NoReturn:
             raise error
 
         def close(self) -> NoReturn:
