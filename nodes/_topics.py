@@ -5,9 +5,12 @@ from __future__ import annotations
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 AI_COMMAND = "/ai_command"
+AUDIO_LEVEL = "/audio/level"
 CAMERA = "/camera/color/image_raw"
 DRIVE = "/drive"
+DRIVE_ACTION = "/drive_action"
 DRIVE_SAFE = "/drive_safe"
+DRIVE_TELEOP = "/drive_teleop"
 DRIVE_TO_POINT = "drive_to_point"
 EMERGENCY_STOP = "/emergency_stop"
 GOAL_POSE = "/goal_pose"
@@ -24,6 +27,9 @@ SPEAKER = "/audio/speaker_raw"
 TF = "/tf"
 TF_STATIC = "/tf_static"
 WHEEL_COMMANDS = "/wheel_commands"
+
+SOURCES = (DRIVE_TELEOP, DRIVE_ACTION, DRIVE)
+"""Of commands for the gate: a person's keys, a drive to a point, words and the model; by rank."""
 
 DEPTH = 10
 """Queue of an ordinary topic, as everywhere in the course."""

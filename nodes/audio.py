@@ -1,0 +1,156 @@
+"""A real microphone and a real loudspeaker, by PortAudio.
+
+Publishes what the microphone hears on /audio/mic_raw and plays what comes on /audio/speaker_raw:
+bytes that are 16-bit little-endian samples, one channel, `sample_rate` of them a second. How loud
+the microphone is goes to /audio/level ten times a second. A device that goes is opened again when
+it comes; how both are goes to /diagnostics once a second.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass
+
+from std_msgs.msg import ByteMultiArray, Float32
+
+from nodes._diagnostics import tell_every_second
+from nodes._life import run
+from nodes._node import LessonNode
+from nodes._parameters import Number, Text, Whole
+from nodes._portaudio import IN, OUT
+from nodes._sound import from_message, to_message
+from nodes._sound_port import SoundPort
+from nodes._sound_status import PortStatus
+from nodes._sound_words import EMPTY, LATE, ODD, UNPLAYED, WORDS
+from nodes._speech import Phrase
+from nodes._topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
+from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, text_in
+
+_STARTED = Phrase(
+    "Sound goes to {microphone} and comes from {speaker}",
+    "Звук идёт в {microphone} и приходит из {speaker}",
+)
+_SAY_EVERY_S = 5.0
+_FRESH_S = 0.5
+"""Without a block for longer than one takes and this, there is no level."""
+
+
+@dataclass(frozen=True)
+class DeviceText(Text):
+    """A name of a device, or its number as a number."""
+
+    def accept(self, value: object) -> str:
+        """A str; 2 is taken for "2"."""
+        is_number = isinstance(value, int) and not isinstance(value, bool)
+        return super().accept(str(value) if is_number else value)
+
+    def expected(self) -> str:
+        """What can be named."""
+        return "name, part of one, number, none; empty: the default"
+
+
+class Audio(LessonNode):
+    """Publishes from the threads of its ports."""
+
+    NAME = "audio_system"
+    SETTINGS = (
+        DeviceText("input_device", "", "The microphone", fixed=True, may_be_empty=True),
+        DeviceText("output_device", "", "The loudspeaker", fixed=True, may_be_empty=True),
+        Whole(
+            "sample_rate",
+            RATE_HZ,
+            "Samples a second, of both topics",
+            fixed=True,
+            low=8000,
+            high=96_000,
+            unit="Hz",
+        ),
+        Whole("block_ms", 100, "Length of a message", fixed=True, low=10, high=1000, unit="ms"),
+        Number(
+            "speaker_queue_s",
+            60.0,
+            "Sound that may wait; of more the oldest is dropped",
+            fixed=True,
+            low=0.5,
+            high=600.0,
+            unit="s",
+        ),
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._rate_hz, self._block_ms = (
+            int(self.number("sample_rate")),
+            int(self.number("block_ms")),
+        )
+        self._meter = LevelMeter(self._rate_hz)
+        self._heard_s = -_FRESH_S
+        self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
+        self._levels = self.create_publisher(Float32, AUDIO_LEVEL, DEPTH)
+        form = self._rate_hz, self._block_ms
+        self._microphone = SoundPort(
+            self.say, IN, self.text("input_device"), *form, heard=self._hear
+        )
+        self._speaker = SoundPort(
+            self.say,
+            OUT,
+            self.text("output_device"),
+            *form,
+            queue_s=self.number("speaker_queue_s"),
+        )
+        self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
+        self.every(LEVEL_S, self._tell_level)
+        for port, name in ((self._microphone, "microphone"), (self._speaker, "speaker")):
+            status = PortStatus(self.say, f"{self.get_name()}: {name}", port)
+            tell_every_second(self, status.message)
+        self.say.info(_STARTED, microphone=MICROPHONE, speaker=SPEAKER)
+        self._microphone.start()
+        self._speaker.start()
+
+    def before_end(self) -> None:
+        """Give the devices back."""
+        self._microphone.close()
+        self._speaker.close()
+
+    # ---------------------------------------------------------------- the microphone's thread
+
+    def _hear(self, block: bytes) -> None:
+        self._meter.feed(block)
+        self._heard_s = time.monotonic()
+        if self.context.ok() and self._publisher.get_subscription_count():
+            self._publisher.publish(to_message(block))
+
+    # ---------------------------------------------------------------- the node's thread
+
+    def _tell_level(self) -> None:
+        if time.monotonic() - self._heard_s <= self._block_ms / 1000 + _FRESH_S:
+            self._levels.publish(Float32(data=self._meter.dbfs))
+
+    def _play(self, message: ByteMultiArray) -> None:
+        sound = from_message(message)
+        if not sound:
+            self.say.warn(EMPTY, every_s=_SAY_EVERY_S)
+            return
+        words = text_in(sound)
+        if words is not None:
+            self.say.info(WORDS, words=words)
+            return
+        if len(sound) % SAMPLE:
+            self.say.warn(ODD, every_s=_SAY_EVERY_S, count=len(sound))
+            sound = sound[:-1]
+        if not self._speaker.wants:
+            return
+        dropped, there = self._speaker.play(sound)
+        if dropped:
+            seconds = dropped / SAMPLE / self._rate_hz
+            self.say.warn(LATE if there else UNPLAYED, every_s=_SAY_EVERY_S, seconds=seconds)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is asked to end."""
+    return run(Audio, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,159 @@
+"""The driver of microphone and loudspeaker, on real PortAudio over pipes in place of a card."""
+
+from __future__ import annotations
+
+import os
+import signal
+import struct
+import subprocess
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from std_msgs.msg import ByteMultiArray, Float32
+
+from nodes._sound import from_message, to_message
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import Peer
+from tests.ros.sound_card import RATE_HZ, SoundCard, need_portaudio, without_silence
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+MICROPHONE, SPEAKER, LEVEL = "/audio/mic_raw", "/audio/speaker_raw", "/audio/level"
+
+
+def ramp(seconds: float, step: int) -> bytes:
+    """Sound without a single 0 in it, no part of which is like another."""
+    count = int(seconds * RATE_HZ)
+    return struct.pack(f"<{count}h", *(1 + step * at % 32_000 for at in range(count)))
+
+
+@pytest.fixture
+def card(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[SoundCard]:
+    need_portaudio()
+    card = SoundCard(tmp_path)
+    monkeypatch.setenv("ALSA_CONFIG_PATH", str(card.configuration))
+    yield card
+    card.close()
+
+
+@pytest.fixture(scope="module")
+def peer(module_domain: int) -> Iterator[Peer]:
+    with Peer(module_domain) as peer:
+        yield peer
+
+
+def audio(domain: int, **params: object) -> NodeProcess:
+    devices = {"input_device": "deckmic", "output_device": "DeckSpeak"}
+    return NodeProcess("nodes.audio", domain, params={**devices, **params})
+
+
+def children(node: NodeProcess) -> list[int]:
+    """The processes with PortAudio in them."""
+    done = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(node.process.pid)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return [int(word) for word in done.stdout.split()]
+
+
+def test_sound_goes_through_byte_for_byte_both_ways(
+    peer: Peer, module_domain: int, card: SoundCard
+) -> None:
+    heard = peer.hear(MICROPHONE, ByteMultiArray)
+    levels = peer.hear(LEVEL, Float32)
+    told = peer.hear("/diagnostics", DiagnosticArray)
+    said, played = ramp(1.0, 7), ramp(1.0, 11)
+    with audio(module_domain) as node:
+        node.wait_for_words("Microphone: deckmic, 16000 Hz", "Speaker: deckspeaker, 16000 Hz")
+        wait_until(lambda: heard, "the microphone")
+        card.say(said)
+        peer.say(SPEAKER, to_message(played))
+        wait_until(lambda: without_silence(card.played) == played, "all of what was to be played")
+        wait_until(
+            lambda: without_silence(b"".join(map(from_message, heard))) == said, "all that was said"
+        )
+        assert {len(message.data) for message in heard} == {2 * RATE_HZ // 10}
+        assert -6.0 < max(level.data for level in levels) < 0.0
+        wait_until(lambda: levels[-1].data == -120.0, "silence")
+
+        for odd in (b"", b"\xff\x01\x02", "Еду вперёд".encode()):
+            peer.say(SPEAKER, to_message(odd))
+        node.wait_for_words("An empty message", "3 bytes for the speaker", "Еду вперёд")
+        wait_until(lambda: without_silence(card.played) == played + b"\xff\x01", "a whole sample")
+
+        states = {one.status[0].name: one.status[0] for one in told}
+        assert set(states) == {"audio_system: microphone", "audio_system: speaker"}
+        state = states["audio_system: microphone"]
+        values = {item.key: item.value for item in state.values}
+        assert state.level == DiagnosticStatus.OK
+        assert values["port"] == "deckmic"
+        assert int(values["bytes_in_per_s"]) == pytest.approx(32_000, rel=0.5)
+        assert len(children(node)) == 2
+        running = children(node)
+        node.send(signal.SIGTERM)
+        assert node.wait() == 0
+        assert not any(os.path.exists(f"/proc/{pid}") for pid in running)  # noqa: PTH110
+        assert "Traceback" not in node.output
+
+
+def test_a_device_that_goes_is_opened_again(
+    peer: Peer, module_domain: int, card: SoundCard
+) -> None:
+    heard = peer.hear(MICROPHONE, ByteMultiArray)
+    told = peer.hear("/diagnostics", DiagnosticArray)
+    card.plug("othermic")
+    with audio(module_domain, output_device="none") as node:
+        node.wait_for_words('no device "deckmic"; set the parameter to one of these:', "othermic")
+        wait_until(
+            lambda: told and told[-1].status[0].level == DiagnosticStatus.ERROR, "a bad state"
+        )
+        card.plug("deckmic")
+        node.wait_for_words("Microphone: deckmic")
+        os.kill(children(node)[0], signal.SIGKILL)
+        node.wait_for_words("Lost the microphone deckmic: PortAudio has died")
+        wait_until(lambda: node.output.count("Microphone: deckmic") == 2, "the second time")
+        card.frozen = True
+        node.wait_for_words("Lost the microphone deckmic: no sound moves any more")
+        card.frozen = False
+        wait_until(lambda: node.output.count("Microphone: deckmic") == 3, "the third time")
+        heard.clear()
+        card.say(ramp(0.2, 7))
+        wait_until(lambda: without_silence(b"".join(map(from_message, heard))), "sound")
+        node.send(signal.SIGINT)
+        assert node.wait() == 0
+        assert "Traceback" not in node.output
+
+
+def test_a_late_speaker_drops_the_oldest_and_says_so(
+    peer: Peer, module_domain: int, card: SoundCard
+) -> None:
+    with audio(module_domain, input_device="none", speaker_queue_s=0.5) as node:
+        node.wait_for_words("Speaker: deckspeaker")
+        sound = ramp(2.0, 7)
+        peer.say(SPEAKER, to_message(sound))
+        node.wait_for_words("the oldest 1.5 s of sound are dropped")
+        wait_until(lambda: without_silence(card.played) == sound[-RATE_HZ:], "the newest")
+
+
+def test_a_missing_library_is_told_with_the_mend(
+    module_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "sounddevice.py").write_text("raise OSError('PortAudio library not found')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with audio(module_domain) as node:
+        node.wait_for_words(
+            "No microphone: PortAudio is not installed; sudo apt install libportaudio2",
+            "No speaker: PortAudio is not installed",
+        )
+        began_s = time.monotonic()
+        node.send(signal.SIGTERM)
+        assert node.wait() == 0
+        assert time.monotonic() - began_s < 5
+        assert "Traceback" not in node.output
