@@ -23,6 +23,7 @@ from nodes._speech import Phrase
 from nodes._topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, NEWEST, SONAR_FRONT, SPEAKER
 from robot.brain import Decision, decide, spoken
 from robot.safety import Reading, look
+from robot.sound import text_in
 from robot.words import WORDS, parse_word
 
 LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0
@@ -31,6 +32,11 @@ FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]
 
 _STARTED = Phrase("The brain is awake and waits for a voice", "Мозг проснулся и ждёт голоса")
 _HEARD = Phrase('Heard: "{words}"', "Слышу: «{words}»")
+_NO_WORDS = Phrase(
+    "Hearing sound and no words: nothing recognises speech yet",
+    "Слышу звук, а не слова: распознавать речь пока нечем",
+)
+_SAY_EVERY_S = 10.0
 _THINKING = Phrase(
     "Thinking with the voice, {picture} and {distance}",
     "Думаю: голос, {picture} и {distance}",
@@ -101,7 +107,12 @@ class AiBrain(LessonNode):
         self._front_m, self._front_s = message.data, time.monotonic()
 
     def _hear(self, message: ByteMultiArray) -> None:
-        words = spoken(from_message(message))
+        sound = from_message(message)
+        if text_in(sound) is None:
+            # A real microphone hears something all the time: that is no wish to drive.
+            self.say.info(_NO_WORDS, every_s=_SAY_EVERY_S)
+            return
+        words = spoken(sound)
         self.say.info(_HEARD, words=words)
         self._tell_what_is_known()
         order = parse_word(words)

@@ -157,7 +157,16 @@ def test_a_word_that_drives_is_obeyed_if_it_is_safe(brain: Brain) -> None:
         assert brain.hear(said.encode())[0] == command, (distance, said)
 
 
-def test_any_bytes_are_heard_without_harm(brain: Brain) -> None:
-    for sound in (b"\xff\xfe\x00\x80", b"", b"\xd0", bytes(range(256)) * 40):
-        assert brain.hear(sound)[0] == "стоп"
+def test_sound_that_is_no_words_is_no_wish(brain: Brain) -> None:
+    brain.see(3.0)
+    brain.commands.clear()
+    for sound in (b"\xff\xfe\x00\x80", b"\xd0", bytes(3200), bytes(range(256)) * 40):
+        brain.peer.say("/audio/mic_raw", voice(sound))
+    brain.peer.say("/audio/mic_raw", voice(b"left"))
+    assert wait_for(brain.commands, "/ai_command").data == "налево"
+    assert "no words" in brain.process.output
     assert brain.process.process.poll() is None
+
+
+def test_an_empty_message_is_heard_without_harm(brain: Brain) -> None:
+    assert brain.hear(b"")[0] == "стоп"
