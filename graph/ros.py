@@ -66,7 +66,7 @@ def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observe
     keep_room_for_large_messages()
     context = Context()
     silent = Parameter("start_type_description_service", value=False)
-    with _environment(_discovery(discovery) | _announcing()):
+    with _environment(_discovery(discovery) | announcing(discovery)):
         # No arguments of the program's, no log file, and no word on the terminal: it is a screen.
         context.init(args=[], initialize_logging=False, domain_id=domain)
         set_logger_level("", LoggingSeverity.FATAL)
@@ -92,11 +92,15 @@ def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
     return {LOCALHOST_ONLY: None, RANGE: RANGES[discovery], PEERS: None}
 
 
-def _announcing() -> dict[str, str | None]:
-    """Return the variable for Deck's settings of Fast DDS, unless somebody has chosen his own."""
-    if any(os.environ.get(name) for name in FAST_DDS_VARIABLES):
+def announcing(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
+    """Return the variables for Deck's settings of Fast DDS, unless somebody has chosen his own.
+
+    They are for one machine alone: on a network the announcements of a whole class would add up.
+    """
+    ours = str(FAST_DDS)
+    if any(os.environ.get(name, ours) not in ("", ours) for name in FAST_DDS_VARIABLES):
         return {}
-    return {FAST_DDS_VARIABLES[0]: str(FAST_DDS)}
+    return dict.fromkeys(FAST_DDS_VARIABLES, ours if discovery == "localhost" else None)
 
 
 @contextmanager
