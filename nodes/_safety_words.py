@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes._speech import Phrase, Speech
-from robot.safety import Reading, Sight, Verdict
+from robot.safety import Sight, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
+
+    from nodes._safety_eyes import View
+    from nodes._safety_gate import Moment
 
 STARTED = Phrase(
     "Watching the way: closer than {metres:g} m is danger",
@@ -28,8 +31,21 @@ COMMAND_CUT = Phrase(
     "The command {speed:.2f} m/s, {steering:.2f} rad is stopped: {reason}",
     "Команда {speed:.2f} м/с, {steering:.2f} рад остановлена: {reason}",
 )
+COMMAND_NO_NUMBER = Phrase(
+    "The command of {source} is no number ({speed} m/s, {steering} rad): stop",
+    "В команде {source} не числа ({speed} м/с, {steering} рад): стоп",
+)
 COMMAND_OLD = Phrase(
     "No new command for {seconds:g} s: stop", "Нет новых команд дольше {seconds:g} с: стоп"
+)
+DRIVES = Phrase("{source} drives now", "Теперь едем по {source}")
+IGNORED = Phrase(
+    "{ignored} is ignored: {source} drives, and ranks higher",
+    "{ignored} не слушаю: едем по {source}, он главнее",
+)
+HELD_UP = Phrase(
+    "This node was held up: what has waited meanwhile is not obeyed",
+    "Узел был остановлен: того, что накопилось за это время, не слушаю",
 )
 
 _SIGHTS = {
@@ -54,60 +70,77 @@ _VERDICTS = {
     Verdict.BLOCKED_FORWARD: Phrase("forward is blocked: {why}", "вперёд нельзя: {why}"),
     Verdict.BLOCKED_BACKWARD: Phrase("backward is blocked: {why}", "назад нельзя: {why}"),
     Verdict.BLOCKED: Phrase("motion is blocked: {why}", "движение запрещено: {why}"),
+    Verdict.STARTING: Phrase(
+        "just started: nothing moves for a moment", "только что запущен: пока стоим"
+    ),
     Verdict.EMERGENCY_STOP: Phrase(
         "emergency stop until it is released", "аварийный стоп, пока его не снимут"
     ),
 }
 _PLACES = {"front": Phrase("front", "спереди"), "rear": Phrase("rear", "сзади")}
+_SLOWED = Phrase("slowed to {percent} %: {why}", "замедлен до {percent} %: {why}")
+_AND_IGNORED = Phrase(
+    "; {ignored} is ignored: {source} drives", "; {ignored} не слушаю: едем по {source}"
+)
 _REASONS = {
+    Sight.FREE: Phrase("{place} {metres:.2f} m", "{place} {metres:.2f} м"),
     Sight.CLOSE: Phrase("{place} {metres:.2f} m", "{place} {metres:.2f} м"),
     Sight.INVALID: Phrase("{place} no valid distance", "{place} нет верного расстояния"),
     Sight.SILENT: Phrase("{place} sonar is silent", "{place} сонар молчит"),
 }
 
 
-class View(NamedTuple):
-    """What one sensor shows."""
-
-    place: str
-    """`front` or `rear`."""
-    sight: Sight
-    reading: Reading
-
-
-def tell_front(say: Speech, sight: Sight, reading: Reading) -> None:
+def tell_front(say: Speech, view: View) -> None:
     """Log what the front sonar shows; each kind of news once a second at most."""
-    log = say.info if sight == Sight.FREE else say.warn
-    log(_SIGHTS[sight], every_s=_LOG_EVERY_S, metres=reading.distance_m, seconds=reading.age_s)
+    log = say.info if view.sight == Sight.FREE else say.warn
+    metres, seconds = view.reading.distance_m, view.reading.age_s
+    log(_SIGHTS[view.sight], every_s=_LOG_EVERY_S, metres=metres, seconds=seconds)
 
 
-def diagnosis(say: Speech, verdict: Verdict, views: Sequence[View]) -> DiagnosticStatus:
-    """The state of safety: level, a sentence, and key-values for programs."""
+def diagnosis(
+    say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment
+) -> DiagnosticStatus:
+    """The state of safety: level, a sentence, and key-values for programs.
+
+    A robot that is only slowed is well: the level tells what holds it.
+    """
     bad = [view for view in views if view.sight != Sight.FREE]
-    why = ", ".join(
-        say.text(
-            _REASONS[view.sight],
-            place=say.text(_PLACES[view.place]),
-            metres=view.reading.distance_m,
-        )
-        for view in bad
-    )
     blind = any(view.sight != Sight.CLOSE for view in bad)
     level = DiagnosticStatus.WARN if bad else DiagnosticStatus.OK
     if verdict == Verdict.EMERGENCY_STOP or blind:
         level = DiagnosticStatus.ERROR
-    values = [KeyValue(key="state", value=verdict.value)]
-    for view in views:
-        metres = view.reading.distance_m
-        values += [
-            KeyValue(key=view.place, value=view.sight.value),
-            KeyValue(
-                key=f"{view.place}_distance_m", value="" if metres is None else f"{metres:.3f}"
-            ),
-        ]
     return DiagnosticStatus(
         level=level,
         name="safety_stop",
-        message=say.text(_VERDICTS[verdict], why=why),
-        values=values,
+        message=_sentence(say, verdict, views, moment),
+        values=[KeyValue(key=key, value=value) for key, value in _values(verdict, views, moment)],
     )
+
+
+def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment) -> str:
+    why = ", ".join(_reason(say, view) for view in views if view.sight != Sight.FREE)
+    sentence = say.text(_VERDICTS[verdict], why=why)
+    if 0 < moment.allowed < 1:
+        view = views[-1 if moment.asked_m_s < 0 else 0]
+        percent = round(moment.allowed * 100)
+        sentence = say.text(_SLOWED, percent=percent, why=_reason(say, view))
+    if moment.ignored:
+        sentence += say.text(_AND_IGNORED, ignored=moment.ignored, source=moment.source)
+    return sentence
+
+
+def _reason(say: Speech, view: View) -> str:
+    place, metres = say.text(_PLACES[view.place]), view.reading.distance_m
+    return say.text(_REASONS[view.sight], place=place, metres=metres)
+
+
+def _values(verdict: Verdict, views: Sequence[View], moment: Moment) -> Iterator[tuple[str, str]]:
+    yield "verdict", verdict.value
+    for view in views:
+        metres = view.reading.distance_m
+        yield view.place, view.sight.value
+        yield f"{view.place}_m", "" if metres is None else f"{metres:.3f}"
+    yield "source", moment.source
+    yield "ignored", moment.ignored
+    yield "allowed", f"{moment.allowed:.2f}"
+    yield "command_age_s", "" if moment.age_s is None else f"{moment.age_s:.2f}"

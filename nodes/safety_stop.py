@@ -1,11 +1,17 @@
 """The reflex: watches the distance and, as a gate, lets no command through that is dangerous.
 
 An obstacle nearer than `critical_distance`, a reading that is no distance (nan), and no reading
-for `stale_after_s` seconds are all danger. With `gate: true` the node stands between /drive and
-/drive_safe: forward is blocked while the front is in danger, backward while the rear is (if a
-`rear_topic` is given; without one, backing off is always allowed). A command that was cut short
-is forgotten: when the way is free again the robot waits for a new one. What is allowed at the
-moment is repeated `rate` times a second, so that who obeys /drive_safe can tell a dead gate.
+for `stale_after_s` seconds, or none at all, are danger. With `gate: true` the node stands between
+those who ask for motion and /drive_safe: forward is blocked while the front is in danger, backward
+while the rear is (if a `rear_topic` is given; without one, backing off is always allowed). Between
+`slow_distance` and `critical_distance` the speed is slowed in proportion. A command that was cut
+short is forgotten: when the way is free again the robot waits for a new one.
+
+`sources` are the topics with commands, the highest in rank first: a source counts while its newest
+command is younger than `max_age_s`, and what is said below it meanwhile is ignored. When nobody's
+command counts the robot stands. What is allowed at the moment is repeated `rate` times a second, so
+that who obeys /drive_safe can tell a dead gate. For `settle_s` after its start the gate lets
+nothing through: it may not have heard of an emergency stop yet.
 
 /emergency_stop stops everything until it is released by an explicit false. /safety_state says
 at every change, and once a second, what is blocked and why.
@@ -17,51 +23,25 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from ackermann_msgs.msg import AckermannDriveStamped
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32
 
-from nodes._drive import from_message, to_message
 from nodes._emergency import EmergencyStop
 from nodes._life import run
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Switch, Text
-from nodes._safety_words import (
-    COMMAND_CUT,
-    COMMAND_OLD,
-    EMERGENCY,
-    RELEASED,
-    STARTED,
-    View,
-    diagnosis,
-    tell_front,
-)
-from nodes._topics import DEPTH, DRIVE, DRIVE_SAFE, SAFETY_STATE, SONAR_FRONT
-from robot.safety import Reading, Sight, Verdict, gate, look, where
-from robot.words import STOP, DriveSetpoint
+from nodes._safety_eyes import Eyes, shares
+from nodes._safety_gate import Gate, Moment
+from nodes._safety_words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
+from nodes._topics import DEPTH, SAFETY_STATE, SONAR_FRONT, SOURCES
+from robot.safety import Sight, Verdict, Zone, allowed, where
 
 if TYPE_CHECKING:
-    from rclpy.publisher import Publisher
+    from diagnostic_msgs.msg import DiagnosticStatus
+
+    from nodes._safety_eyes import View
 
 _STATE_EVERY_S = 1.0
-
-
-class Eye:
-    """One distance sensor, as it is now."""
-
-    def __init__(self) -> None:
-        self._distance_m: float | None = None
-        self._seen_s = time.monotonic()
-
-    def see(self, distance_m: float) -> None:
-        """Take a new reading."""
-        self._distance_m = distance_m
-        self._seen_s = time.monotonic()
-
-    @property
-    def reading(self) -> Reading:
-        """The newest reading and its age."""
-        return Reading(self._distance_m, time.monotonic() - self._seen_s)
 
 
 class SafetyStop(LessonNode):
@@ -75,6 +55,13 @@ class SafetyStop(LessonNode):
             "critical_distance", 0.5, "Nearer than this is danger", low=0.01, high=100.0, unit="m"
         ),
         Number(
+            "slow_distance",
+            1.0,
+            "Slows from here to critical_distance; not above that: never",
+            high=100.0,
+            unit="m",
+        ),
+        Number(
             "stale_after_s",
             2.5,
             "A longer silence of a sonar is danger",
@@ -82,31 +69,30 @@ class SafetyStop(LessonNode):
             high=60.0,
             unit="s",
         ),
-        Switch("gate", False, "Whether to relay /drive to /drive_safe", fixed=True),
-        Number("max_age_s", 0.0, "An older /drive becomes a stop; 0: never", high=60.0, unit="s"),
+        Switch("gate", False, "Whether to relay commands to /drive_safe", fixed=True),
+        Text("sources", " ".join(SOURCES), "Their topics, highest rank first", fixed=True),
+        Number("max_age_s", 0.5, "An older command becomes a stop; 0: never", high=60.0, unit="s"),
+        Number("settle_s", 1.0, "After its start the gate stays shut so long", high=10.0, unit="s"),
         Number(
-            "rate", 5.0, "Looks, and repetitions of /drive_safe", low=1.0, high=100.0, unit="Hz"
+            "rate", 10.0, "Looks, and repetitions of /drive_safe", low=1.0, high=100.0, unit="Hz"
         ),
     )
 
     def __init__(self) -> None:
         super().__init__()
-        self._front = Eye()
-        self._rear = Eye() if self.text("rear_topic") else None
-        self._sights: tuple[Sight, Sight | None] = (Sight.SILENT, None)
+        self._eyes = Eyes(rear=bool(self.text("rear_topic")))
+        self._views: tuple[View, ...] = self._eyes.views(self._zone)
+        self._sights: tuple[Sight, ...] = ()
         self._verdict = Verdict.BLOCKED_FORWARD
-        self._command = STOP
-        self._commanded_s = time.monotonic()
+        self._told: tuple[Verdict, Moment] | None = None
         self._told_s = 0.0
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
-        self._safe: Publisher | None = None
-        if self.switch("gate"):
-            self._safe = self.create_publisher(AckermannDriveStamped, DRIVE_SAFE, DEPTH)
-            self.create_subscription(AckermannDriveStamped, DRIVE, self._drive, DEPTH)
+        # In this order, which is that of their callbacks: of all that waits a stop comes first.
         self._emergency = EmergencyStop(self, self._emergency_changed)
         self.create_subscription(Float32, self.text("front_topic"), self._see_front, DEPTH)
-        if self._rear is not None:
+        if self._eyes.rear is not None:
             self.create_subscription(Float32, self.text("rear_topic"), self._see_rear, DEPTH)
+        self._gate = Gate(self, self._judge, self._reason) if self.switch("gate") else None
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
         self.say.info(STARTED, metres=self.number("critical_distance"))
 
@@ -117,18 +103,21 @@ class SafetyStop(LessonNode):
 
     def before_end(self) -> None:
         """A gate that goes leaves the robot standing."""
-        self._let_through(STOP)
+        if self._gate is not None:
+            self._gate.stop()
 
     # ---------------------------------------------------------------- what comes in
 
     def _see_front(self, message: Float32) -> None:
-        self._front.see(message.data)
+        if self._held_up():
+            return
+        self._eyes.front.see(message.data)
         self._judge()
-        tell_front(self.say, self._sights[0], self._front.reading)
+        tell_front(self.say, self._views[0])
 
     def _see_rear(self, message: Float32) -> None:
-        if self._rear is not None:
-            self._rear.see(message.data)
+        if self._eyes.rear is not None and not self._held_up():
+            self._eyes.rear.see(message.data)
             self._judge()
 
     def _emergency_changed(self, active: bool) -> None:
@@ -138,67 +127,62 @@ class SafetyStop(LessonNode):
             self.say.warn(RELEASED)
         self._judge()
 
-    def _drive(self, message: AckermannDriveStamped) -> None:
-        self._commanded_s = time.monotonic()
-        self._judge()
-        asked = from_message(message)
-        self._let_through(self._allowed(asked))
-
     def _tick(self) -> None:
+        self._held_up()
         self._judge()
-        if self._front.reading.age_s > self.number("stale_after_s"):
-            tell_front(self.say, Sight.SILENT, self._front.reading)
-        max_age_s = self.number("max_age_s")
-        if max_age_s and time.monotonic() - self._commanded_s > max_age_s and self._command != STOP:
-            self.say.warn(COMMAND_OLD, seconds=max_age_s)
-            self._command = STOP
-        self._let_through(self._command)
-        if time.monotonic() - self._told_s > _STATE_EVERY_S:
+        if (
+            self._views[0].sight == Sight.SILENT
+            and self._views[0].reading.age_s > self._zone.stale_after_s
+        ):
+            tell_front(self.say, self._views[0])
+        if self._gate is not None:
+            self._gate.tick()
+        overdue = time.monotonic() - self._told_s > _STATE_EVERY_S
+        if overdue or self._news() != self._told:
             self._publish_state()
 
     # ---------------------------------------------------------------- what follows from it
 
+    @property
+    def _zone(self) -> Zone:
+        slow_m = self.number("slow_distance") if self.switch("gate") else 0.0
+        return Zone(self.number("critical_distance"), slow_m, self.number("stale_after_s"))
+
+    def _held_up(self) -> bool:
+        return self._gate is not None and self._gate.held_up()
+
     def _judge(self) -> None:
-        critical_m, stale_s = self.number("critical_distance"), self.number("stale_after_s")
-        sights = (
-            look(self._front.reading, critical_m, stale_s),
-            look(self._rear.reading, critical_m, stale_s) if self._rear else None,
-        )
-        verdict = where(*sights, self._emergency.active)
-        if (sights, verdict) == (self._sights, self._verdict):
-            return
+        """Look anew, and have the gate obey what is seen."""
+        self._views = self._eyes.views(self._zone)
+        sights = tuple(view.sight for view in self._views)
+        rear = sights[1] if len(sights) > 1 else None
+        starting = self._gate is not None and self._gate.starting
+        verdict = where(sights[0], rear, self._emergency.active, starting=starting)
+        changed = (sights, verdict) != (self._sights, self._verdict)
         self._sights, self._verdict = sights, verdict
-        allowed = self._allowed(self._command)
-        if allowed != self._command:
-            self._let_through(allowed)
-        self._publish_state()
+        if self._gate is not None:
+            self._gate.rule(verdict, shares(self._views))
+        if changed:
+            self._publish_state()
 
-    def _allowed(self, asked: DriveSetpoint) -> DriveSetpoint:
-        allowed = gate(asked, self._verdict)
-        if allowed != asked and self._safe is not None:
-            self.say.warn(
-                COMMAND_CUT,
-                every_s=1.0,
-                speed=asked.speed_m_s,
-                steering=asked.steering_rad,
-                reason=self._status().message,
-            )
-        return allowed
+    def _news(self) -> tuple[Verdict, Moment]:
+        """What is told at once when it changes, which an age does all the time."""
+        moment = self._moment()
+        return self._verdict, moment._replace(allowed=round(moment.allowed, 2), age_s=None)
 
-    def _let_through(self, command: DriveSetpoint) -> None:
-        self._command = command
-        if self._safe is not None:
-            self._safe.publish(to_message(self, command))
+    def _moment(self) -> Moment:
+        if self._gate is not None:
+            return self._gate.moment()
+        return Moment(allowed=allowed(0.0, self._verdict, shares(self._views)))
+
+    def _reason(self) -> str:
+        return str(self._status().message)
 
     def _status(self) -> DiagnosticStatus:
-        front, rear = self._sights
-        views = [View("front", front, self._front.reading)]
-        if self._rear is not None and rear is not None:
-            views.append(View("rear", rear, self._rear.reading))
-        return diagnosis(self.say, self._verdict, views)
+        return diagnosis(self.say, self._verdict, self._views, self._moment())
 
     def _publish_state(self) -> None:
-        self._told_s = time.monotonic()
+        self._told_s, self._told = time.monotonic(), self._news()
         message = DiagnosticArray(status=[self._status()])
         message.header.stamp = self.get_clock().now().to_msg()
         self._state.publish(message)

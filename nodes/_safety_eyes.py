@@ -1,0 +1,61 @@
+"""What the safety node sees: the newest reading of each distance sensor, and what it means."""
+
+from __future__ import annotations
+
+import time
+from typing import NamedTuple
+
+from robot.safety import Reading, Shares, Sight, Zone, look, share
+
+
+class View(NamedTuple):
+    """What one sensor shows."""
+
+    place: str
+    """`front` or `rear`."""
+    sight: Sight
+    reading: Reading
+    share: float
+    """How much of the asked speed is allowed that way, 0 to 1."""
+
+
+class Eye:
+    """One distance sensor, as it is now."""
+
+    def __init__(self, place: str) -> None:
+        self._place = place
+        self._distance_m: float | None = None
+        self._seen_s = time.monotonic()
+
+    def see(self, distance_m: float) -> None:
+        """Take a new reading."""
+        self._distance_m = distance_m
+        self._seen_s = time.monotonic()
+
+    @property
+    def reading(self) -> Reading:
+        """The newest reading and its age."""
+        return Reading(self._distance_m, time.monotonic() - self._seen_s)
+
+    def view(self, zone: Zone) -> View:
+        """What it shows now."""
+        reading = self.reading
+        sight = look(reading, zone.critical_m, zone.stale_after_s)
+        return View(self._place, sight, reading, share(reading, zone))
+
+
+class Eyes:
+    """The sensor in front, and the one behind if there is one."""
+
+    def __init__(self, *, rear: bool) -> None:
+        self.front = Eye("front")
+        self.rear = Eye("rear") if rear else None
+
+    def views(self, zone: Zone) -> tuple[View, ...]:
+        """What each of them shows now, the front first."""
+        return tuple(eye.view(zone) for eye in (self.front, self.rear) if eye is not None)
+
+
+def shares(views: tuple[View, ...]) -> Shares:
+    """How fast it may go each way; without a sensor behind, backing off is free."""
+    return Shares(*(view.share for view in views))

@@ -1,0 +1,72 @@
+"""Who drives: several sources of commands, ranked, and how old a command may grow.
+
+A source counts while its newest command is younger than `max_age_s`; the first in rank that
+counts drives, and the others are ignored. What an ignored source said is kept only for that
+long too, so that a word of long ago never moves the robot when the one above it falls silent.
+
+With a `max_age_s` of 0 no command grows old. Then a source holds the robot until it asks for a
+stop, and what is said below it meanwhile is forgotten.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robot.words import DriveSetpoint
+
+
+@dataclass(frozen=True)
+class Order:
+    """The newest command of one source."""
+
+    source: str
+    setpoint: DriveSetpoint
+    heard_s: float
+    """By a monotonic clock."""
+
+    def age_s(self, now_s: float) -> float:
+        """Seconds since it was heard."""
+        return max(0.0, now_s - self.heard_s)
+
+
+class Sources:
+    """The sources by rank, the highest first, and what each said last."""
+
+    def __init__(self, ranked: Sequence[str], max_age_s: float) -> None:
+        """Know these sources; nobody has said anything."""
+        self._ranked = tuple(ranked)
+        self.max_age_s = max_age_s
+        self._orders: dict[str, Order] = {}
+        self._newest = ""
+
+    def hear(self, source: str, setpoint: DriveSetpoint, now_s: float) -> Order:
+        """Take in a command; return the order that drives now, which may be one above it."""
+        order = self._orders[source] = Order(source, setpoint, now_s)
+        self._newest = source
+        driving = self.driving(now_s) or order
+        if driving is not order and self.max_age_s == 0:
+            del self._orders[source]
+        return driving
+
+    def driving(self, now_s: float) -> Order | None:
+        """The order that drives; None if nobody's counts."""
+        orders = map(self._orders.get, self._ranked)
+        return next((order for order in orders if order and self._counts(order, now_s)), None)
+
+    def correct(self, order: Order, setpoint: DriveSetpoint) -> None:
+        """Remember less than was asked for, for as long as the order itself would have counted."""
+        if self._orders.get(order.source) is order:
+            self._orders[order.source] = replace(order, setpoint=setpoint)
+
+    def forget(self) -> None:
+        """Wait for new commands of everybody."""
+        self._orders.clear()
+
+    def _counts(self, order: Order, now_s: float) -> bool:
+        if self.max_age_s == 0:
+            return order.setpoint.speed_m_s != 0 or order.source == self._newest
+        return order.age_s(now_s) < self.max_age_s
