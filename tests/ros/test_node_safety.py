@@ -54,9 +54,7 @@ class Gate:
         """Give a reading, and wait until the gate has taken it."""
         self.peer.say(f"/sensor/sonar_{place}", Float32(data=distance))
         wait_until(
-            lambda: (
-                self.states and values(self.states[-1])[f"{place}_m"] == f"{distance:.3f}"
-            ),
+            lambda: self.states and values(self.states[-1])[f"{place}_m"] == f"{distance:.3f}",
             f"{distance} m {place}",
         )
 

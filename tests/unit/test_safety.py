@@ -8,10 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.safety import Reading, Sight, Verdict, gate, look, where
+from robot.safety import Reading, Shares, Sight, Verdict, Zone, allowed, gate, look, share, where
 from robot.words import STOP, DriveSetpoint
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
+parts = st.floats(0, 1)
+distances = any_float | st.floats(0, 3)
+ages = any_float | st.floats(0, 3)
+readings = st.builds(Reading, st.none() | distances, ages)
+zones = st.builds(Zone, st.floats(0.01, 100) | st.just(0.5), st.floats(0, 100), st.floats(0.05, 60))
 setpoints = st.builds(DriveSetpoint, any_float, any_float)
 
 
@@ -52,17 +57,90 @@ def test_nothing_moves_during_an_emergency_stop(
     assert gate(command, where(front, rear, emergency=True)) == STOP
 
 
-@given(setpoints, st.sampled_from(Verdict))
+@given(setpoints, st.sampled_from(Verdict), st.builds(Shares, parts, parts))
 def test_what_passes_is_a_number_and_no_faster_than_was_asked(
-    command: DriveSetpoint, verdict: Verdict
+    command: DriveSetpoint, verdict: Verdict, shares: Shares
 ) -> None:
-    passed = gate(command, verdict)
+    passed = gate(command, verdict, shares)
     assert math.isfinite(passed.speed_m_s)
-    assert math.isfinite(passed.steering_rad)
-    assert passed.speed_m_s in (0.0, command.speed_m_s)
+    assert passed.steering_rad in (0.0, command.steering_rad)
+    if passed.speed_m_s:
+        assert abs(passed.speed_m_s) <= abs(command.speed_m_s)
+        assert math.copysign(1, passed.speed_m_s) == math.copysign(1, command.speed_m_s)
+    if verdict == Verdict.STARTING:
+        assert passed == STOP
+    if math.isfinite(command.speed_m_s) and not allowed(command.speed_m_s, verdict, shares):
+        assert passed.speed_m_s == 0
 
 
 def test_a_blocked_robot_may_still_turn_its_wheels_and_back_off() -> None:
     verdict = where(Sight.CLOSE, None, emergency=False)
     assert gate(DriveSetpoint(0.5, 0.4), verdict) == DriveSetpoint(0.0, 0.4)
     assert gate(DriveSetpoint(-0.3, 0.4), verdict) == DriveSetpoint(-0.3, 0.4)
+
+
+# ---------------------------------------------------------------- slowing down
+
+ZONE = Zone(critical_m=0.5, slow_m=1.0, stale_after_s=1.0)
+
+
+@pytest.mark.parametrize(
+    ("distance", "part"),
+    [
+        (math.inf, 1.0),
+        (1.0, 1.0),
+        (0.75, 0.5),
+        (0.6, 0.2),
+        (0.5, 0.0),
+        (0.2, 0.0),
+        (-math.inf, 0.0),
+        (math.nan, 0.0),
+        (-1.0, 0.0),
+        (None, 0.0),
+    ],
+)
+def test_speed_is_slowed_in_proportion(distance: float | None, part: float) -> None:
+    assert share(Reading(distance, 0.1), ZONE) == pytest.approx(part)
+    assert share(Reading(distance, 1.1), ZONE) == 0.0, "a reading that is too old"
+
+
+@given(readings, zones)
+def test_a_share_is_a_share_and_nothing_where_the_way_is_not_free(
+    reading: Reading, zone: Zone
+) -> None:
+    part = share(reading, zone)
+    assert 0.0 <= part <= 1.0
+    if look(reading, zone.critical_m, zone.stale_after_s) != Sight.FREE:
+        assert part == 0.0
+
+
+@given(distances, distances, zones)
+def test_nearer_is_never_faster(one: float, other: float, zone: Zone) -> None:
+    if math.isnan(one) or math.isnan(other):
+        return
+    near, far = sorted((one, other))
+    assert share(Reading(near), zone) <= share(Reading(far), zone)
+
+
+@given(zones)
+def test_it_stands_at_the_critical_distance_and_is_free_from_the_slow_one_on(zone: Zone) -> None:
+    slows = zone.slow_m > zone.critical_m
+    assert share(Reading(zone.critical_m), zone) == (0.0 if slows else 1.0)
+    assert share(Reading(max(zone.critical_m, zone.slow_m)), zone) == 1.0
+
+
+@given(distances, st.floats(0, 0.5))
+def test_a_slow_distance_within_the_critical_one_slows_nothing(
+    distance: float, slow_m: float
+) -> None:
+    zone = Zone(critical_m=0.5, slow_m=slow_m)
+    assert share(Reading(distance), zone) in (0.0, 1.0)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), parts, parts)
+def test_each_way_is_slowed_by_its_own_sensor(
+    speed: float, steering: float, forward: float, backward: float
+) -> None:
+    passed = gate(DriveSetpoint(speed, steering), Verdict.FREE, Shares(forward, backward))
+    assert passed.speed_m_s == pytest.approx(speed * (backward if speed < 0 else forward))
+    assert passed.steering_rad == steering
