@@ -7,14 +7,22 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from launcher.process_exit import Exit
 from launcher.process_spawner import SpawnError
-from launcher.process_stop import PATIENT, QUICK, Stop, Target
+from launcher.process_stop import PATIENT, QUICK, Stop
 from launcher.readiness import UnwatchableError
 from launcher.status import NodeState, NodeStatus, Severity
 from launcher.supervisor_policy import Again, Finished, GivenUp, RestartPolicy
+from launcher.supervisor_words import (
+    NOT_EXECUTABLE,
+    NOT_FOUND,
+    end_words,
+    stopped_words,
+    what,
+    who,
+)
 from launcher.words import say
 
 if TYPE_CHECKING:
@@ -23,51 +31,13 @@ if TYPE_CHECKING:
 
     from launcher.process_table import Process
     from launcher.process_usage import Usage
-    from launcher.readiness import Condition
-    from launcher.supervisor_clock import Clock
     from launcher.supervisor_plan import NodePlan
+    from launcher.supervisor_surroundings import RunningProcess, Surroundings
 
 LATE_S = 60.0
 """For so long after its time was up a node may still become ready."""
 ASKED_TWICE_S = 0.3
 """Two requests to stop that are closer together are one."""
-NOT_EXECUTABLE, NOT_FOUND = 126, 127
-NOT_FOUND_WORDS = "deck: command not found"
-"""How a process that was to become a command says that there is none."""
-
-
-class RunningProcess(Target, Protocol):
-    """A process that was started for a node, with all that descends from it."""
-
-    pid: int
-    ended: asyncio.Future[Exit]
-
-    async def close(self) -> None:
-        """Nothing of it is left: read what it has still written, and let go of it."""
-
-
-class Surroundings(Protocol):
-    """What a node's life needs of the session around it."""
-
-    clock: Clock
-
-    async def launch(self, plan: NodePlan) -> RunningProcess:
-        """Start the node's process; raises `SpawnError`."""
-
-    async def ready(self, condition: Condition) -> None:
-        """Return when the condition holds; raises `UnwatchableError`."""
-
-    def missing(self, plan: NodePlan) -> str:
-        """Say which needed nodes are not there yet; empty if all are."""
-
-    def last_words(self, name: str) -> str:
-        """Return what the node said last."""
-
-    def say(self, name: str, severity: Severity, words: str) -> None:
-        """Add a line about the node to its log."""
-
-    def changed(self, node: Node) -> None:
-        """The node's status has changed."""
 
 
 @dataclass
@@ -200,18 +170,10 @@ class Node:
                     return
             if self._down:
                 if not self._again:
-                    self._become(NodeState.EXITED, self._stopped_words())
+                    self._become(NodeState.EXITED, stopped_words(self._last))
                     return
                 self._again = self._down = self._hurried = False
                 self._policy.reset()
-
-    def _stopped_words(self) -> str:
-        last = self._last
-        if last is not None and last.signal is not None:
-            return say("stopped by {signal}", signal=last.signal)
-        if last is not None and last.code:
-            return say("stopped, exit code {code}", code=last.code)
-        return say("stopped")
 
     async def _wait_for_needs(self) -> None:
         while not self._down and not self._forced:
@@ -271,13 +233,13 @@ class Node:
             left = now.process.left()
             if not left:
                 return
-            self._become(NodeState.STOPPING, say("it ended, and left {who}", who=_who(left)))
+            self._become(NodeState.STOPPING, say("it ended, and left {who}", who=who(left)))
         stop = now.stop
         now.process.ended.add_done_callback(lambda _ended: stop.look())
         await stop.run()
 
     def _held_up(self, left: Sequence[Process], number: signal.Signals) -> None:
-        words = say("{signal} sent, waits for {who}", signal=number.name, who=_who(left))
+        words = say("{signal} sent, waits for {who}", signal=number.name, who=who(left))
         self._become(NodeState.STOPPING, words)
         if number.name != "SIGINT":
             self._around.say(self.plan.name, Severity.WARN, words)
@@ -287,7 +249,7 @@ class Node:
         if plan.ready is None:
             self._become(NodeState.RUNNING, serves=True)
             return
-        self._become(NodeState.STARTING, say("waits for {what}", what=_what(plan.ready)))
+        self._become(NodeState.STARTING, say("waits for {what}", what=what(plan.ready)))
         clock = self._around.clock
         ready = asyncio.ensure_future(self._around.ready(plan.ready))
         came = asyncio.Event()
@@ -297,7 +259,7 @@ class Node:
                 words = say(
                     "not ready within {seconds:g} s: no {what}",
                     seconds=plan.within_s,
-                    what=_what(plan.ready),
+                    what=what(plan.ready),
                 )
                 self._become(NodeState.RUNNING, words)
                 self._around.say(plan.name, Severity.WARN, words)
@@ -348,34 +310,4 @@ class Node:
         return Severity.WARN if self.plan.optional else Severity.ERROR
 
     def _end_words(self, end: Exit) -> str:
-        if end.clean:
-            return say("ended")
-        last = self._around.last_words(self.plan.name)
-        if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not self.plan.module:
-            program = self.plan.argv[0]
-            if self.plan.optional:
-                return say("{program} is not installed; it goes on without", program=program)
-            return say("{program} is not installed", program=program)
-        how = (
-            say("killed by {signal}", signal=end.signal)
-            if end.signal is not None
-            else say("exit code {code}", code=end.code)
-        )
-        return say("{how}: {last}", how=how, last=_short(last)) if last and not self._down else how
-
-
-def _what(condition: Condition) -> str:
-    if condition.kind == "topic":
-        return say("publisher of {name}", name=condition.name)
-    if condition.kind == "service":
-        return say("service {name}", name=condition.name)
-    return say("node {name} in the graph", name=condition.name)
-
-
-def _who(left: Sequence[Process], most: int = 3) -> str:
-    names = ", ".join(f"{process.pid} ({process.name})" for process in left[:most])
-    return names if len(left) <= most else f"{names} …"
-
-
-def _short(text: str, most: int = 160) -> str:
-    return text if len(text) <= most else text[: most - 1] + "…"
+        return end_words(end, self.plan, self._around.last_words(self.plan.name), asked=self._down)

@@ -1,0 +1,64 @@
+"""How a node's end, and what is waited for, are told in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from launcher.process_exit import Exit
+    from launcher.process_table import Process
+    from launcher.readiness import Condition
+    from launcher.supervisor_plan import NodePlan
+
+NOT_EXECUTABLE, NOT_FOUND = 126, 127
+NOT_FOUND_WORDS = "deck: command not found"
+"""How a process that was to become a command says that there is none."""
+
+
+def stopped_words(last: Exit | None) -> str:
+    """How a node ended that was asked to; `last` is None where no process was."""
+    if last is not None and last.signal is not None:
+        return say("stopped by {signal}", signal=last.signal)
+    if last is not None and last.code:
+        return say("stopped, exit code {code}", code=last.code)
+    return say("stopped")
+
+
+def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
+    """How a process ended, with `last`, what it said last, unless it was `asked` to end."""
+    if end.clean:
+        return say("ended")
+    if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not plan.module:
+        program = plan.argv[0]
+        if plan.optional:
+            return say("{program} is not installed; it goes on without", program=program)
+        return say("{program} is not installed", program=program)
+    how = (
+        say("killed by {signal}", signal=end.signal)
+        if end.signal is not None
+        else say("exit code {code}", code=end.code)
+    )
+    return say("{how}: {last}", how=how, last=_short(last)) if last and not asked else how
+
+
+def what(condition: Condition) -> str:
+    """What is waited for."""
+    if condition.kind == "topic":
+        return say("publisher of {name}", name=condition.name)
+    if condition.kind == "service":
+        return say("service {name}", name=condition.name)
+    return say("node {name} in the graph", name=condition.name)
+
+
+def who(left: Sequence[Process], most: int = 3) -> str:
+    """Processes by number and name, no more than `most` of them."""
+    names = ", ".join(f"{process.pid} ({process.name})" for process in left[:most])
+    return names if len(left) <= most else f"{names} …"
+
+
+def _short(text: str, most: int = 160) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"
