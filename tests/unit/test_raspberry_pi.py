@@ -1,0 +1,102 @@
+"""What the pages about the Raspberry Pi show: the service, the profiles, the commands."""
+
+from __future__ import annotations
+
+import configparser
+import os
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from launcher.profile import load_profile
+from tui.cli.arguments import COMMANDS, parser_of, split
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+SERVICE = DOCS / "deck-robot.service"
+PAGES = ["raspberry-pi.md", "raspberry-pi.ru.md"]
+
+
+@pytest.fixture(params=PAGES)
+def page(request: pytest.FixtureRequest) -> str:
+    """The text of the page, in each language."""
+    return (DOCS / request.param).read_text()
+
+
+def service() -> configparser.SectionProxy:
+    """Return what the unit says of the service."""
+    unit = configparser.ConfigParser(interpolation=None, strict=True)
+    unit.optionxform = str  # type: ignore[assignment,method-assign]
+    unit.read_string(SERVICE.read_text())
+    return unit["Service"]
+
+
+def deck_words(command: str) -> list[str]:
+    """Return the words after `exec deck` of the shell's command line."""
+    shell = shlex.split(command)
+    assert shell[:2] == ["/bin/bash", "-c"]
+    return shlex.split(shell[2].rpartition("exec deck ")[2])
+
+
+@pytest.mark.parametrize(("key", "command"), [("ExecStartPre", "check"), ("ExecStart", "run")])
+def test_the_service_calls_deck_as_it_can_be_called(key: str, command: str) -> None:
+    word, rest = split(deck_words(service()[key]))
+    assert word == command
+    options = parser_of(word).parse_args(rest)
+    assert (options.profile, options.hardware) == ("robot", "real")
+
+
+def test_only_deck_is_asked_to_stop_and_gets_the_time_that_it_may_need() -> None:
+    settings = service()
+    assert (settings["KillMode"], settings["KillSignal"]) == ("mixed", "SIGINT")
+    assert int(settings["TimeoutStopSec"]) >= 20
+    assert settings["Restart"] == "on-failure"
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="no systemd here")
+def test_systemd_takes_the_service(tmp_path: Path) -> None:
+    done = subprocess.run(
+        ["systemd-analyze", "verify", "--user", str(SERVICE)],
+        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    said = [line for line in done.stderr.splitlines() if SERVICE.name in line]
+    assert (done.returncode, said) == (0, [])
+
+
+def test_the_profiles_shown_can_be_used(page: str, tmp_path: Path) -> None:
+    shown = re.findall(r"```\n(extends: .*?)```", page, re.DOTALL)
+    assert len(shown) == 2
+    for text in shown:
+        path = tmp_path / "my-robot.yaml"
+        path.write_text(text)
+        profile = load_profile(path, hardware="real", environ={})
+        assert profile.domain == 42
+        assert "chassis" in profile.nodes
+
+
+def test_the_commands_shown_exist(page: str) -> None:
+    for line in re.findall(r"^deck (.+?)(?: +#.*)?$", page, re.MULTILINE):
+        word, rest = split(shlex.split(line))
+        assert word in (*COMMANDS, "open")
+        parser_of(word).parse_args(rest)
+
+
+def test_the_variables_shown_are_those_of_the_robot(page: str) -> None:
+    shown = dict(re.findall(r"(DECK_\w+_PORT)=(\S+)", page))
+    assert len(shown) == 3
+    robot = DOCS.parent / "profiles" / "robot.yaml"
+    devices = load_profile(robot, hardware="real", environ=shown).devices.values()
+    assert set(shown.values()) <= {settings["port"] for settings in devices}
+
+
+def test_both_pages_link_what_is_there_and_have_the_same_parts(page: str) -> None:
+    for link in re.findall(r"\]\(((?!https?:)[^)#]+)", page):
+        assert (DOCS / link).exists(), link
+    parts = {name: (DOCS / name).read_text().count("\n## ") for name in PAGES}
+    assert len(set(parts.values())) == 1
