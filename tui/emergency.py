@@ -40,7 +40,7 @@ class Emergency:
     blocked: str = ""
     """Why the safety node holds the wheels, in its own words; empty if it does not."""
     gate: Gate | None = None
-    """What the gate said, to be told in the language of the screen; None if it said nothing."""
+    """The same to be told in the language of the screen, None where that is not known."""
 
     def pressed(self, now_s: float) -> Emergency:
         """Engage it from here."""
@@ -62,7 +62,9 @@ class Emergency:
             if engaged != state.engaged and sample.received_s > state.since_s:
                 state = replace(state, engaged=engaged, ours=False, fallback="")
         for sample in update.samples.get(SAFETY_TOPIC, ()):
-            state = replace(state, blocked=blocked_reason(sample), gate=gate_in(sample))
+            gate = gate_in(sample)
+            gate = gate if gate is not None and gate.is_held else None
+            state = replace(state, blocked=blocked_reason(sample), gate=gate)
         return state
 
 

@@ -75,9 +75,8 @@ class DrivenScreen(DeckScreen):
             self._teleop.show(message.update)
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """A stop is also the end of what the keys asked for."""
-        del message
-        if self._teleop is not None:
+        """A stop is also the end of what the keys asked for; other news of the gate are not."""
+        if self._teleop is not None and message.emergency.engaged:
             self._teleop.release()
 
     @on(SessionChanged)

@@ -1,0 +1,322 @@
+"""Driving by keys: who is driven, that it ends with the keys, and what is said meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field, replace
+from typing import Any, cast
+
+import pytest
+from textual import events
+from textual.pilot import Pilot
+
+from graph.data import GraphUpdate
+from launcher.events import ClosedEvent
+from tests.tui.app_runs import opened
+from tests.tui.recorded import (
+    TOPICS,
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    lesson_samples,
+    lesson_update,
+    sample,
+    topic,
+)
+from tests.tui.snapshots import Look, SnapCompare, every_look
+from tui import clock
+from tui.app import DeckApp
+from tui.emergency import SAFETY_TOPIC
+from tui.screens.deck import LessonDeck
+from tui.teleop import FIRST_HOLD_S
+from tui.teleop_gate import gate_in, gate_words
+from tui.teleop_route import DRIVE, DRIVE_TYPE, TELEOP
+from tui.widgets.teleop import TeleopPanel
+
+STARTED_S = 1.0
+"""Long before any key is pressed: a key that is stamped later counts as pressed now."""
+SAFETY_TYPE = "diagnostic_msgs/msg/DiagnosticArray"
+GATED = (*TOPICS, topic(TELEOP, DRIVE_TYPE, None, publishers=0))
+
+
+@pytest.fixture(autouse=True)
+def _hand_moved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have the steady clock stand."""
+    monkeypatch.setattr(clock, "steady", lambda: STARTED_S)
+
+
+def safety(verdict: str = "free", **values: str) -> Any:
+    """A word of the gate."""
+    told = {"verdict": verdict, "front": "free", "front_m": "1.840", **values}
+    pairs = [{"key": key, "value": value} for key, value in told.items()]
+    status = {"level": b"\x00", "name": "safety_stop", "message": "in its words", "values": pairs}
+    return sample(SAFETY_TOPIC, SAFETY_TYPE, {"status": [status]})
+
+
+def drive(speed: float, steering: float) -> Any:
+    value = {"drive": {"speed": speed, "steering_angle": steering}}
+    return sample("/drive_safe", DRIVE_TYPE, value)
+
+
+def gated(said: Any = None, **more: Any) -> GraphUpdate:
+    """Lesson 9 with a gate that listens to the keys."""
+    samples = lesson_samples()
+    samples["/drive_safe"] = (drive(0.08, 0.3),)
+    samples[SAFETY_TOPIC] = (said or safety(),)
+    return lesson_update(topics=GATED, samples=samples, **more)
+
+
+@dataclass
+class Pad(RecordedPad):
+    """With the graph and the session as what they are."""
+
+    graph: RecordedGraph = field(default_factory=RecordedGraph)
+    link: RecordedSession = field(default_factory=RecordedSession)
+
+
+def pad_of(update: GraphUpdate) -> Pad:
+    return Pad(graph=RecordedGraph(update))
+
+
+@asynccontextmanager
+async def driving(
+    pad: Pad, size: tuple[int, int] = (120, 40)
+) -> AsyncIterator[tuple[DeckApp, Pilot[Any], TeleopPanel]]:
+    async with opened(pad, size=size) as (app, pilot):
+        await pilot.press("t")
+        await pilot.pause()
+        yield app, pilot, app.screen.query_one(TeleopPanel)
+
+
+def held(pad: Pad) -> list[tuple[str, float, float]]:
+    """(topic, m/s, rad) of what has been held so far."""
+    drives: list[tuple[str, Any]] = [(each[0], each[2].value["drive"]) for each in pad.graph.held]
+    return [(name, drive["speed"], drive["steering_angle"]) for name, drive in drives]
+
+
+def text_of(panel: TeleopPanel) -> str:
+    return "\n".join(panel.render_line(y).text for y in range(panel.size.height))
+
+
+async def test_opening_it_makes_a_publisher_and_publishes_nothing() -> None:
+    pad = pad_of(gated())
+    async with opened(pad) as (_app, pilot):
+        assert [each[0] for each in pad.graph.prepared] == ["/emergency_stop"]
+        await pilot.press("t")
+        await pilot.pause()
+        assert pad.graph.prepared[1:] == [(TELEOP, DRIVE_TYPE, False)]
+        assert not pad.graph.held
+        assert not pad.graph.published
+        assert not pad.graph.repeated
+
+
+async def test_each_key_holds_a_command_for_a_while() -> None:
+    keys = {
+        (0.2, 0.0): ("up", "w", "ц", "W"),
+        (-0.2, 0.0): ("down", "s", "ы"),
+        (0.0, 0.3): ("left", "a", "ф"),
+        (0.0, -0.3): ("right", "d", "в", "В"),
+    }
+    pad = pad_of(gated())
+    async with driving(pad) as (app, pilot, panel):
+        for asked, names in keys.items():
+            for name in names:
+                panel.release()
+                await pilot.press(name)
+                assert held(pad)[-1] == (TELEOP, *asked), name
+        assert len(pad.graph.held) == sum(map(len, keys.values()))
+        word = pad.graph.held[0][2]
+        assert word.until_s == STARTED_S + FIRST_HOLD_S
+        assert word.rest["drive"] == {"speed": 0.0, "steering_angle": 0.0}
+        await pilot.press("q", "x", "r", "X", "й", "c", "z")
+        await pilot.pause()
+        assert app.is_running
+        assert pad.link.asked == []
+
+
+async def test_the_limits_are_changed_by_plus_and_minus_and_brackets() -> None:
+    pad = pad_of(gated())
+    async with driving(pad) as (_app, pilot, panel):
+        await pilot.press("plus", "plus", "minus", "right_square_bracket", "up", "a")
+        assert held(pad)[-1] == (TELEOP, 0.25, 0.35)
+        assert "0.25 m/s" in text_of(panel)
+        assert "0.35 rad" in text_of(panel)
+
+
+async def test_without_a_gate_for_the_keys_it_drives_by_the_lessons_topic() -> None:
+    pad = Pad()
+    async with driving(pad) as (_app, pilot, panel):
+        assert str(panel.border_title).endswith("→ /drive")
+        await pilot.press("up")
+        assert held(pad) == [(DRIVE, 0.2, 0.0)]
+
+
+async def test_where_nobody_listens_nothing_is_held_and_it_says_why() -> None:
+    deaf = tuple(replace(row, subscribers=0) for row in TOPICS)
+    pad = pad_of(lesson_update(topics=deaf))
+    async with driving(pad) as (_app, pilot, panel):
+        await pilot.press("up")
+        assert pad.graph.held == []
+        assert "Nobody listens to /drive_teleop or /drive: nothing will move." in text_of(panel)
+
+
+async def test_a_gate_that_comes_takes_over() -> None:
+    pad = Pad()
+    async with driving(pad) as (_app, pilot, _panel):
+        await pilot.press("up")
+        pad.graph.show(gated())
+        await pilot.pause()
+        assert pad.graph.let_go_of == [DRIVE]
+        await pilot.press("up")
+        assert [name for name, *_asked in held(pad)] == [DRIVE, TELEOP]
+
+
+async def test_whatever_takes_the_keys_away_stops() -> None:
+    pad = pad_of(gated())
+    async with driving(pad) as (app, pilot, _panel):
+        for leave, back in {
+            "tab": (),
+            "f1": ("escape",),
+            "ctrl+p": ("escape",),
+            "2": ("1",),
+            "space": ("ctrl+r",),
+            "escape": (),
+            "е": (),
+        }.items():
+            await cast("LessonDeck", app.screen).open_teleop()
+            await pilot.press("up")
+            panel = app.screen.query_one(TeleopPanel)
+            assert panel.asked.speed_m_s, leave
+            before = len(pad.graph.let_go_of)
+            await pilot.press(leave)
+            await pilot.pause()
+            assert set(pad.graph.let_go_of[before:]) == {TELEOP}, leave
+            assert panel.asked.speed_m_s == 0, leave
+            await pilot.press(*back)
+            await pilot.pause()
+            assert bool(app.screen.query(TeleopPanel)) == (leave not in {"escape", "е"})
+
+
+async def test_a_terminal_that_loses_the_focus_stops() -> None:
+    pad = pad_of(gated())
+    async with driving(pad) as (app, pilot, panel):
+        await pilot.press("up")
+        app.post_message(events.AppBlur())
+        await pilot.pause()
+        assert pad.graph.let_go_of == [TELEOP]
+        assert panel.asked.speed_m_s == 0
+        app.post_message(events.AppFocus())
+        await pilot.pause()
+        assert panel.has_focus
+
+
+async def test_the_end_of_the_session_takes_it_away() -> None:
+    pad = pad_of(gated())
+    async with driving(pad) as (app, pilot, _panel):
+        await pilot.press("up")
+        pad.link.say(ClosedEvent("gone"))
+        for _round in range(50):
+            await pilot.pause(0.01)
+            if not app.screen.query(TeleopPanel):
+                break
+        assert not app.screen.query(TeleopPanel)
+        assert pad.graph.stopped
+
+
+async def test_a_key_that_has_waited_too_long_moves_nothing() -> None:
+    pad = pad_of(gated())
+    async with driving(pad) as (_app, pilot, panel):
+        late = events.Key("up", None)
+        late.time = STARTED_S - FIRST_HOLD_S
+        panel.post_message(late)
+        await pilot.pause()
+        assert pad.graph.held == []
+        late = events.Key("up", None)
+        late.time = STARTED_S - 0.4
+        panel.post_message(late)
+        await pilot.pause()
+        assert pad.graph.held[0][2].until_s == pytest.approx(STARTED_S + 0.2)
+
+
+async def test_while_stopped_the_keys_ask_for_nothing() -> None:
+    pad = pad_of(gated())
+    async with driving(pad) as (_app, pilot, panel):
+        await pilot.press("space", "up")
+        assert pad.graph.held == []
+        assert "emergency stop: nothing moves; ^r releases" in text_of(panel)
+        await pilot.press("ctrl+r", "up")
+        assert len(pad.graph.held) == 1
+
+
+async def test_what_cannot_be_published_is_told() -> None:
+    pad = pad_of(gated())
+    pad.graph.publish_error = RuntimeError("/drive_teleop carries \x1b[31mother")
+    async with driving(pad) as (_app, pilot, panel):
+        await pilot.press("up")
+        await pilot.pause()
+        await pilot.pause()
+        assert "/drive_teleop carries ␛[31mother" in text_of(panel)
+
+
+async def test_it_is_not_offered_for_a_recording_or_without_a_session() -> None:
+    pad = pad_of(gated())
+    async with opened(pad) as (app, pilot):
+        app.feed.link = None
+        await pilot.press("t")
+        await pilot.pause()
+        assert not app.screen.query(TeleopPanel)
+        app.feed.link = pad.link
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({}, "the way is free: 1.84 m ahead"),
+        ({"front_m": "inf"}, "the way is free: nothing ahead"),
+        ({"source": "/drive_teleop"}, "the way is free: 1.84 m ahead · obeys the keys"),
+        (
+            {"front_m": "0.7", "allowed": "0.40", "source": "/drive", "ignored": "/x\x1b"},
+            "slowed to 40 %: 0.70 m ahead · obeys /drive · ignores /x␛",
+        ),
+        (
+            {"verdict": "blocked_forward", "front": "close", "front_m": "0.340", "allowed": "0.00"},
+            "forward is blocked: obstacle 0.34 m ahead",
+        ),
+        (
+            {"verdict": "blocked", "front": "invalid", "front_m": "nan", "rear": "silent"},
+            "motion is blocked: no valid distance ahead, the rear sonar is silent",
+        ),
+        ({"verdict": "emergency_stop"}, "emergency stop"),
+        ({"verdict": "starting"}, "the gate is starting"),
+        ({"verdict": ""}, "in its words"),
+    ],
+)
+def test_the_gate_is_told_in_the_screens_words(values: dict[str, str], words: str) -> None:
+    gate = gate_in(safety(**values))
+    assert gate is not None
+    assert gate_words(gate) == words
+
+
+@pytest.mark.parametrize(
+    "value",
+    [{}, {"status": None}, {"status": [None]}, {"status": [{"name": "other"}]}],
+)
+def test_what_is_no_word_of_the_gate_is_passed_over(value: dict[str, Any]) -> None:
+    assert gate_in(sample(SAFETY_TOPIC, SAFETY_TYPE, value)) is None
+
+
+SLOWED = safety(front_m="0.700", allowed="0.40", source="/drive_teleop")
+
+
+@every_look
+def test_driving_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """Asked 0.20 m/s in a left curve, 0.08 allowed: slowed to 40 %, said in words; limits below."""
+
+    async def drive_on(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await pilot.press("t", "up", "left")
+        await pilot.pause()
+
+    app = look.app(pad=pad_of(gated(SLOWED)))
+    assert snap_compare(app, terminal_size=look.size, run_before=drive_on)
