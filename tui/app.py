@@ -43,6 +43,7 @@ SCREENS = {
     "logs": ("tui.screens.logs", "LogsScreen"),
     "graph": ("tui.screens.graph", "GraphScreen"),
     "flow": ("tui.screens.flow", "FlowScreen"),
+    "devices": ("tui.screens.devices", "DevicesScreen"),
 }
 """Imported when first shown: the first frame needs only one of them."""
 

@@ -9,6 +9,7 @@ from tui.actions.app import (
     EmergencyRelease,
     ShowComposer,
     ShowDeck,
+    ShowDevices,
     ShowFlow,
     ShowGraph,
     ShowLogs,
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from launcher.status import SessionInfo
     from tui.app import DeckApp
 
-TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow)
+TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
 WELL = frozenset({"ready", "running"})
 
 

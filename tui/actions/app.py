@@ -145,6 +145,16 @@ class ShowFlow(ShowScreen):
     screen = "flow"
 
 
+class ShowDevices(ShowScreen):
+    """Drivers and their serial ports."""
+
+    id = "screen.devices"
+    key = "7"
+    title = N_("Devices")
+    tooltip = N_("Every driver, what it is connected to, and what goes over its port.")
+    screen = "devices"
+
+
 class ShowHelp(AppAction):
     """The keys and what the screen shows."""
 
@@ -262,6 +272,7 @@ APP_ACTIONS = (
     ShowLogs,
     ShowGraph,
     ShowFlow,
+    ShowDevices,
     ShowPalette,
     CloseSession,
     SwitchLanguage,

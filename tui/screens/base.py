@@ -34,7 +34,7 @@ class DeckScreen(Screen[None], Acting):
     A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
     `follow_topics`, and handles what it wants of `tui.messages`. When the topics it wants have
     changed it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P, Ctrl+Q, q, F1 to F5
-    and 1 to 6 belong to the app.
+    and 1 to 7 belong to the app.
     """
 
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from rich.cells import cell_len, set_cell_size
 from textual.content import Content
@@ -13,6 +13,19 @@ from textual.widget import Widget
 NAME = " Deck "
 SHORT = 3
 """Letters of a tab's word where there is little room."""
+
+
+class _Level(NamedTuple):
+    """Tabs of (text, action, in front), so much shortened."""
+
+    tabs: Sequence[tuple[str, str, bool]]
+    gap: int
+    """Blanks between two texts."""
+
+    @property
+    def width(self) -> int:
+        """Cells of all tabs, a blank before the first included."""
+        return sum(cell_len(text) + self.gap for text, *_more in self.tabs) + (self.gap == 1)
 
 
 class TitleBar(Widget):
@@ -67,7 +80,7 @@ class TitleBar(Widget):
 
         `look`: `state`, `alarm` or `stop`; with the last the whole line is red, and where the
         words do not fit beside the tabs these give way. Tabs that are not in front are
-        shortened, to a few letters and then to their keys, before the state is.
+        shortened, to a few letters, moved together, and then to their keys, before the state is.
         """
         shown = (tuple(tabs), tuple(states), look)
         if shown != (self._tabs, self._states, self._look):
@@ -82,40 +95,41 @@ class TitleBar(Widget):
 
     def render(self) -> Content:
         """Draw the tabs, then what fits of the state."""
-        tabs, state = self._fitting()
-        left = self._left(tabs)
+        level, state = self._fitting()
+        left = self._left(level)
         gap = " " * max(0, self.size.width - left.cell_length - cell_len(state) - 2)
         style = self.get_visual_style(f"title-bar--{self._look}")
         return left.append(gap).append(Content.styled(f" {state} ", style))
 
-    def _fitting(self) -> tuple[Sequence[tuple[str, str, bool]], str]:
+    def _fitting(self) -> tuple[_Level, str]:
         """Return the tabs that are shown, and the state as long as there is room for it.
 
         The shortest state says too little to spare the tabs for it: they are shortened first.
         While stopped the words come first, and all tabs may give way.
         """
         alone = self.size.width - cell_len(NAME) - 3
-        levels = [_shortened(self._tabs, letters) for letters in (None, SHORT, 0)]
-        rooms = [alone - sum(cell_len(text) + 2 for text, *_more in tabs) for tabs in levels]
+        shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
+        levels = [_Level(_shortened(self._tabs, letters), gap) for letters, gap in shapes]
         states = self._states or ("",)
         for state in states if self._look == "stop" else ():
-            for tabs, room in (*zip(levels, rooms, strict=True), ((), alone)):
-                if cell_len(state) <= room:
-                    return tabs, state
-        for tabs, room in zip(levels, rooms, strict=True):
-            spared = states[-1:] if len(states) > 1 and tabs is not levels[-1] else ()
+            for level in (*levels, _Level((), 2)):
+                if cell_len(state) <= alone - level.width:
+                    return level, state
+        for level in levels:
+            spared = states[-1:] if len(states) > 1 and level is not levels[-1] else ()
             for state in states:
-                if state not in spared and cell_len(state) <= room:
-                    return tabs, state
-        return levels[-1], _cut(states[-1], rooms[-1])
+                if state not in spared and cell_len(state) <= alone - level.width:
+                    return level, state
+        return levels[-1], _cut(states[-1], alone - levels[-1].width)
 
-    def _left(self, tabs: Sequence[tuple[str, str, bool]]) -> Content:
+    def _left(self, level: _Level) -> Content:
         parts = [Content.styled(NAME, self.get_visual_style("title-bar--name"))]
-        for text, action, front in tabs:
+        for text, action, front in level.tabs:
             style = self.get_visual_style("title-bar--front" if front else "title-bar--tab")
             click = Style.from_meta({"@click": action})
-            parts.append(Content.styled(f" {text} ", style + click))
-        return Content("").join(parts)
+            said = f" {text} " if level.gap > 1 else text
+            parts += [Content(" " * (2 - level.gap)), Content.styled(said, style + click)]
+        return Content("").join([*parts, Content(" " * (2 - level.gap))])
 
 
 def _shortened(
