@@ -105,7 +105,8 @@ def _filter_parts(view: LogView) -> list[tuple[str, str]]:
         words = ngettext("{count} node muted", "{count} nodes muted", count)
         parts.append((words.format(count=count), "chosen"))
     if chosen.minimum is not Severity.DEBUG:
-        parts.append((_("{severity} and worse").format(severity=chosen.minimum.name), "chosen"))
+        words = view.minimum_words or _("{severity} and worse")
+        parts.append((words.format(severity=chosen.minimum.name), "chosen"))
     return parts
 
 

@@ -67,6 +67,8 @@ class LogLines(TailView):
         """Lines shown that have come since following ended."""
         self.empty_words = ""
         """Why no line has come; in place of "no lines yet"."""
+        self.minimum_words = ""
+        """How the bar calls lines above the lowest severity; in place of "WARN and worse"."""
         self.choice = Choice()
         self._shift = 0
         self._node_places: dict[str, int] = {}
@@ -142,9 +144,13 @@ class LogLines(TailView):
         if self._row_width < 1:
             return
         top = self._top_id()
-        self._columns = columns_for(self._row_width, self._longest_node)
+        self._columns = self.columns_for(self._row_width, self._longest_node)
         self.index.fold(self._text_width if self.fold else None)
         self._settle(top)
+
+    def columns_for(self, width: int, longest_node: int) -> Columns:
+        """Which columns stand in front of the text, for rows of so many cells."""
+        return columns_for(width, longest_node)
 
     @property
     def _row_width(self) -> int:

@@ -100,6 +100,8 @@ class RowPainter:
             return self.palette.marker
         if entry.rank == Severity.DEBUG.rank:
             return self.palette.muted
+        if not self.columns.word and entry.rank > Severity.INFO.rank:
+            return self.palette.severities[entry.rank]
         return self.palette.base
 
     def _piece(self, text: str, part: int) -> tuple[int, str, bool]:

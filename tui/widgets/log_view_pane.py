@@ -9,7 +9,7 @@ import asyncio
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.containers import Vertical
@@ -33,6 +33,7 @@ class LogPane(Vertical):
     """A `LogView` with all that can be done to it."""
 
     DEFAULT_CSS = "LogPane { height: 1fr; width: 1fr; }"
+    view_type: ClassVar[type[LogView]] = LogView
 
     def __init__(
         self,
@@ -44,7 +45,7 @@ class LogPane(Vertical):
     ) -> None:
         """As for `LogView`."""
         super().__init__(id=id)
-        self.view = LogView(max_lines=max_lines, period_s=period_s, file_of=file_of)
+        self.view = self.view_type(max_lines=max_lines, period_s=period_s, file_of=file_of)
         self.save_folder = ""
         """Where files are written unless somebody names another place."""
         self._lines: Sequence[str] = ()

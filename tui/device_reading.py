@@ -1,0 +1,143 @@
+"""/diagnostics read into plain data: one `Device` for each driver that says how it is.
+
+Several drivers publish on one topic, so every message of it is wanted, not only the newest.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+from tui.widgets.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from graph.data import Sample, TopicRow
+
+TOPIC = "/diagnostics"
+STALE_S = 3.0
+"""A driver that says nothing for so long is no longer believed: each says so once a second."""
+MOST = 200
+"""Drivers that are kept."""
+_MOST_VALUES = 64
+_LONGEST = 400
+_STRING = "std_msgs/msg/String"
+_ISO = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d")
+
+
+class Level(IntEnum):
+    """As diagnostic_msgs/DiagnosticStatus has it."""
+
+    OK = 0
+    WARN = 1
+    ERROR = 2
+    STALE = 3
+
+
+@dataclass(frozen=True)
+class Device:
+    """What a driver said last."""
+
+    name: str
+    level: Level
+    message: str
+    hardware: str
+    values: Mapping[str, str]
+    heard_s: float
+    """Unix time."""
+
+    @property
+    def port(self) -> str:
+        """What it is connected to."""
+        return self.values.get("port") or self.hardware
+
+    @property
+    def connected(self) -> bool | None:
+        """Whether its port is open, None if it does not tell."""
+        said = self.values.get("connected", "").lower()
+        return said == "true" if said in {"true", "false"} else None
+
+    @property
+    def since(self) -> str:
+        """Date and time of the connection, local; empty without one."""
+        since = self.values.get("connected_since", "")
+        return since[:19].replace("T", " ") if _ISO.match(since) else ""
+
+    def number(self, key: str) -> float | None:
+        """A value that is a number, None if it is none."""
+        try:
+            return float(self.values[key])
+        except (KeyError, ValueError):
+            return None
+
+    def age_s(self, now_s: float) -> float:
+        """Seconds since it said something."""
+        return max(0.0, now_s - self.heard_s)
+
+
+class DeviceBook:
+    """Keeps the newest word of every driver."""
+
+    def __init__(self) -> None:
+        self._devices: dict[str, Device] = {}
+
+    @property
+    def devices(self) -> Sequence[Device]:
+        """By their names."""
+        return sorted(self._devices.values(), key=lambda device: device.name)
+
+    def get(self, name: str) -> Device | None:
+        """The driver of this name."""
+        return self._devices.get(name)
+
+    def clear(self) -> None:
+        """Forget all."""
+        self._devices.clear()
+
+    def excuse(self, now_s: float) -> None:
+        """Nobody has listened until now: what was said before is not stale for that."""
+        for name, device in self._devices.items():
+            self._devices[name] = replace(device, heard_s=max(device.heard_s, now_s))
+
+    def take(self, samples: Iterable[Sample]) -> None:
+        """Read messages of diagnostic_msgs/DiagnosticArray; what is none of them is left out."""
+        for sample in samples:
+            statuses: Any = sample.value.get("status")
+            for status in statuses if isinstance(statuses, list) else ():
+                device = _device(status, sample.received_s - sample.age_s)
+                if device and (device.name in self._devices or len(self._devices) < MOST):
+                    self._devices[device.name] = device
+
+
+def frames_topic(device: Device, topics: Iterable[TopicRow]) -> str | None:
+    """The topic on which this driver tells of its frames, None if there is none.
+
+    /diagnostics names a node without its namespace, so the shortest topic that fits is taken.
+    """
+    name = device.name.strip("/")
+    fitting = [
+        row.name
+        for row in topics
+        if row.name.endswith(f"/{name}/frames") and _STRING in row.type_names and row.publishers
+    ]
+    return min(fitting, key=len, default=None) if name else None
+
+
+def _device(status: Any, heard_s: float) -> Device | None:  # noqa: ANN401 - of any make
+    try:
+        name, level = _text(status["name"]), int(status["level"])
+        values = {
+            _text(item["key"]): _text(item["value"]) for item in status["values"][:_MOST_VALUES]
+        }
+        said, hardware = _text(status["message"]), _text(status["hardware_id"])
+    except (KeyError, TypeError, ValueError):
+        return None
+    known = Level(level) if level in Level.__members__.values() else Level.ERROR
+    return Device(name or "?", known, said, hardware, values, heard_s)
+
+
+def _text(value: object) -> str:
+    return plain(str(value), _LONGEST)
