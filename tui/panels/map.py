@@ -55,6 +55,7 @@ class MapFeed(Panel):
         for place, topic in SONARS.items():
             self._show_ray(update, drawing, place, topic)
         self._show_pose(update, drawing)
+        self._show_truth(update, drawing)
         drawing.settle()
         drawing.show_trouble(*self._trouble(update))
 
@@ -69,14 +70,17 @@ class MapFeed(Panel):
         self.name_source("" if topic == ODOMETRY else topic)
 
     def _show_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
-        sample = newest(update, self._pose_topic)
-        found = None if sample is None else pose_in(sample.value)
-        if sample is not None and found is not None:
+        for sample in update.samples.get(self._pose_topic, ()):
+            found = pose_in(sample.value)
+            if found is None:
+                continue
             if sample.received_s < self._heard_s:
                 # A recording was turned back.
                 drawing.forget_path()
             self._heard_s = sample.received_s
             drawing.show_pose(*found)
+
+    def _show_truth(self, update: GraphUpdate, drawing: RoomMap) -> None:
         if self._pose_topic != ODOMETRY or not _is_published(update, TRUTH):
             drawing.show_truth(None)
             return

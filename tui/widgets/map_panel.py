@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from tui.widgets.map_legend import Entry
     from tui.widgets.map_reading import Ground
 
+MOST_ROWS = 5
+"""Of the legend below the map."""
 LEGEND = 28
 """Cells of the legend beside the map."""
 SIDE_WORTH = 0.9
@@ -110,7 +112,7 @@ class RoomMap(Drawing):
         if scene is None:
             return []
         extent = self._extent(scene)
-        below = 1 if height < 8 else 2 if height < 20 else 3
+        below = _legend_rows(extent, width, height)
         under = fitted(extent, width, max(1, height - below))
         self._view = under
         if width < FIELD_FROM[0] or height - below < FIELD_FROM[1]:
@@ -180,3 +182,16 @@ class RoomMap(Drawing):
         said: Mapping[int, object] = dict(enumerate(self._entries(scene, view)))
         dots = [[(round(x), round(y)) for x, y in shape] for shape in shapes]
         return dots, dict(scene.rays), scene.goal, self._ground, said, self._trail.revision
+
+
+def _legend_rows(extent: Extent, width: int, height: int) -> int:
+    """Lines of the legend below the map: more than a few only where they cost the map nothing."""
+    few = 1 if height < 8 else 2 if height < 20 else 3
+    largest = fitted(extent, width, max(1, height - few)).dots_per_m
+    free = [
+        count
+        for count in range(few, MOST_ROWS + 1)
+        if height - count >= FIELD_FROM[1]
+        and fitted(extent, width, height - count).dots_per_m >= largest
+    ]
+    return max(free, default=few)

@@ -33,6 +33,8 @@ PATH, GOAL, ROBOT, TRUTH, WALL, GRID = "second", "good", "accent", "muted", "", 
 GOAL_SIGN, HIT_SIGN, BLIND_SIGN, FREE_SIGN = "◎", "●", "?", "∠"
 _DRAWN_FROM = 8.0
 """Dots; a shorter robot is drawn as a dart of a size that can be seen."""
+_APART = 2.0
+"""Dots; a truth nearer to the robot would only blur it."""
 _HULL_FROM = 20.0
 """Dots; a longer robot has its outline around the dart."""
 _HULL = ((-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
@@ -69,6 +71,8 @@ def along(start: dots.Point, heading_rad: float, metres: float) -> dots.Point:
 
 def draw_grid(canvas: Canvas, view: Field, step_m: float) -> None:
     """A dot at every crossing of a grid, one of them at the origin."""
+    if math.isinf(step_m):
+        return
     across, up = canvas.width / view.dots_per_m, canvas.height / view.dots_per_m
     first = math.ceil(view.left_m / step_m), math.ceil((view.top_m - up) / step_m)
     x, y = np.meshgrid(
@@ -79,11 +83,11 @@ def draw_grid(canvas: Canvas, view: Field, step_m: float) -> None:
 
 
 def grid_step_m(view: Field) -> float:
-    """The distance between the dots of the grid: 1 m, or 10, 100, ... where that is too near."""
-    step_m = 1.0
-    while step_m * view.dots_per_m < 2 * _GRID_CELLS:
-        step_m *= 10.0
-    return step_m
+    """The distance between the dots of the grid: 1 m, or 2, 5, 10, ... where that is too near."""
+    for step_m in (digit * 10.0**power for power in range(8) for digit in (1, 2, 5)):
+        if step_m * view.dots_per_m >= 2 * _GRID_CELLS:
+            return step_m
+    return math.inf
 
 
 def draw_ground(canvas: Canvas, view: Field, ground: Ground) -> None:
@@ -113,7 +117,9 @@ def draw_scene(canvas: Canvas, view: Field, scene: Scene) -> None:
     if scene.goal is not None:
         canvas.sign(view.place(scene.goal.x_m, scene.goal.y_m), GOAL_SIGN, GOAL)
     if scene.truth is not None:
-        canvas.outline(robot_corners(view, scene.truth), TRUTH)
+        truth, believed = robot_corners(view, scene.truth), robot_corners(view, scene.pose)
+        if max(map(math.dist, truth, believed)) >= _APART:
+            canvas.outline(truth, TRUTH)
     _draw_robot(canvas, view, scene.pose)
 
 
