@@ -35,6 +35,7 @@ from nodes._chassis_words import (
 )
 from nodes._diagnostics import tell_every_second
 from nodes._emergency import EmergencyStop
+from nodes._lateness import is_late
 from nodes._life import run
 from nodes._nap import Nap
 from nodes._node import LessonNode
@@ -126,7 +127,8 @@ class Chassis(LessonNode):
     # ---------------------------------------------------------------- the node's thread
 
     def _obey(self, message: JointState) -> None:
-        if self._nap.lasted(_AWAY_S):
+        waited = is_late(self.say, message.header.stamp, self.number("max_age_s"))
+        if self._nap.lasted(_AWAY_S) or waited:
             return
         velocity = dict(zip(message.name, message.velocity, strict=False))
         position = dict(zip(message.name, message.position, strict=False))
