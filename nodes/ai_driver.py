@@ -1,17 +1,21 @@
-"""Words to motion: takes `forward`, `налево`, `stop` and their like, and publishes /drive."""
+"""Words to motion: takes `forward`, `налево`, `stop` and their like, and publishes /drive.
+
+Once a word, as in the course; with `repeat_for_s`, which a gate needs, ten times a second for so
+long and then a stop. Any other word ends that, an unknown one with a stop, and so does an
+emergency stop.
+"""
 
 from __future__ import annotations
 
 import sys
 
-from ackermann_msgs.msg import AckermannDriveStamped
 from std_msgs.msg import String
 
-from nodes._drive import to_message
+from nodes._drive_repeat import REPEAT_FOR_S, DriveVoice
 from nodes._life import run
 from nodes._node import LessonNode
 from nodes._speech import Phrase
-from nodes._topics import AI_COMMAND, DEPTH, DRIVE
+from nodes._topics import AI_COMMAND, DEPTH
 from robot.words import WORDS, parse_word
 
 _STARTED = Phrase("Translating words into motion: {words}", "Перевожу слова в движение: {words}")
@@ -26,23 +30,29 @@ _UNKNOWN = Phrase(
 
 
 class AiDriver(LessonNode):
-    """Publishes one /drive for each known word, nothing for any other."""
+    """Asks for motion at each known word, and for none at any other."""
 
     NAME = "ai_driver_translator"
+    SETTINGS = (REPEAT_FOR_S,)
 
     def __init__(self) -> None:
         super().__init__()
-        self._publisher = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
+        self._drive = DriveVoice(self)
         self.create_subscription(String, AI_COMMAND, self._hear, DEPTH)
         self._known = ", ".join(WORDS[self.say.language])
         self.say.info(_STARTED, words=self._known)
 
+    def before_end(self) -> None:
+        """Leave nothing behind that would still move the robot."""
+        self._drive.end()
+
     def _hear(self, message: String) -> None:
         setpoint = parse_word(message.data)
         if setpoint is None:
+            self._drive.hush()
             self.say.warn(_UNKNOWN, word=message.data[:80], words=self._known)
             return
-        self._publisher.publish(to_message(self, setpoint))
+        self._drive.say(setpoint)
         self.say.info(
             _DRIVE,
             word=message.data.strip(),

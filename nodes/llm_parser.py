@@ -1,8 +1,9 @@
 """From an LLM's JSON to motion: checks a whole response, then carries it out in order.
 
 One bad command and none is executed. /drive is published at once; turns of the head are asked for
-one after the other, and a new response drops those that have not begun. What came of each response
-is told on /llm_result as JSON, one object a message:
+one after the other, and a new response drops those that have not begun. With `repeat_for_s`, which
+a gate needs, the last /drive is repeated for so long, then a stop; a new response ends that. What
+came of each response is told on /llm_result as JSON, one object a message:
 
     {"event": "accepted", "commands": 2, "thought": "..."}
     {"event": "refused", "problems": [{"field", "line", "column", "message", "code", "args"}]}
@@ -16,16 +17,15 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from ackermann_msgs.msg import AckermannDriveStamped
 from std_msgs.msg import String
 
-from nodes._drive import to_message
+from nodes._drive_repeat import REPEAT_FOR_S, DriveVoice
 from nodes._head_client import HeadAnswer, HeadClient
 from nodes._life import run
 from nodes._node import LessonNode
 from nodes._parameters import Number
 from nodes._speech import Phrase
-from nodes._topics import DEPTH, DRIVE, LLM_RAW_JSON, LLM_RESULT
+from nodes._topics import DEPTH, LLM_RAW_JSON, LLM_RESULT
 from robot.commands import (
     MAX_COMMANDS,
     CommandError,
@@ -68,20 +68,26 @@ class LlmParser(LessonNode):
     NAME = "llm_parser"
     SETTINGS = (
         Number("head_timeout", 5.0, "For each answer of the head", low=0.1, high=60.0, unit="s"),
+        REPEAT_FOR_S,
     )
 
     def __init__(self) -> None:
         super().__init__()
-        self._drive = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
+        self._drive = DriveVoice(self)
         self._result = self.create_publisher(String, LLM_RESULT, _RESULTS)
         self._head = HeadClient(self, lambda: self.number("head_timeout"))
         self.create_subscription(String, LLM_RAW_JSON, self._receive, DEPTH)
         self.say.info(_STARTED, topic=LLM_RAW_JSON)
 
+    def before_end(self) -> None:
+        """Leave nothing behind that would still move the robot."""
+        self._drive.end()
+
     def _receive(self, message: String) -> None:
         try:
             response = parse_llm(message.data)
         except CommandError as error:
+            self._drive.hush()
             self._refuse(error.problems)
             return
         self._execute(response)
@@ -109,6 +115,7 @@ class LlmParser(LessonNode):
         self.say.info(_THOUGHT, thought=response.thought, count=len(response.commands))
         self._tell(event="accepted", commands=len(response.commands), thought=response.thought)
         self._head.forget()
+        self._drive.hush()
         for command in response.commands:
             if isinstance(command, DriveCommand):
                 self._drive_as(command)
@@ -117,7 +124,7 @@ class LlmParser(LessonNode):
 
     def _drive_as(self, command: DriveCommand) -> None:
         speed, steering = command.speed, command.steering
-        self._drive.publish(to_message(self, DriveSetpoint(speed, steering)))
+        self._drive.say(DriveSetpoint(speed, steering))
         self.say.info(_DRIVE, speed=speed, steering=steering)
         self._tell(event="drive", speed=speed, steering=steering)
 
