@@ -5,15 +5,14 @@ The motors have no gears between them, so the inner wheel of a curve is made slo
 a joint takes no such command (a wheel has no position, the steering no velocity).
 
 The command of the moment is repeated `rate` times a second, so that one who comes late sees it. It
-becomes a stop at an emergency stop (latched until released), when no /drive came for `max_age_s`
-seconds (looked at with each repetition), at a command that is no number, and when this node ends.
+becomes a stop at an emergency stop (latched until released), as soon as no /drive came for
+`max_age_s` seconds, at a command that is no number, and when this node ends.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-import time
 
 from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
@@ -21,6 +20,7 @@ from sensor_msgs.msg import JointState
 
 from nodes._drive import FRAME, from_message
 from nodes._emergency import EmergencyStop
+from nodes._lateness import is_late
 from nodes._life import run
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Text
@@ -105,17 +105,19 @@ class ElectronicDifferential(LessonNode):
         self._command = STOP
         self._heard = False
         self._told: DriveSetpoint | None = None
-        self._received_s = time.monotonic()
         topic = self.text("drive_topic")
         self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
         self._emergency = EmergencyStop(self, self._emergency_changed)
         self.create_subscription(AckermannDriveStamped, topic, self._hear, DEPTH)
-        self._timer = self.every(1.0 / self.number("rate"), self._tick)
+        self._timer = self.every(1.0 / self.number("rate"), self._publish)
+        self._deadline = self.every(1.0, self._too_late)
+        self._await_next()
         self.say.info(_STARTED, topic=topic)
 
     def parameters_changed(self) -> None:
         """Keep the new rate, and the new chassis with the next command."""
         change_period(self._timer, 1.0 / self.number("rate"))
+        self._await_next()
 
     def before_end(self) -> None:
         """Leave the wheels standing."""
@@ -124,7 +126,9 @@ class ElectronicDifferential(LessonNode):
         self._publisher.wait_for_all_acked(_LAST_STOP)
 
     def _hear(self, message: AckermannDriveStamped) -> None:
-        self._received_s = time.monotonic()
+        if is_late(self.say, message.header.stamp, self.number("max_age_s")):
+            return
+        self._await_next()
         if self._emergency.active:
             return
         self._heard = True
@@ -150,13 +154,20 @@ class ElectronicDifferential(LessonNode):
             max(-fastest, min(fastest, speed)), max(-sharpest, min(sharpest, steering))
         )
 
-    def _tick(self) -> None:
+    def _await_next(self) -> None:
+        """Give the next command `max_age_s` from now."""
         max_age_s = self.number("max_age_s")
-        late = max_age_s > 0 and time.monotonic() - self._received_s > max_age_s
-        if late and self._command != STOP:
-            self.say.warn(_SILENT, max_age=max_age_s)
+        if max_age_s > 0:
+            change_period(self._deadline, max_age_s)
+        else:
+            self._deadline.cancel()
+
+    def _too_late(self) -> None:
+        self._deadline.cancel()
+        if self._command != STOP:
+            self.say.warn(_SILENT, max_age=self.number("max_age_s"))
             self._command = STOP
-        self._publish()
+            self._publish()
 
     def _emergency_changed(self, active: bool) -> None:
         self._command = STOP
