@@ -1,0 +1,86 @@
+"""The nodes between a command and the wheels, as profiles/robot.yaml starts them."""
+
+from __future__ import annotations
+
+import random
+import signal
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from launcher.profile import load_profile
+from tests.ros.devices import mock_robot
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import ROOT, Peer
+from tests.ros.wheels import Wheels
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+NODES = ("chassis", "electronic_differential", "safety_stop", "sonar_front", "sonar_rear")
+BELIEVED_S = 0.4
+"""So long a command counts that is not renewed."""
+READY = {
+    "chassis": "The Pico answers",
+    "electronic_differential": "listens to /drive_safe",
+    "safety_stop": "",
+    "sonar_front": "Connected",
+    "sonar_rear": "Connected",
+}
+"""Words that a node says once it works."""
+QUICKER = {"safety_stop": {"max_age_s": BELIEVED_S}}
+"""What differs from the profile, for the sake of the tests' time."""
+
+
+class RobotNodes:
+    """The emulated robot, the nodes that drive it, and somebody who commands and watches."""
+
+    def __init__(self, domain: int, folder: Path) -> None:
+        self.domain, self.folder = domain, folder
+        self.peer = Peer(domain)
+        self.wheels = Wheels(self.peer)
+        self.robot = mock_robot(domain, folder, noise=0.0, dropout=0.0)
+        self.robot.wait_for_words("The simulated robot is in")
+        self.processes: dict[str, NodeProcess] = {}
+        environ = {"DECK_RUN_DIR": str(folder.parent)}
+        self._specs = load_profile(ROOT / "profiles" / "robot.yaml", environ=environ).nodes
+        wait_until(lambda: self.wheels.told, "news of the motors")
+
+    def start(self, *names: str) -> None:
+        """Start nodes, one right after the other, and wait until each works."""
+        for name in names:
+            spec = self._specs[name]
+            assert spec.run is not None
+            params = {**spec.params, **QUICKER.get(name, {})}
+            if "port" in params:
+                params["port"] = str(self.folder / str(params["port"]).rpartition("/")[2])
+            arguments = tuple(replace(spec, params=params).ros_args())
+            self.processes[name] = NodeProcess(spec.run, self.domain, arguments=arguments)
+        for name in names:
+            self.processes[name].wait_for_words(READY[name])
+
+    def end(self, *names: str, number: signal.Signals = signal.SIGINT) -> None:
+        """Send nodes a signal, one right after the other, and wait until each has ended."""
+        for name in names:
+            self.processes[name].send(number)
+        for name in names:
+            code = self.processes[name].wait()
+            assert code == (0 if number != signal.SIGKILL else -number), name
+            self.processes.pop(name).close()
+
+    def close(self) -> None:
+        """End everything."""
+        self.wheels.quiet()
+        for process in self.processes.values():
+            process.send(signal.SIGCONT)
+            process.close()
+        self.robot.close()
+        self.peer.close()
+
+
+def shuffled(names: Iterable[str], seed: int) -> list[str]:
+    """The names in another order, the same each time."""
+    order = list(names)
+    random.Random(seed).shuffle(order)
+    return order
