@@ -1,5 +1,8 @@
 """A camera that is not there: publishes a small film with a counting caption, 10 pictures a second.
 
+With `scene` room it publishes what a camera on the simulated robot sees: it follows /mock/pose of
+mock_robot, and turns with /head_state.
+
 In place of an Orbbec Gemini: same topic, same frame, `bgr8` as in the course or `rgb8` as the
 real driver has it.
 """
@@ -15,9 +18,12 @@ from sensor_msgs.msg import Image
 from nodes._life import run
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Choice, Number, Text, Whole
+from nodes._room_scene import RoomScene
 from nodes._scene import Scene
 from nodes._speech import Phrase
 from nodes._topics import CAMERA, NEWEST
+
+FILM, ROOM = "film", "room"
 
 _STARTED = Phrase(
     "The camera films {width}x{height} {encoding}, {rate:g} pictures a second",
@@ -30,6 +36,9 @@ class MockCamera(LessonNode):
 
     NAME = "mock_camera"
     SETTINGS = (
+        Choice(
+            "scene", FILM, "A film, or the room of mock_robot", choices=(FILM, ROOM), fixed=True
+        ),
         Text("topic", CAMERA, "Where the pictures are published", fixed=True),
         Number("rate", 10.0, "Pictures a second", low=0.1, high=120.0, unit="Hz"),
         Whole("width", 640, "Columns", low=16, high=4096, fixed=True),
@@ -42,7 +51,7 @@ class MockCamera(LessonNode):
         super().__init__()
         width, height = int(self.number("width")), int(self.number("height"))
         encoding = self.text("encoding")
-        self._scene = Scene(height, width, blue_first=encoding == "bgr8")
+        self._scene = self._make_scene(height, width, blue_first=encoding == "bgr8")
         self._message = Image(height=height, width=width, encoding=encoding, step=3 * width)
         self._message.header.frame_id = self.text("frame_id")
         self._message.data = array("B", bytes(height * width * 3))
@@ -58,6 +67,11 @@ class MockCamera(LessonNode):
     def parameters_changed(self) -> None:
         """Keep the new rate."""
         change_period(self._timer, 1.0 / self.number("rate"))
+
+    def _make_scene(self, height: int, width: int, *, blue_first: bool) -> Scene | RoomScene:
+        if self.text("scene") == ROOM:
+            return RoomScene(self, height, width, blue_first=blue_first)
+        return Scene(height, width, blue_first=blue_first)
 
     def _tick(self) -> None:
         self._scene.draw(self._picture, self._number)

@@ -27,7 +27,7 @@ from nodes._node import LessonNode, UsageError
 from nodes._parameters import Choice, Number, Setting, Text, Whole
 from nodes._pty import PseudoSerial
 from nodes._speech import Phrase
-from nodes._topics import DEPTH, LATCHED, MAP
+from nodes._topics import DEPTH, LATCHED, MAP, MOCK_POSE
 from robot.geometry import quaternion_from_rpy
 from robot.wire_tfluna import TofFrame, encode
 from robot.world import STEP_S, Sonar, World
@@ -35,7 +35,6 @@ from robot.world_grid import grid_of
 from robot.world_pico import SimulatedPico
 from robot.world_servos import SimulatedServos
 
-POSE = "/mock/pose"
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
 _BEHIND_S = 0.5
 """A computer that slept for longer does not catch up."""
@@ -111,7 +110,7 @@ class MockRobot(LessonNode):
         self._told: dict[str, str] = dict.fromkeys(DEVICES, FINE)
         self._collisions = 0
         self._motors = MockMotors(self, self._world)
-        self._publisher = self.create_publisher(PoseStamped, POSE, DEPTH)
+        self._publisher = self.create_publisher(PoseStamped, MOCK_POSE, DEPTH)
         self._map_publisher = self.create_publisher(OccupancyGrid, MAP, LATCHED)
         now = self.get_clock().now().to_msg()
         self._map_publisher.publish(occupancy_grid(grid_of(self._world.room), now))

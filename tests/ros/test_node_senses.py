@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from geometry_msgs.msg import PoseStamped
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
-from sensor_msgs.msg import Image
-from std_msgs.msg import ByteMultiArray
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import ByteMultiArray, Float32
 from tf2_msgs.msg import TFMessage
 
 from tests.ros.node_process import NodeProcess
@@ -81,7 +83,9 @@ def test_somebody_speaks_and_the_loudspeaker_is_heard(peer: Peer, ros_domain: in
     params: dict[str, object] = {"first_after": 0.5, "period": 0.5}
     with NodeProcess("nodes.mock_audio", ros_domain, params=params, lang="ru") as node:
         heard = peer.hear("/audio/mic_raw", ByteMultiArray)
+        levels = peer.hear("/audio/level", Float32)
         wait_until(lambda: len(heard) >= 2, "two phrases")
+        wait_until(lambda: any(level.data > -35 for level in levels), "a loud voice")
         assert all(isinstance(byte, bytes) and len(byte) == 1 for byte in heard[0].data)
         words = b"".join(heard[0].data).decode()
         assert words == "VOICE_COMMAND: осмотрись и расскажи, что там"
@@ -109,3 +113,30 @@ def test_the_place_of_the_camera_is_latched(peer: Peer, ros_domain: int) -> None
 def test_hello_counts(ros_domain: int) -> None:
     with NodeProcess("nodes.hello", ros_domain, params={"period": 0.05}) as node:
         node.wait_for_words("Hello!", "0.1 s passed", "0.3 s passed")
+
+
+def away(message: Image, data: bytes) -> float:
+    """How different a picture is from another one, 0 to 255."""
+    pixels = (np.frombuffer(one, np.uint8).astype(int) for one in (message.data, data))
+    return float(np.abs(next(pixels) - next(pixels)).mean())
+
+
+def test_the_camera_of_the_simulated_robot_sees_where_it_looks(peer: Peer, ros_domain: int) -> None:
+    params: dict[str, object] = {"scene": "room", "rate": 30, "width": 64, "height": 48}
+    with NodeProcess("nodes.mock_camera", ros_domain, params=params) as node:
+        pictures = peer.hear(CAMERA, Image)
+        node.wait_for_words("Nobody publishes /mock/pose")
+        at_the_start = bytes(pictures[-1].data)
+        turned = PoseStamped()
+        turned.pose.orientation.z = turned.pose.orientation.w = 0.5**0.5
+        peer.say("/mock/pose", turned)
+        wait_until(lambda: bytes(pictures[-1].data) != at_the_start, "another picture")
+        # The head back to where the robot looked at the start; the camera sits a little elsewhere.
+        looks = JointState(name=["pan_joint", "tilt_joint"], position=[-math.pi / 2, 0.3])
+        peer.say("/head_state", looks)
+        wait_until(lambda: away(pictures[-1], at_the_start) > 25, "a raised look")
+        looks.position[1] = 0.0
+        peer.say("/head_state", looks)
+        wait_until(lambda: away(pictures[-1], at_the_start) < 25, "the look of the start")
+        peer.say("/head_state", JointState(name=["pan_joint", "tilt_joint"]))
+        wait_until(lambda: away(pictures[-1], at_the_start) > 25, "straight ahead")
