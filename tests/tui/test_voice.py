@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from graph.data import Sample, TopicRow, Trouble
 from tests.tui.panel_stage import Stage, alone, rows
-from tests.tui.recorded import NOW_S
+from tests.tui.recorded import NOW_S, lesson_update, sample, topic
 from tests.tui.snapshots import SnapCompare
 from tui.i18n import set_language
+from tui.panels.voice import VoiceFeed
 from tui.widgets.voice import VoicePanel
+from tui.widgets.voice_level import level_line
 from tui.widgets.voice_reading import heard
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+
+MICROPHONE, LEVEL = "/audio/mic_raw", "/audio/level"
 
 
 def tone(seconds: float, amplitude: float, rate: int = 16_000) -> bytes:
@@ -108,3 +118,81 @@ def test_looks(language: str, snap_compare: SnapCompare, monkeypatch: pytest.Mon
 
     stage = Stage([(panels[0], (60, 10))], [(panels[1], (28, 10)), (panels[2], (28, 3))], fill=fill)
     assert snap_compare(stage, terminal_size=(94, 18), run_before=stage.filled)
+
+
+@pytest.mark.parametrize(
+    ("dbfs", "width", "shown"),
+    [
+        (-30.0, 35, "microphone ████████········  -30 dB"),
+        (-120.0, 35, "microphone ················ -120 dB"),
+        (0.0, 24, "████████████████    0 dB"),
+        (-30.0, 13, "-30 dB"),
+        (None, 34, "no microphone"),
+        (None, 8, "no micr…"),
+    ],
+)
+def test_the_level_is_a_bar_and_a_number(dbfs: float | None, width: int, shown: str) -> None:
+    line = level_line(dbfs, width)
+    assert "".join(ink.text for ink in line) == shown
+    assert sum(len(ink.text) for ink in line) <= width
+
+
+@pytest.mark.parametrize(
+    ("dbfs", "look"), [(-70, "muted"), (-30, "good"), (-10, "warn"), (-1, "bad")]
+)
+def test_a_level_is_faint_good_loud_or_cut_off(dbfs: float, look: str) -> None:
+    assert level_line(dbfs, 40)[-1].look == look
+
+
+def fed(*rows: TopicRow, samples: tuple[Sample, ...] = ()) -> GraphUpdate:
+    update = lesson_update()
+    return replace(update, topics=rows, samples={one.topic: (one,) for one in samples})
+
+
+async def test_the_microphone_is_told_by_its_level_or_by_its_absence() -> None:
+    feed = VoiceFeed()
+    told = sample(LEVEL, "std_msgs/msg/Float32", {"data": -30.0})
+    level = topic(LEVEL, "std_msgs/msg/Float32", 10.0)
+    microphone = topic(MICROPHONE, "std_msgs/msg/ByteMultiArray", 10.0)
+    async with alone(feed, 50, 8).run_test(size=(60, 20)):
+        talk = feed.query_one(VoicePanel)
+
+        def shown(*rows_: TopicRow, samples: tuple[Sample, ...] = ()) -> str:
+            feed.show(fed(*rows_, samples=samples))
+            return "\n".join(rows(talk))
+
+        assert "nobody publishes" in shown()
+        assert "-30 dB" in shown(level, microphone, samples=(told,))
+        assert "nobody has said anything yet" in shown(level, microphone)
+        assert "-30 dB" in shown(level, microphone), "a screen may be quicker than the level"
+        assert "no microphone" in shown(replace(level, age_s=2.5), microphone)
+        quiet = replace(level, age_s=None, trouble=Trouble.QUIET)
+        assert "no microphone" in shown(quiet, microphone)
+        assert "dB" in shown(level, microphone, samples=(told,))
+        nan = replace(told, value={"data": math.nan})
+        assert "-30 dB" in shown(level, microphone, samples=(nan,))
+        talk.hear("robot", b"hello", NOW_S)
+        bare = shown(microphone)
+        assert "dB" not in bare
+        assert "no microphone" not in bare, "the course's own tells no level"
+        assert "no microphone" in shown()
+        assert "hello" in shown()
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_levels_look(language: str, snap_compare: SnapCompare) -> None:
+    """Faint grey, speech green, loud yellow, cut off red; none in words; narrow ones a number."""
+    set_language(language)
+    states = (-58.0, -24.0, -9.0, -2.0, None)
+    wide, narrow = ([VoicePanel() for _state in states] for _width in range(2))
+
+    def fill() -> None:
+        for panels in (wide, narrow):
+            for dbfs, panel in zip(states, panels, strict=True):
+                panel.show_level(dbfs, missing=dbfs is None)
+                panel.hear("human", b"Look!", NOW_S)
+
+    stage = Stage(
+        [(panel, (44, 2)) for panel in wide], [(panel, (18, 2)) for panel in narrow], fill=fill
+    )
+    assert snap_compare(stage, terminal_size=(70, 21), run_before=stage.filled)

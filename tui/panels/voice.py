@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from tui.i18n import N_
-from tui.panels.panel import Panel, trouble_of
+from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.voice import Speaker, VoicePanel
 
 if TYPE_CHECKING:
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 TOPICS: dict[str, Speaker] = {"/audio/mic_raw": "human", "/audio/speaker_raw": "robot"}
 HEARD_FIRST = "/audio/mic_raw"
+LEVEL = "/audio/level"
+SILENT_S = 2.0
+"""A driver that tells no level for so long has no microphone."""
 
 
 class VoiceFeed(Panel):
@@ -33,6 +37,10 @@ class VoiceFeed(Panel):
         """Microphone and loudspeaker, nothing missed."""
         return set(TOPICS)
 
+    def watched(self) -> set[str]:
+        """How loud it is now."""
+        return {LEVEL}
+
     def show(self, update: GraphUpdate) -> None:
         """Add what was said, in the order in which it came."""
         talk = self.query_one(VoicePanel)
@@ -41,7 +49,23 @@ class VoiceFeed(Panel):
             data = sample.value.get("data", b"")
             if isinstance(data, bytes):
                 talk.hear(TOPICS[sample.topic], data, sample.received_s)
+        self._show_level(talk, update)
         talk.show_trouble(*trouble_of(update, HEARD_FIRST))
+
+    def _show_level(self, talk: VoicePanel, update: GraphUpdate) -> None:
+        sample = newest(update, LEVEL)
+        dbfs = sample.value.get("data") if sample is not None else None
+        if isinstance(dbfs, (int, float)) and math.isfinite(dbfs):
+            talk.show_level(float(dbfs))
+            return
+        teller, microphone = row_of(update, LEVEL), row_of(update, HEARD_FIRST)
+        if teller is not None and teller.publishers:
+            if teller.trouble is not None or (teller.age_s or 0.0) > SILENT_S:
+                talk.show_level(None, missing=True)
+            return
+        # The course's own microphone tells no level.
+        there = microphone is not None and microphone.publishers > 0
+        talk.show_level(None, missing=not there and talk.has_talk)
 
     def words_changed(self) -> None:
         """Draw anew in another language."""

@@ -1,4 +1,7 @@
-"""The talk between human and robot: who said what when, the newest at the bottom."""
+"""The talk between human and robot: who said what when, the newest at the bottom.
+
+Under it stands how loud the microphone is.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from tui.i18n import _
 from tui.widgets.drawing import Drawing, Ink, Line, fit
 from tui.widgets.log_view_index import folded
 from tui.widgets.log_view_rows import clock
+from tui.widgets.voice_level import level_line
 from tui.widgets.voice_reading import Heard, heard
 
 Speaker = Literal["human", "robot"]
@@ -38,6 +42,8 @@ class VoicePanel(Drawing):
         """Begin with silence."""
         super().__init__(id=id, classes=classes)
         self._sayings: deque[Saying] = deque(maxlen=KEPT)
+        self._dbfs: float | None = None
+        self._missing = False
 
     def hear(self, who: Speaker, data: bytes, time_s: float) -> None:
         """Take a message of bytes at a unix time: UTF-8 text or 16-bit PCM, whatever it is."""
@@ -49,9 +55,16 @@ class VoicePanel(Drawing):
         self._sayings.append(saying)
         self.redraw()
 
+    def show_level(self, dbfs: float | None, *, missing: bool = False) -> None:
+        """Show how loud the microphone is, None: nobody tells; or that it is `missing`."""
+        if (dbfs, missing) != (self._dbfs, self._missing):
+            self._dbfs, self._missing = dbfs, missing
+            self.redraw()
+
     def clear(self) -> None:
         """Forget what was said."""
         self._sayings.clear()
+        self._dbfs, self._missing = None, False
         self.refresh()
 
     @property
@@ -61,11 +74,27 @@ class VoicePanel(Drawing):
 
     @property
     def has_value(self) -> bool:
+        """Whether anything was said, or could be heard."""
+        return bool(self._sayings) or self._dbfs is not None or self._missing
+
+    @property
+    def has_talk(self) -> bool:
         """Whether anything was said."""
         return bool(self._sayings)
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """As many of the newest as there is room for."""
+        """As many of the newest as there is room for, and the level."""
+        level = [level_line(self._dbfs, width)] if self._tells_level else []
+        if not self._sayings:
+            return [[Ink(_("nobody has said anything yet"), "muted")], *level][-height:]
+        talk = self._talk(width, max(1, height - len(level)))
+        return [*talk, *level][:height]
+
+    @property
+    def _tells_level(self) -> bool:
+        return self._dbfs is not None or self._missing
+
+    def _talk(self, width: int, height: int) -> list[Line]:
         lines: list[Line] = []
         for saying in reversed(self._sayings):
             lines[:0] = self._saying_lines(saying, width)

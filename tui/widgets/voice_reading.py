@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robot.sound import RATE_HZ, level_dbfs, samples_of, text_in
 from tui.i18n import _, ngettext
 from tui.widgets.plain import plain
 
-SAMPLE_RATE_HZ = 16_000
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 LONGEST_TEXT = 2_000
 SHOWN_BYTES = 12
 LEAST_PCM = 64
@@ -47,7 +51,7 @@ class Heard:
         return Heard("", self.seconds + later.seconds, levels)
 
 
-def heard(data: bytes, sample_rate_hz: int = SAMPLE_RATE_HZ) -> Heard:
+def heard(data: bytes, sample_rate_hz: int = RATE_HZ) -> Heard:
     """Read the bytes of a message; whatever they are, the result can be shown."""
     if not data:
         return Heard(_("(an empty message)"))
@@ -58,31 +62,19 @@ def heard(data: bytes, sample_rate_hz: int = SAMPLE_RATE_HZ) -> Heard:
         count = ngettext("{count} byte, no text:", "{count} bytes, no text:", len(data))
         more = "…" if len(data) > SHOWN_BYTES else ""
         return Heard(f"{count.format(count=len(data))} {data[:SHOWN_BYTES].hex(' ')}{more}")
-    samples = np.frombuffer(data[: len(data) // 2 * 2], "<i2")
-    return Heard("", len(samples) / sample_rate_hz, _levels(samples.astype(np.float64)))
+    samples = samples_of(data)
+    return Heard("", len(samples) / sample_rate_hz, _levels(samples))
 
 
 def _text_in(data: bytes) -> str | None:
-    """The text that the bytes are, None if they are none: broken UTF-8 or control characters."""
-    cut = data[: 4 * LONGEST_TEXT]
-    try:
-        text = cut.decode("utf-8")
-    except UnicodeDecodeError as error:
-        if len(cut) == len(data) or error.start < len(cut) - 4:
-            return None
-        text = cut[: error.start].decode("utf-8")
-    odd = sum(not (char.isprintable() or char.isspace()) for char in text)
-    if odd * 10 > len(text):
-        return None
-    return plain(" ".join(text.split()), LONGEST_TEXT)
+    text = text_in(data)
+    return None if text is None else plain(" ".join(text.split()), LONGEST_TEXT)
 
 
-def _levels(samples: np.ndarray[tuple[int], np.dtype[np.float64]]) -> str:
+def _levels(samples: NDArray[np.int16]) -> str:
     """Loudness of each slice of the sound as a column."""
     levels = ""
     for part in np.array_split(samples, SLICES):
-        power = float(np.mean(np.square(part / 32768.0))) if len(part) else 0.0
-        decibels = 10 * np.log10(power) if power > 0 else QUIETEST_DB
-        share = 1 - max(QUIETEST_DB, min(0.0, float(decibels))) / QUIETEST_DB
+        share = 1 - max(QUIETEST_DB, level_dbfs(part.tobytes())) / QUIETEST_DB
         levels += LEVELS[min(len(LEVELS) - 1, int(share * len(LEVELS)))]
     return levels
