@@ -2,22 +2,25 @@
 
 Every `period` seconds somebody says a phrase into the microphone, as text in bytes where a real one
 would send sound; what comes for the loudspeaker is written to the log. The first phrase waits for
-somebody to listen, though not longer than a period.
+somebody to listen, though not longer than a period. How loud a microphone would be meanwhile goes
+to /audio/level.
 """
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 
-from std_msgs.msg import ByteMultiArray
+from std_msgs.msg import ByteMultiArray, Float32
 
 from nodes._life import run
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Text
 from nodes._sound import from_message, to_message
 from nodes._speech import Phrase
-from nodes._topics import DEPTH, MICROPHONE, SPEAKER
+from nodes._topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
+from robot.sound import LEVEL_S, mock_level_dbfs
 
 _STARTED = Phrase("Microphone and loudspeaker are on", "Микрофон и динамик включены")
 _SAID = Phrase(
@@ -49,9 +52,13 @@ class MockAudio(LessonNode):
         super().__init__()
         self._began = self._listened = False
         self._started_s = time.monotonic()
+        self._said_s = -math.inf
+        self._words = ""
         self._publisher = self.create_publisher(ByteMultiArray, MICROPHONE, DEPTH)
+        self._levels = self.create_publisher(Float32, AUDIO_LEVEL, DEPTH)
         self.create_subscription(ByteMultiArray, SPEAKER, self._play, DEPTH)
         self._timer = self.every(self.number("first_after"), self._speak)
+        self.every(LEVEL_S, self._tell_level)
         self.say.info(_STARTED)
 
     def parameters_changed(self) -> None:
@@ -68,7 +75,12 @@ class MockAudio(LessonNode):
             change_period(self._timer, self.number("period"))
         words = self.text("phrase") or self.say.text(_PHRASE)
         self._publisher.publish(to_message(words.encode("utf-8", "replace")))
+        self._said_s, self._words = time.monotonic(), words
         self.say.info(_SAID, words=words)
+
+    def _tell_level(self) -> None:
+        since_s = time.monotonic() - self._said_s
+        self._levels.publish(Float32(data=mock_level_dbfs(self._words, since_s)))
 
     def _has_listener(self) -> bool:
         """Whether the first phrase is worth saying: somebody listens, or has had time enough to.

@@ -24,6 +24,8 @@ LEVEL_S = 0.1
 TEXT_READ = 8_000
 """Bytes that are looked at for a text."""
 _FULL = 32768.0
+_LETTERS_PER_S = 15.0
+_VOICE_DBFS, _ROOM_DBFS = -24.0, -58.0
 
 
 def samples_of(sound: bytes) -> NDArray[np.int16]:
@@ -60,6 +62,14 @@ class LevelMeter:
     def dbfs(self) -> float:
         """Loudness, `SILENCE_DBFS` before the first sound."""
         return level_dbfs(self._sound)
+
+
+def mock_level_dbfs(words: str, since_s: float) -> float:
+    """The level of a voice that began to say words so long ago, and of the quiet room after it."""
+    if since_s > len(words) / _LETTERS_PER_S:
+        return _ROOM_DBFS
+    # Syllables, one in a quarter of a second.
+    return _VOICE_DBFS + 8.0 * math.sin(8.0 * math.pi * since_s)
 
 
 class Resampler:

@@ -16,6 +16,7 @@ from robot.sound import (
     LevelMeter,
     Resampler,
     level_dbfs,
+    mock_level_dbfs,
     samples_of,
     text_in,
 )
@@ -110,3 +111,11 @@ def test_words_are_told_from_sound() -> None:
     assert text_in(b"\xff\xfe\x00") is None
     assert text_in("ж".encode() * 1_000_000) == "ж" * (TEXT_READ // 2)
     assert text_in(b"a" + "ж".encode() * 1_000_000) == "a" + "ж" * (TEXT_READ // 2 - 1)
+
+
+def test_a_mock_voice_is_loud_while_it_speaks() -> None:
+    levels = [mock_level_dbfs("a phrase of thirty letters, so", at / 10) for at in range(40)]
+    assert all(level > -35 for level in levels[:20])
+    assert len({round(level) for level in levels[:20]}) > 2
+    assert all(level < -50 for level in levels[21:])
+    assert mock_level_dbfs("", math.inf) < -50
