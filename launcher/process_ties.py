@@ -1,11 +1,13 @@
 """What ties the life of one process to another's: prctl(2) and its kin.
 
 A supervisor adopts every descendant whose parent ends (`become_subreaper`), and a node dies with
-the supervisor (`die_with_parent`).
+the supervisor (`die_with_parent`). What a fork has left of its parent's threads is not touched at
+the end (`leave_libraries_alone_at_exit`).
 """
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import os
 import signal
@@ -55,3 +57,14 @@ def set_short_name(name: str) -> None:
     """Set the name that `top` and `ps -o comm` show, cut to 15 bytes."""
     short = ctypes.create_string_buffer(name.encode()[:15])
     _libc.prctl(ctypes.c_int(_PR_SET_NAME), short, 0, 0, 0)
+
+
+def leave_libraries_alone_at_exit() -> None:
+    """Have exit(3) end this process before the destructors of libraries loaded so far.
+
+    Call it after a fork. LTTng, which rclpy brings, has its destructor cancel threads that only the
+    parent had; their stacks may be gone by then, and a node that ended well died of SIGSEGV.
+    """
+    atexit.register(_libc.fflush, None)
+    # Called with the exit code, as the last of Python and its modules has gone.
+    _libc.on_exit(_libc._exit, None)  # noqa: SLF001 - it is libc's own name

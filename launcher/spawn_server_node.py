@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.process_marks import show_mark, show_name, show_title
 from launcher.process_table import NODE_MARK
-from launcher.process_ties import die_with_parent
+from launcher.process_ties import die_with_parent, leave_libraries_alone_at_exit
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -176,6 +176,7 @@ def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
     if "numpy.random" in sys.modules:
         # `random` reseeds itself after a fork, numpy's old global generator does not.
         sys.modules["numpy.random"].seed()
+    leave_libraries_alone_at_exit()
     runpy.run_module(argv[0], run_name="__main__", alter_sys=True)
 
 

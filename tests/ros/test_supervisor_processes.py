@@ -120,6 +120,26 @@ async def test_how_a_node_ended_is_told(
     assert (status.detail, status.pid) == (detail, None)
 
 
+async def test_a_warm_node_that_had_threads_ends_with_its_own_code(
+    start: Launch, tmp_path: Path
+) -> None:
+    # So many at once that the stacks of threads which the fork left behind are given back.
+    (tmp_path / "threads.py").write_text(
+        "import threading\n"
+        "barrier = threading.Barrier(13)\n"
+        "threads = [threading.Thread(target=barrier.wait) for _ in range(12)]\n"
+        "for thread in threads: thread.start()\n"
+        "barrier.wait()\n"
+        "for thread in threads: thread.join()\n"
+        "print('last word', end='')\n"
+        "raise SystemExit(3)\n"
+    )
+    client = await start({"node": {"run": "threads", "ready": {"node": "x"}}})
+    status = await until_state(client, "node", NodeState.EXITED, NodeState.FAILED)
+    assert (status.exit_code, status.signal) == (3, None)
+    assert "last word" in [line.text for line in await client.history("node", 5)]
+
+
 async def test_a_command_that_does_not_exist_fails_at_once(start: Launch) -> None:
     client = await start({"node": {"exec": ["no-such-program-1"], "restart": "always"}})
     status = await until_state(client, "node", NodeState.FAILED)
