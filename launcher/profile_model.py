@@ -131,7 +131,7 @@ _DEVICE: dict[str, Any] = {
     "type": "object",
     "properties": {
         "kind": {
-            "enum": list(KINDS),
+            "enum": [*KINDS, "camera", "sound"],
             "description": "What it is, for `port: auto` and for `deck check --preflight`.",
         },
         "port": {

@@ -72,7 +72,8 @@ def test_the_robot_has_the_same_drivers_on_mock_and_on_real_hardware() -> None:
         assert mock[name].run == real[name].run
         assert {**mock[name].params, "port": ""} == {**real[name].params, "port": ""}
     assert not [name for name, node in real.items() if "mock" in str(node.run)]
-    assert set(real) - set(mock) == set()
+    assert set(real) - set(mock) == {"camera", "audio"}
+    assert set(mock) - set(real) == {"mock_robot", "mock_camera", "mock_audio"}
 
 
 def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
