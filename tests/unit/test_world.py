@@ -1,4 +1,4 @@
-"""The simulated room and robot: rays, motion, collisions, and an hour through the gate."""
+"""The simulated room and robot: rays, motion, collisions, and minutes through the gate."""
 
 from __future__ import annotations
 
@@ -10,23 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.kinematics import wheel_speeds
 from robot.odometry import Point, Pose
-from robot.safety import Reading, gate, look, where
-from robot.words import STOP, DriveSetpoint
-from robot.world import STEP_S, Body, Sonar, Wheels, World
+from robot.safety import Zone
+from robot.world import Body, Sonar, Wheels, World
 from robot.world_room import LIVING_ROOM, Box, Room
+from tests.unit.random_driver import RandomDriver, drive
 
 EMPTY = Room(Box(0.0, 0.0, 10.0, 10.0))
 small = st.floats(-4.0, 4.0)
 angles = st.floats(-math.pi, math.pi)
 orders = st.lists(st.tuples(st.floats(-30, 30), st.floats(-30, 30), st.floats(-1, 1)), max_size=6)
-
-
-def drive(world: World, speed: float, steering: float = 0.0) -> None:
-    wheels = wheel_speeds(speed, steering)
-    radius = world.body.wheel_radius_m
-    world.asked = Wheels(wheels.left_m_s / radius, wheels.right_m_s / radius, steering)
 
 
 # ---------------------------------------------------------------- the room
@@ -189,82 +182,18 @@ def test_noise_and_dropouts_are_as_many_as_asked_for() -> None:
     )
 
 
-# ---------------------------------------------------------------- an hour through the gate
+# ---------------------------------------------------------------- through the gate
 
 
-CRITICAL_M, STALE_S = 0.3, 0.3
-CONTROL_STEPS = 5
-
-
-class Driver:
-    """Drives at random, sends nonsense now and then, and hears its sonars only as the gate does."""
-
-    def __init__(self, world: World, seed: int, gated: bool) -> None:
-        self.world, self.dice, self.gated = world, random.Random(seed), gated
-        self.asked = STOP
-        self.readings = [(math.nan, -1.0), (math.nan, -1.0)]
-        self.silent_until_s = 0.0
-        self.avoidable = 0
-
-    def round(self) -> None:
-        """One look, one command, and the time until the next."""
-        world, dice = self.world, self.dice
-        if dice.random() < 0.002:
-            self.silent_until_s = world.now_s + dice.uniform(0.1, 1.0)
-        if world.now_s >= self.silent_until_s:
-            self.readings = [(metres, world.now_s) for metres in world.read_sonars()]
-        if dice.random() < 0.02:
-            speed = dice.choice([0.5, 0.3, -0.3, -0.5, 0.0])
-            self.asked = DriveSetpoint(speed, dice.uniform(-0.5, 0.5))
-        noisy = DriveSetpoint(self.asked.speed_m_s + dice.gauss(0, 0.02), self.asked.steering_rad)
-        if dice.random() < 0.005:
-            noisy = DriveSetpoint(math.nan, 0.0)
-        sights = [
-            look(Reading(metres, world.now_s - then), CRITICAL_M, STALE_S)
-            for metres, then in self.readings
-        ]
-        command = gate(noisy, where(sights[0], sights[1], False)) if self.gated else noisy
-        if math.isfinite(command.speed_m_s):
-            drive(world, max(-0.5, min(0.5, command.speed_m_s)), command.steering_rad)
-        self._pass()
-
-    def carry(self, dice: random.Random) -> None:
-        """Put the robot down anywhere on the free floor."""
-        while True:
-            pose = Pose(dice.uniform(-0.5, 3.5), dice.uniform(-1.5, 1.5), dice.uniform(-3, 3))
-            if self.world.room.holds(Point(pose.x_m, pose.y_m)) and self.world.place(pose):
-                return
-
-    def _pass(self) -> None:
-        world = self.world
-        for _ in range(CONTROL_STEPS):
-            speed, before = world.speed_m_s, world.collisions
-            world.step()
-            if world.collisions > before:
-                sonar = world.front if speed > 0 else world.rear
-                # What it ran into stood before its sonar, and not beside the beam.
-                ahead_m = sonar.true_m(world.room, world.body, world.pose)
-                self.avoidable += ahead_m < 0.02 + abs(speed) * STEP_S
-
-
-@pytest.mark.slow
-@pytest.mark.timeout(300)
-def test_an_hour_among_boxes_has_no_collision_that_a_stop_could_have_avoided() -> None:
-    driver = Driver(World(LIVING_ROOM, seed=3), seed=4, gated=True)
-    for minute in range(180):
-        went_m = driver.world.travelled_m
-        for _ in range(int(20 / STEP_S) // CONTROL_STEPS):
-            driver.round()
-        if driver.world.travelled_m - went_m < 0.2:
-            # Boxed in before and behind: a person carries it away.
-            driver.carry(random.Random(minute))
-    assert driver.world.now_s == pytest.approx(3600)
-    assert driver.world.travelled_m > 100
+def test_minutes_among_boxes_have_no_collision_that_a_stop_could_have_avoided() -> None:
+    driver = RandomDriver(World(LIVING_ROOM, seed=3), seed=4, zone=Zone(0.3, 0.0, 0.3))
+    driver.drive_for(360.0)
+    assert driver.world.now_s == pytest.approx(360.0)
+    assert driver.world.travelled_m > 10
     assert driver.avoidable == 0
 
 
 def test_without_the_gate_the_same_driver_does_run_into_things() -> None:
-    driver = Driver(World(LIVING_ROOM, seed=3), seed=4, gated=False)
-    for _ in range(2000):
-        driver.round()
+    driver = RandomDriver(World(LIVING_ROOM, seed=3), seed=4, zone=None)
+    driver.drive_for(100.0)
     assert driver.avoidable > 0

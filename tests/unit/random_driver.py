@@ -1,0 +1,105 @@
+"""Somebody who drives a simulated robot at random through the gate, with all kinds of trouble."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import TYPE_CHECKING
+
+from robot.kinematics import wheel_speeds
+from robot.odometry import Point, Pose
+from robot.safety import Reading, Shares, Zone, gate, look, share, where
+from robot.words import STOP, DriveSetpoint
+from robot.world import STEP_S, Wheels
+
+if TYPE_CHECKING:
+    from robot.world import World
+
+CONTROL_STEPS = 5
+"""20 commands a second."""
+CARRIED_AFTER_S = 20.0
+"""Who has got nowhere for so long is boxed in before and behind: a person carries it away."""
+
+
+def drive(world: World, speed: float, steering: float = 0.0) -> None:
+    """Ask the wheels for a speed, m/s, and a steering angle, rad."""
+    wheels = wheel_speeds(speed, steering)
+    radius = world.body.wheel_radius_m
+    world.asked = Wheels(wheels.left_m_s / radius, wheels.right_m_s / radius, steering)
+
+
+class RandomDriver:
+    """Changes its mind, sends nonsense, and hears its sonars only as the gate does.
+
+    Sonars fall silent for a while, motors stall, commands are noisy and now and then no numbers.
+    """
+
+    def __init__(self, world: World, seed: int, zone: Zone | None) -> None:
+        """`zone` is what the gate goes by; None: there is no gate."""
+        self.world, self.dice, self.zone = world, random.Random(seed), zone
+        self.avoidable = 0
+        """Collisions that a stop could have avoided."""
+        self._asked = STOP
+        self._readings = [(math.nan, -1.0), (math.nan, -1.0)]
+        self._silent_until_s = self._stalled_until_s = 0.0
+
+    def drive_for(self, seconds: float) -> None:
+        """Drive on for so long."""
+        for _ in range(round(seconds / CARRIED_AFTER_S)):
+            went_m = self.world.travelled_m
+            for _ in range(round(CARRIED_AFTER_S / STEP_S) // CONTROL_STEPS):
+                self._round()
+            if self.world.travelled_m - went_m < 0.2:
+                self._carry()
+
+    def _round(self) -> None:
+        """One look, one command, and the time until the next."""
+        world, dice = self.world, self.dice
+        self._trouble()
+        if world.now_s >= self._silent_until_s:
+            self._readings = [(metres, world.now_s) for metres in world.read_sonars()]
+        if dice.random() < 0.02:
+            speed = dice.choice([0.5, 0.3, -0.3, -0.5, 0.0])
+            self._asked = DriveSetpoint(speed, dice.uniform(-0.5, 0.5))
+        noisy = DriveSetpoint(self._asked.speed_m_s + dice.gauss(0, 0.02), self._asked.steering_rad)
+        if dice.random() < 0.005:
+            noisy = DriveSetpoint(math.nan, 0.0)
+        command = noisy if self.zone is None else self._gated(noisy, self.zone)
+        if math.isfinite(command.speed_m_s):
+            drive(world, max(-0.5, min(0.5, command.speed_m_s)), command.steering_rad)
+        self._pass()
+
+    def _trouble(self) -> None:
+        now_s, dice = self.world.now_s, self.dice
+        if dice.random() < 0.002:
+            self._silent_until_s = now_s + dice.uniform(0.1, 1.0)
+        if dice.random() < 0.0005:
+            self._stalled_until_s = now_s + dice.uniform(0.1, 2.0)
+            self.world.stalled = dice.choice([(True, False), (False, True), (True, True)])
+        if now_s >= self._stalled_until_s:
+            self.world.stalled = (False, False)
+
+    def _gated(self, command: DriveSetpoint, zone: Zone) -> DriveSetpoint:
+        front, rear = (Reading(m, self.world.now_s - then) for m, then in self._readings)
+        sights = (look(one, zone.critical_m, zone.stale_after_s) for one in (front, rear))
+        shares = Shares(share(front, zone), share(rear, zone))
+        return gate(command, where(*sights, False), shares)
+
+    def _carry(self) -> None:
+        """Put the robot down anywhere on the free floor."""
+        dice = self.dice
+        while True:
+            pose = Pose(dice.uniform(-0.5, 3.5), dice.uniform(-1.5, 1.5), dice.uniform(-3, 3))
+            if self.world.room.holds(Point(pose.x_m, pose.y_m)) and self.world.place(pose):
+                return
+
+    def _pass(self) -> None:
+        world = self.world
+        for _ in range(CONTROL_STEPS):
+            speed, before = world.speed_m_s, world.collisions
+            world.step()
+            if world.collisions > before:
+                sonar = world.front if speed > 0 else world.rear
+                # What it ran into stood before its sonar, and not beside the beam.
+                ahead_m = sonar.true_m(world.room, world.body, world.pose)
+                self.avoidable += ahead_m < 0.02 + abs(speed) * STEP_S
