@@ -52,6 +52,22 @@ async def test_it_moves_while_the_pose_changes_and_rests_when_it_does_not() -> N
         assert "at rest" in "\n".join(rows(panel))
 
 
+@pytest.mark.parametrize(("width", "height"), [(44, 10), (30, 10), (24, 4)])
+async def test_a_head_that_nobody_knows_of_does_not_move(width: int, height: int) -> None:
+    """Servos tell nothing: before the first turn, and after their cable was pulled."""
+    panel = HeadPanel()
+    async with alone(panel, width, height).run_test(size=(60, 30)):
+        for pose in (Pose(math.nan, math.nan), Pose(math.nan, math.nan)):
+            panel.show(pose)
+            shown = "\n".join(rows(panel))
+            assert "unknown until it turns" in shown
+            assert "---" in shown
+        panel.show(Pose(10, 0))
+        assert "at rest" in "\n".join(rows(panel))
+        panel.show(Pose(math.nan, math.nan))
+        assert "unknown until it turns" in "\n".join(rows(panel))
+
+
 async def test_what_it_was_told_and_the_answer_are_shown_harmlessly() -> None:
     panel = HeadPanel()
     async with alone(panel, 60, 10).run_test(size=(80, 30)):

@@ -29,7 +29,8 @@ class HeadPanel(Drawing):
 
     def show(self, pose: Pose) -> None:
         """Show this pose; it moves while it differs from the one before."""
-        moving = self._pose is not None and not self._pose.near(pose)
+        before = self._pose if self._pose is not None and self._pose.is_known else None
+        moving = before is not None and pose.is_known and not before.near(pose)
         if (pose, moving) != (self._pose, self._moving):
             self._pose, self._moving = pose, moving
             self.redraw()
@@ -81,6 +82,8 @@ class HeadPanel(Drawing):
     def _state(self) -> Line:
         if self.stale:
             return [Ink(self.stale_words, "alert")]
+        if self._pose is not None and not self._pose.is_known:
+            return [Ink(_("unknown until it turns"), "muted")]
         return [Ink(_("moving"), "warn") if self._moving else Ink(_("at rest"), "muted")]
 
     def _told_lines(self, width: int) -> list[Line]:

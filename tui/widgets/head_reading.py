@@ -31,6 +31,11 @@ class Pose:
         """`10° up`."""
         return _words(self.tilt_deg, _("{degrees}° up"), _("{degrees}° down"))
 
+    @property
+    def is_known(self) -> bool:
+        """Whether both angles are: a head of servos has none before it was moved."""
+        return math.isfinite(self.pan_deg) and math.isfinite(self.tilt_deg)
+
     def near(self, other: Pose) -> bool:
         """Whether the two are the same but for rounding."""
         pan, tilt = self.pan_deg - other.pan_deg, self.tilt_deg - other.tilt_deg
