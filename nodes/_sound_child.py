@@ -81,13 +81,17 @@ class SoundChild:
         self.last_words = line[:_LONGEST_LINE].decode("utf-8", "replace").strip()
         return None
 
-    def close(self) -> str:
-        """End it whatever it does; its last words or how it ended come back."""
-        code = self._process.poll()
-        self._process.kill()
+    def await_end(self) -> None:
+        """Wait a moment for one that has closed its pipes."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_LAST_WAIT_S)
+
+    def close(self) -> None:
+        """End it whatever it does."""
+        self._process.kill()
+        self.await_end()
+        if not self.last_words and self._process.returncode:
+            self.last_words = f"exit code {self._process.returncode}"
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             if pipe is not None:
                 pipe.close()
-        return self.last_words or ("" if code is None else f"exit code {code}")

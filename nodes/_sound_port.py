@@ -134,15 +134,16 @@ class SoundPort:
             return "other", str(error)
         try:
             problem, detail = self._move(child)
-        except OSError as error:
-            # The pipe of one that died before it could tell.
-            problem, detail = "died", str(error)
+        except OSError:
+            # The end of its sound is seen before that of its words.
+            child.await_end()
+            problem, detail = self._hear_words(child) or ("died", "")
         finally:
             if self.connected:
                 self.connected, self.since_s = False, time.monotonic()
             self._queue.clear()
-            last_words = child.close()
-        return problem, detail or last_words
+            child.close()
+        return problem, detail or child.last_words
 
     def _move(self, child: SoundChild) -> tuple[str, str]:
         self._part, answered_s, patience_s = b"", time.monotonic(), _OPEN_S
@@ -172,6 +173,7 @@ class SoundPort:
         """Take what PortAudio's process tells; (problem, detail) if that is its end."""
         told = child.messages()
         if told is None:
+            child.await_end()
             return "died", ""
         for message in told:
             if "problem" in message:
