@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 
 _TIMEOUT_MS = 5000
 _NO_CAMERA = Phrase(
-    "no such camera; plug it in, or set the parameter source (v4l2-ctl --list-devices);"
-    " there is {others}",
+    "no such camera; plug it in, or set the parameter source (v4l2-ctl --list-devices); {others}",
     "нет такой камеры; подключите её или задайте параметр source (v4l2-ctl --list-devices);"
-    " есть {others}",
+    " {others}",
 )
 _NO_DEVICE = Phrase(
     "it is no camera; v4l2-ctl --list-devices names them", "это не камера; v4l2-ctl --list-devices"

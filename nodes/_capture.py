@@ -43,7 +43,8 @@ _LOST = Phrase(
 _CANNOT = Phrase("Cannot open {source}: {problem}", "Не открыть {source}: {problem}")
 _OVER = Phrase("{source} is at its end", "{source}: запись закончилась")
 _BROKEN = Phrase("Bad picture from {source}: {problem}", "Негодный кадр от {source}: {problem}")
-_NONE = Phrase("no camera at all (/dev/video*)", "вообще нет камер (/dev/video*)")
+_THERE = Phrase("there is {cameras}", "есть {cameras}")
+_NONE = Phrase("there is no camera at all (/dev/video*)", "камер нет вообще (/dev/video*)")
 
 
 @dataclass
@@ -195,7 +196,8 @@ class Capture:
 
     def _complain(self, phrase: Phrase = _CANNOT) -> None:
         self._away()
-        others = ", ".join(cameras()) or self._say.text(_NONE)
+        there = ", ".join(cameras())
+        others = self._say.text(_THERE if there else _NONE, cameras=there)
         reason = self._say.text(self.source.why_not(), source=self.source, others=others)
         self.problem = self._say.text(phrase, source=self.source, problem=reason)
         every_s = _SAY_EVERY_S if phrase is _CANNOT else 0.0

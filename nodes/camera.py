@@ -146,8 +146,8 @@ class Camera(LessonNode):
         passed_s = max(1e-3, now_s - before_s)
         self._told = now_s, came, taken
         return {
-            "pictures_in_per_s": f"{(came - before[0]) / passed_s:.1f}",
-            "pictures_out_per_s": f"{(taken - before[1]) / passed_s:.1f}",
+            "frames_in_per_s": f"{(came - before[0]) / passed_s:.1f}",
+            "frames_out_per_s": f"{(taken - before[1]) / passed_s:.1f}",
         }
 
 

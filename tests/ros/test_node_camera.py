@@ -147,5 +147,5 @@ def test_a_read_that_blocks_does_not_hold_up_the_end(ros_domain: int) -> None:
         node.send(signal.SIGTERM)
         assert node.wait() == 0
         # A second by itself, and what a busy machine adds; the read would take five.
-        assert time.monotonic() - began_s < 3.0
+        assert time.monotonic() - began_s < 4.0
         assert "Traceback" not in node.output
