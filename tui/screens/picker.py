@@ -39,6 +39,7 @@ WATCHED = "watch:"
 PANELS = {
     "sonar": N_("sonar"),
     "wheels": N_("wheels"),
+    "map": N_("map"),
     "camera": N_("camera"),
     "head": N_("head"),
     "voice": N_("voice"),
