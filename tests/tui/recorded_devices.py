@@ -122,9 +122,7 @@ def of_sonar(*metres: float, language: str = "en") -> Sample:
         Chunk(AT_S + at / 100, "in", wire_tfluna.encode(TofFrame(round(one * 100), 1000, 30.0)))
         for at, one in enumerate(metres)
     ]
-    return frames(
-        "sonar_front", FrameTeller(TofReader, language).tell(chunks, AT_S)
-    )
+    return frames("sonar_front", FrameTeller(TofReader, language).tell(chunks, AT_S))
 
 
 def update(*samples: Sample, publishers: tuple[str, ...] = tuple(PORTS)) -> GraphUpdate:

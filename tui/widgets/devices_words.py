@@ -71,7 +71,7 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
         )
         return words.format(name=name, topic=f"…/{name}/frames")
     if device.connected is False:
-        return _("Nothing is connected: {message}").format(message=device.message)
+        return _("Nothing is connected, so nothing comes. The driver tries again by itself.")
     return _("Listening on {topic}; nothing has gone over the port yet.").format(topic=topic)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rich.segment import Segment
 from textual.strip import Strip
 
+from tui.frame_rows import WAYS
 from tui.i18n import _
 from tui.widgets.log_view import LogView
 from tui.widgets.log_view_pane import LogPane
@@ -61,4 +62,5 @@ class FramesPane(LogPane):
     def words_changed(self) -> None:
         """Draw anew in another language."""
         self.view.minimum_words = _("only noise and bad frames")
+        self.view.know_nodes(_(way) for way in WAYS.values())
         super().words_changed()

@@ -1,0 +1,86 @@
+"""How the Devices screen looks, at three sizes and in both languages."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from graph.data import Sample
+from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
+from tests.tui.recorded_devices import STATUSES, of_chassis, of_sonar, pad, update
+from tests.tui.snapshots import Look, SnapCompare, each_size, every_look, settle
+from tui.app import DeckApp
+from tui.widgets import devices_words
+
+Before = Callable[[Pilot[Any]], Awaitable[None]]
+
+
+@pytest.fixture(autouse=True)
+def _utc(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Times of day are those of the recording, and the same lessons have drivers for ever."""
+    monkeypatch.setenv("TZ", "UTC")
+    monkeypatch.setattr(devices_words, "_lessons_with_drivers", lambda: ("robot",))
+    time.tzset()
+    yield
+    monkeypatch.undo()
+    time.tzset()
+
+
+def shown(*samples: Sample, keys: tuple[str, ...] = ()) -> Before:
+    """Press keys, then let drivers say this."""
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        await pilot.press(*keys)
+        assert isinstance(pilot.app, DeckApp)
+        graph = pilot.app.feed.graph
+        assert isinstance(graph, RecordedGraph)
+        graph.show(update(*STATUSES, *samples))
+        for _round in range(4):
+            await pilot.pause()
+
+    return before
+
+
+@every_look
+def test_frames_of_the_chassis(look: Look, snap_compare: SnapCompare) -> None:
+    """Four drivers, each with its state; drive lines out and telemetry in, noise and a bad line."""
+    before = shown(of_chassis())
+    assert snap_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+
+
+@each_size
+def test_frames_of_a_sonar(look: Look, snap_compare: SnapCompare) -> None:
+    """The second driver is chosen; the bytes are in a column of their own."""
+    metres = (1.23, 1.24, 9.0, 0.1, 1.25)
+    before = shown(of_sonar(*metres, language=look.language), keys=("down", "down"))
+    assert snap_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+
+
+@each_size
+def test_an_unplugged_device(look: Look, snap_compare: SnapCompare) -> None:
+    """Why nothing comes from the last driver, with the mend."""
+    before = shown(keys=("end",))
+    assert snap_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+
+
+@each_size
+def test_a_lesson_without_drivers(look: Look, snap_compare: SnapCompare) -> None:
+    """Says that there are none, and which profile has them."""
+    nobody = RecordedPad(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
+    app = look.app("devices", nobody)
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        empty = pilot.app.screen.query_one("#devices-empty", Static)
+        for _round in range(500):
+            if "robot" in str(empty.render()):
+                break
+            await pilot.pause(0.01)
+
+    assert snap_compare(app, terminal_size=look.size, run_before=before)

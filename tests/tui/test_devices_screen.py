@@ -1,0 +1,241 @@
+"""What the Devices screen does: it hears every driver, shows frames, filters, pauses, copies."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from graph.data import Sample
+from robot.frame_lines import FrameLine
+from robot.frames import Kind
+from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, sample
+from tests.tui.recorded_devices import (
+    AT_S,
+    STATUSES,
+    foreign,
+    frames,
+    of_chassis,
+    of_sonar,
+    pad,
+    status,
+    update,
+)
+from tests.tui.snapshots import Look, settle
+from tui import clock
+from tui.app import DeckApp
+from tui.screens.devices import DevicesScreen
+from tui.widgets import devices_words
+from tui.widgets.key_bar import KeyBar
+
+ESCAPE = "\x1b[31m[bold red]\x00\u202e"
+
+
+class Stage:
+    """The screen with its recorded graph."""
+
+    def __init__(self, pilot: Pilot[Any], graph: RecordedGraph) -> None:
+        self.pilot, self.graph = pilot, graph
+
+    @property
+    def app(self) -> DeckApp:
+        assert isinstance(self.pilot.app, DeckApp)
+        return self.pilot.app
+
+    @property
+    def screen(self) -> DevicesScreen:
+        found = self.app.get_screen("devices")
+        assert isinstance(found, DevicesScreen)
+        return found
+
+    async def press(self, *keys: str) -> None:
+        await self.pilot.press(*keys)
+        await self.pilot.pause()
+
+    async def show(self, *samples: Sample) -> None:
+        self.graph.show(update(*samples))
+        for _round in range(3):
+            await self.pilot.pause()
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        for _round in range(500):
+            await self.pilot.pause(0.01)
+            if condition():
+                return
+        raise AssertionError("it never came")
+
+    def drivers(self) -> list[str]:
+        """The rows of the table, without blanks at the ends."""
+        table = self.screen.table
+        height = table.size.height
+        return [row for y in range(1, height) if (row := table.render_line(y).text.strip())]
+
+    def lines(self) -> list[str]:
+        """The frames that the filter lets through."""
+        return [entry.text for entry in self.screen.pane.view.index.shown]
+
+    def whole(self) -> str:
+        return str(self.screen.query_one("#devices-chosen", Static).render())
+
+    def empty(self) -> str:
+        return str(self.screen.query_one("#devices-empty", Static).render())
+
+
+@asynccontextmanager
+async def stage(
+    of: RecordedPad | None = None, size: tuple[int, int] = (120, 40)
+) -> AsyncIterator[Stage]:
+    chosen = of or pad()
+    app = Look(size, "en").app("devices", chosen)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        assert isinstance(chosen.graph, RecordedGraph)
+        yield Stage(pilot, chosen.graph)
+
+
+async def test_every_driver_has_a_row_though_all_speak_on_one_topic() -> None:
+    async with stage() as at:
+        rows = at.drivers()
+        assert [row.removeprefix("▶ ").split("  ")[0] for row in rows] == [
+            "chassis", "imu: data", "sonar_front", "sonar_rear",
+        ]  # fmt: skip
+        assert "▲ warning" in rows[0]
+        assert "1\N{NO-BREAK SPACE}290" in rows[0]
+        assert "✗ error" in rows[3]
+        assert "no link" in rows[3]
+        await at.show(status("sonar_rear", 0, "back again"))
+        assert "back again" in at.drivers()[3]
+        assert "The wheels stand" in at.drivers()[0]
+
+
+async def test_frames_are_asked_for_of_the_chosen_driver_and_only_while_shown() -> None:
+    async with stage() as at:
+        assert {"/diagnostics", "/chassis/frames"} <= at.graph.followed
+        await at.press("down", "down")
+        assert "/chassis/frames" not in at.graph.followed
+        assert "/sonar_front/frames" in at.graph.followed
+        await at.show(of_chassis())
+        assert at.lines() == []
+        await at.show(of_sonar(1.23))
+        assert [line.split("  ")[0] for line in at.lines()] == [
+            "distance 1.23 m, strength 1000, 30.0 °C"
+        ]
+        await at.press("1")
+        assert not {"/diagnostics", "/sonar_front/frames"} & at.graph.followed
+        await at.press("7")
+        assert {"/diagnostics", "/sonar_front/frames"} <= at.graph.followed
+
+
+async def test_frames_both_ways_with_noise_and_a_bad_one() -> None:
+    async with stage() as at:
+        await at.show(of_chassis())
+        lines = at.lines()
+        assert len(lines) == 17
+        assert lines[0].split("  ")[0].startswith("drive left 3.20 right 3.40 rad/s")
+        assert lines[0].endswith("$D,17,3200,3400,100*3CC7")
+        assert lines[9].startswith("~ noise 2 bytes")
+        assert lines[10].startswith("✗ CRC FAILED")
+        await at.press("x")
+        assert at.lines()[0].endswith("33 43 43 37 0A")
+        assert at.lines()[9].endswith("FF 00")
+        await at.press("x")
+        assert at.lines() == lines
+        await at.press("f9")
+        await at.pilot.pause()
+        assert "▲ внимание" in at.whole()
+        assert {entry.node for entry in at.screen.pane.view.index.shown} == {"← вх", "→ исх"}
+
+
+async def test_filter_pause_and_clear() -> None:
+    async with stage() as at:
+        await at.show(of_chassis())
+        await at.press("i")
+        assert not any("drive" in line for line in at.lines())
+        await at.press("ш")
+        assert all("drive" in line for line in at.lines())
+        await at.press("i", "и")
+        assert [line[:2] for line in at.lines()] == ["~ ", "✗ "]
+        await at.press("b", "p")
+        await at.show(of_chassis())
+        assert not at.screen.pane.view.following
+        assert at.screen.pane.view.fresh == 17
+        assert "Resume" in at.screen.query_one(KeyBar).render().plain
+        await at.press("з", "в")
+        assert at.lines() == []
+
+
+async def test_lines_are_copied_and_written_to_a_file(tmp_path: Path) -> None:
+    async with stage() as at:
+        await at.show(of_sonar(1.23), of_chassis(1))
+        await at.press("tab", "up", "c")
+        assert "wheels left 3.10" in at.app.clipboard
+        assert "← in" in at.app.clipboard
+        await at.press("ctrl+s")
+        field = at.screen.pane.prompt.query_one("Input")
+        field.value = str(tmp_path / "frames.log")  # type: ignore[attr-defined]
+        await at.press("enter")
+        await at.until(lambda: not at.screen.pane.prompt.kind)
+        assert "drive left 3.20" in (tmp_path / "frames.log").read_text()
+        await at.press("escape")
+        assert at.screen.table.has_focus
+
+
+async def test_why_nothing_comes_from_a_driver(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with stage() as at:
+        view = at.screen.pane.view
+        assert "Listening on /chassis/frames" in view.empty_words
+        await at.press("down")
+        assert "publishes no …/imu: data/frames" in view.empty_words
+        await at.press("end")
+        assert "Nothing is connected" in view.empty_words
+        assert "no such port; plug it in" in at.whole()
+        await at.press("home")
+        monkeypatch.setattr(clock, "now", lambda: AT_S + 5.0)
+        await at.show(status("sonar_front"))
+        rows = at.drivers()
+        assert "○ stale 5 s" in rows[0]
+        assert "chassis has said nothing for 5 s" in at.screen.pane.view.empty_words
+        await at.press("1", "7")
+        assert "▲ warning" in at.drivers()[0], "nobody listened in between"
+
+
+async def test_why_there_is_no_driver(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(devices_words, "_lessons_with_drivers", lambda: ("robot",))
+    lesson = RecordedPad(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
+    async with stage(lesson) as at:
+        await at.until(lambda: "Drivers run in: robot." in at.empty())
+        assert "No driver says anything on /diagnostics." in at.empty()
+    starting = pad()
+    starting.graph.update = update(publishers=())  # type: ignore[attr-defined]
+    async with stage(starting) as at:
+        assert "chassis, sonar_front have not said anything" in at.empty()
+
+
+async def test_what_others_put_into_it_does_no_harm() -> None:
+    async with stage() as at:
+        bad = FrameLine(AT_S, "in", Kind.FRAME, ESCAPE.encode(), ESCAPE)
+        await at.show(
+            status(ESCAPE, 7, ESCAPE, port=ESCAPE, errors="nan", bytes_in_per_s="x" * 9999),
+            foreign("", "x"),
+            sample("/diagnostics", "other/msg/Type", {"status": 5}),
+            sample("/diagnostics", "other/msg/Type", {"status": [{"name": "x"}, None]}),
+            frames("chassis", [bad]),
+            replace(of_sonar(1.0), topic="/chassis/frames", value={"data": "{}\nno json"}),
+        )
+        assert at.lines()[-1].startswith("␛[31m[bold red]␀")
+        assert any("␛[31m[bold red]␀" in row for row in at.drivers())
+        assert len(at.drivers()) == len(STATUSES) + 2
+        await at.press("end", "w", "i", "x", "i", "i")
+        at.screen.table.choose("chassis")
+        await at.pilot.pause()
+        many = [FrameLine(AT_S, "in", Kind.FRAME, b"x" * 9, "x") for _ in range(200)]
+        for _batch in range(40):
+            at.graph.show(update(frames("chassis", many)))
+            await at.pilot.pause()
+        assert 5000 <= len(at.lines()) <= 6250
