@@ -10,6 +10,7 @@ import os
 import selectors
 import threading
 import time
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -62,7 +63,8 @@ class SoundPort:
         self.octets = self.faults = self.connections = 0
         """Bytes moved, blocks missed and connections, since the start."""
         self.device, self.device_hz, self.problem = "", 0, say.text(OPENING)
-        self.connected, self.since_s = False, time.monotonic()
+        self.connected, self.since_s, self.since = False, time.monotonic(), ""
+        """Since when it is as it is; while connected that moment as ISO 8601, too."""
         self._resampler: Resampler | None = None
         self._missed = 0
         self._part = b""
@@ -140,7 +142,7 @@ class SoundPort:
             problem, detail = self._hear_words(child) or ("died", "")
         finally:
             if self.connected:
-                self.connected, self.since_s = False, time.monotonic()
+                self.connected, self.since_s, self.since = False, time.monotonic(), ""
             self._queue.clear()
             child.close()
         return problem, detail or child.last_words
@@ -190,6 +192,7 @@ class SoundPort:
         self._resampler = Resampler(here, there) if here != there else None
         self._missed = 0
         self.connections += 1
+        self.since = datetime.now().astimezone().isoformat(timespec="seconds")
         self.connected, self.since_s = True, time.monotonic()
         self._say.info(OPENED[self.way], device=device, rate=rate_hz)
 

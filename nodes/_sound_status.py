@@ -35,8 +35,10 @@ class PortStatus:
         values = {
             "port": port.device or port.wanted,
             "connected": str(port.connected).lower(),
+            "connected_since": port.since,
             "seconds": f"{now_s - port.since_s:.1f}",
             "connections": str(port.connections),
+            "reconnects": str(max(0, port.connections - 1)),
             "bytes_in_per_s": f"{octets if port.way == IN else 0:.0f}",
             "bytes_out_per_s": f"{0 if port.way == IN else octets:.0f}",
             "errors_per_s": f"{faults:.1f}",

@@ -7,6 +7,7 @@ import signal
 import struct
 import subprocess
 import time
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 import pytest
@@ -94,6 +95,8 @@ def test_sound_goes_through_byte_for_byte_both_ways(
         values = {item.key: item.value for item in state.values}
         assert state.level == DiagnosticStatus.OK
         assert values["port"] == "deckmic"
+        assert values["connected"] == "true"
+        assert datetime.fromisoformat(values["connected_since"]) <= datetime.now().astimezone()
         assert int(values["bytes_in_per_s"]) == pytest.approx(32_000, rel=0.5)
         assert len(children(node)) == 2
         running = children(node)

@@ -39,7 +39,7 @@ def test_text_is_shown_as_text() -> None:
 
 def test_sound_is_told_by_length_and_loudness() -> None:
     loud, quiet = heard(tone(0.5, 0.9)), heard(tone(0.5, 0.01))
-    assert loud.words.startswith("PCM 16-bit, 0.5 s, level ")
+    assert loud.words.startswith("PCM 0.5 s ")
     assert loud.levels > quiet.levels
     assert heard(bytes(16_000)).levels == "▁" * 8
     assert heard(tone(1.0, 0.5) + b"\x7f").seconds == pytest.approx(1.0)

@@ -41,7 +41,7 @@ class Heard:
         """What is shown."""
         if not self.is_sound:
             return self.text
-        return _("PCM 16-bit, {seconds} s, level {levels}").format(
+        return _("PCM {seconds} s {levels}").format(
             seconds=f"{self.seconds:.1f}", levels=self.levels
         )
 
