@@ -155,7 +155,8 @@ def main(args: list[str] | None = None) -> int:
     """Run the node until it is asked to end."""
     code = run(Camera, args)
     if any(thread.name == THREAD for thread in threading.enumerate()):
-        # OpenCV is in a read that does not come back: the interpreter must not wait for it.
+        # OpenCV is in a read. If it came back while the interpreter is taken down, the process
+        # would end as by a crash.
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)

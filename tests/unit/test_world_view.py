@@ -93,6 +93,15 @@ def test_a_box_is_seen_where_a_ray_of_the_sonars_meets_it(
     assert np.count_nonzero(seen[::2] != met) <= 2
 
 
+def test_a_nearer_box_hides_a_farther_one() -> None:
+    near, far = Box(1.5, 0, 0.4, 1.0), Box(2.5, 0, 0.4, 0.6)
+    rooms = Room(LIVING_ROOM.walls, (near, far)), Room(LIVING_ROOM.walls, (near,))
+    pictures = [draw(RoomView(room, HEIGHT, WIDTH), Eye(0.5, 0, HEIGHT_M, 0)) for room in rooms]
+    # The farther one is taller, and looks out above.
+    assert (pictures[0] != pictures[1])[: HEIGHT // 2 - 12].any()
+    assert (pictures[0] == pictures[1])[HEIGHT // 2 - 2 :].all()
+
+
 @settings(max_examples=40)
 @given(EYES)
 def test_a_box_is_nowhere_but_in_the_part_that_it_is_looked_for_in(eye: Eye) -> None:
