@@ -5,18 +5,20 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from graph.data import ParametersResult, SetResult
-from graph.orders import Ask, Call, Do, ObserverError, Order, Prepare, Publish
+from graph.orders import Ask, Call, Do, ObserverError, Order, Prepare, Publish, Urgent
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from concurrent.futures import Future
 
     from graph.data import CallResult, Value
     from graph.held import Holding
     from graph.station import Station
+
+T = TypeVar("T")
 
 
 class Asking:
@@ -24,6 +26,7 @@ class Asking:
 
     def __init__(self) -> None:
         self._orders: deque[Order] = deque()
+        self._urgent: deque[Urgent] = deque()
         self._lock = threading.Lock()
         self._wake = threading.Event()
         self._failure: ObserverError | None = None
@@ -47,7 +50,11 @@ class Asking:
         ObserverError.
         """
         order = Publish(topic, type_name, value, latched)
-        self._order(order)
+        if latched:
+            # An emergency stop is one of these.
+            self._hurry(order, lambda station: station.outbox.knows_latched(topic, type_name))
+        else:
+            self._order(order)
         return order.future
 
     def call(
@@ -105,12 +112,12 @@ class Asking:
             future.set_result(station.held.hold(topic, word))
 
         order = Ask[int](hold)
-        self._order(order)
+        self._hurry(order, lambda station: station.held.knows(topic))
         return order.future
 
     def let_go(self, topic: str) -> None:
         """Publish the message of rest of what is held, at once."""
-        self._order(Do(lambda station: station.held.let_go(topic)))
+        self._hurry(Do(lambda station: station.held.let_go(topic)), lambda _station: True)
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
         """Send a goal; the future tells its number, and updates how it goes.
@@ -164,24 +171,42 @@ class Asking:
         return order.future
 
     def _order(self, order: Order) -> None:
+        self._put(self._orders, order, order)
+
+    def _hurry(self, order: Order, ready: Callable[[Station], bool]) -> None:
+        self._put(self._urgent, Urgent(order, ready), order)
+
+    def _put(self, queue: deque[T], entry: T, order: Order) -> None:
         with self._lock:
             failure = self._failure
             if failure is None:
-                self._orders.append(order)
+                queue.append(entry)
         if failure is not None:
             order.fail(failure)
         self._wake.set()
 
     def _carry_out_orders(self, station: Station) -> None:
-        while self._orders:
-            order = self._orders.popleft()
-            try:
-                order.carry_out(station)
-            except Exception as error:  # noqa: BLE001 - told to whoever asked for it
-                order.fail(error)
+        while self._urgent or self._orders:
+            order = self._urgent.popleft().order if self._urgent else self._orders.popleft()
+            _carry_out(order, station)
+
+    def _breathe(self, station: Station) -> None:
+        """Do what cannot wait for the end of a look: stops, and what is held."""
+        while self._urgent and self._urgent[0].ready(station):
+            _carry_out(self._urgent.popleft().order, station)
+        station.held.step()
 
     def _refuse_orders(self, failure: ObserverError) -> None:
         with self._lock:
             self._failure = failure
+        while self._urgent:
+            self._urgent.popleft().order.fail(failure)
         while self._orders:
             self._orders.popleft().fail(failure)
+
+
+def _carry_out(order: Order, station: Station) -> None:
+    try:
+        order.carry_out(station)
+    except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+        order.fail(error)

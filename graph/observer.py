@@ -98,6 +98,7 @@ class Observer(Asking):
         try:
             # This imports rclpy; the screen need not wait for it.
             station = Station(open_ros(self._domain, self._discovery))
+            station.breathe = lambda: self._breathe(station)
         except Exception as error:  # noqa: BLE001 - told to the screen
             words = say("ROS cannot be used: {error}", error=str(error))
             end = ObserverError(words)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
 
 from graph.data import CallResult
 
@@ -30,6 +30,14 @@ class Order(Protocol):
 
     def fail(self, error: Exception) -> None:
         """Say that it cannot be done."""
+
+
+class Urgent(NamedTuple):
+    """An order that may be carried out in the middle of a look, once there is what it needs."""
+
+    order: Order
+    ready: Callable[[Station], bool]
+    """Whether it needs no look at the graph any more."""
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,8 @@ from graph.scan_endpoints import full_name, publishers, subscriptions
 from graph.scan_nodes import action_rows, node_rows, parties, service_rows
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rclpy.node import Node
 
     from graph.data import ActionRow, EndpointInfo, NodeRow, ServiceRow
@@ -86,13 +88,16 @@ def signature(node: Node) -> Signature:
     )
 
 
-def scan(node: Node, own_name: str) -> Scan:
-    """Ask the middleware for everything; `own_name` is Deck's node, which is left out."""
-    topics = {
-        name: _topic(node, own_name, name, tuple(types))
-        for name, types in node.get_topic_names_and_types()
-    }
-    found = parties(node, own_name)
+def scan(node: Node, own_name: str, breathe: Callable[[], object]) -> Scan:
+    """Ask the middleware for everything; `own_name` is Deck's node, which is left out.
+
+    It takes a tenth of a second for fifteen nodes: `breathe` is called in between, often.
+    """
+    topics = {}
+    for name, types in node.get_topic_names_and_types():
+        breathe()
+        topics[name] = _topic(node, own_name, name, tuple(types))
+    found = parties(node, own_name, breathe)
     return Scan(topics, node_rows(topics, found), service_rows(found), action_rows(found))
 
 

@@ -13,7 +13,7 @@ from graph.data import ActionRow, NodeRow, ServiceRow
 from graph.scan_endpoints import full_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from rclpy.node import Node
 
@@ -41,7 +41,7 @@ class Party:
     calls: Offers
 
 
-def parties(node: Node, own_name: str) -> dict[str, Party]:
+def parties(node: Node, own_name: str, breathe: Callable[[], object]) -> dict[str, Party]:
     """Ask the middleware what each node serves and calls; `own_name` is left out."""
     from rclpy.node import NodeNameNonExistentError
 
@@ -50,6 +50,7 @@ def parties(node: Node, own_name: str) -> dict[str, Party]:
         full = full_name(name, namespace)
         if full == own_name:
             continue
+        breathe()
         try:
             serves = node.get_service_names_and_types_by_node(name, namespace)
             calls = node.get_client_names_and_types_by_node(name, namespace)

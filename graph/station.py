@@ -17,6 +17,8 @@ from graph.scan import Scan, Signature, is_complete, scan, signature
 from graph.taps import Taps
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from graph.data import ActionRow, NodeRow, Sample, ServiceRow
     from graph.ros import Ros
     from graph.scan import TopicEnds
@@ -29,7 +31,7 @@ RESCAN_S = 3.0
 
 
 class Station:
-    """One open node at work; every method returns at once."""
+    """One open node at work; every method returns soon."""
 
     def __init__(self, ros: Ros) -> None:
         self.calls = Calls(ros.node)
@@ -38,6 +40,8 @@ class Station:
         self.publications = Publications(ros.node)
         self.held = Held(ros.node)
         self.parameters = Parameters(self.calls, self._known_node, self._known_service)
+        self.breathe: Callable[[], object] = _nothing
+        """Called again and again by what takes its time, for what cannot wait."""
         self._ros = ros
         self._taps = Taps(ros.node)
         self._scan = Scan()
@@ -75,7 +79,7 @@ class Station:
         if tuned != self._tuned or self._taps.need_tuning():
             self._tuned = tuned
             self._taps.tune(*tuned)
-        return self._update(self._taps.drain())
+        return self._update(self._taps.drain(self.breathe))
 
     def step(self) -> float | None:
         """Go on with what is under way; return when to go on with it, on the monotonic clock.
@@ -120,7 +124,7 @@ class Station:
         if not is_news and now_s - self._scanned_s < RESCAN_S:
             return
         self._signature, self._scanned_s = found, now_s
-        seen = scan(self._ros.node, self._ros.name)
+        seen = scan(self._ros.node, self._ros.name, self.breathe)
         if seen != self._scan:
             self._scan = seen
             self.publications.tune(seen.topics)
@@ -137,6 +141,10 @@ class Station:
         return GraphUpdate(
             time.time(), rows, samples, seen.nodes, seen.services, seen.actions, *doing
         )
+
+
+def _nothing() -> None:
+    """Breathe for nobody."""
 
 
 def _sooner(one_s: float | None, other_s: float | None) -> float | None:

@@ -17,6 +17,8 @@ from graph.troubles import Finding, quiet, structural
 from graph.types import UnknownTypeError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rclpy.node import Node
 
 
@@ -60,10 +62,14 @@ class Taps:
             self._rows[topic] = self._still_row(topic, TopicEnds(topic, ()), None)
         self._rows = dict(sorted(self._rows.items()))
 
-    def drain(self) -> dict[str, tuple[Sample, ...]]:
-        """Take what has come, and return the samples that somebody looks at."""
+    def drain(self, breathe: Callable[[], object]) -> dict[str, tuple[Sample, ...]]:
+        """Take what has come, and return the samples that somebody looks at.
+
+        `breathe` is called between two topics.
+        """
         samples = {}
         for topic, tap in self._taps.items():
+            breathe()
             found = tap.drain(
                 one_publisher=self._one_publisher(topic), decode=self._how_many(topic)
             )

@@ -1,0 +1,105 @@
+"""What cannot wait: a stop is published in the middle of a look at the graph, the rest is not."""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import Future
+from typing import Any, cast
+
+import pytest
+
+from graph.asking import Asking
+from graph.held import Holding
+from graph.orders import ObserverError
+from graph.station import Station
+
+BOOL, STOP = "std_msgs/msg/Bool", {"data": True}
+
+
+class Desk:
+    """As much of a station as these orders touch; it notes what was done."""
+
+    def __init__(self, *known: str) -> None:
+        self.known = set(known)
+        self.done: list[str] = []
+        self.outbox = self.held = self
+
+    def knows_latched(self, topic: str, _type_name: str) -> bool:
+        return topic in self.known
+
+    def knows(self, topic: str) -> bool:
+        return topic in self.known
+
+    def ends(self, topic: str) -> None:
+        self.done.append(f"look for {topic}")
+
+    def prepare(self, topic: str, _type_name: str, _ends: None) -> None:
+        self.known.add(topic)
+
+    def publish(
+        self,
+        topic: str,
+        _type: str,
+        _value: Any,
+        _ends: None,
+        future: Future[int],
+        *,
+        latched: bool,
+    ) -> None:
+        self.done.append(f"publish {topic} {latched}")
+        future.set_result(1)
+
+    def hold(self, topic: str, _word: Holding) -> int:
+        self.done.append(f"hold {topic}")
+        return 1
+
+    def let_go(self, topic: str) -> None:
+        self.done.append(f"let go of {topic}")
+
+    def step(self) -> None:
+        self.done.append("step")
+
+
+def word() -> Holding:
+    return Holding({}, {}, 20.0, time.monotonic() + 1.0)
+
+
+def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:
+    asking, desk = Asking(), Desk("/stop", "/drive")
+    station = cast("Station", desk)
+    chatter = asking.publish("/chatter", BOOL, STOP)
+    held = asking.hold("/drive", BOOL, word())
+    stop = asking.publish("/stop", BOOL, STOP, latched=True)
+    asking.let_go("/drive")
+    asking._breathe(station)
+    assert desk.done == ["hold /drive", "publish /stop True", "let go of /drive", "step"]
+    assert stop.done()
+    assert held.done()
+    assert not chatter.done()
+    asking._carry_out_orders(station)
+    assert desk.done[4:] == ["look for /chatter", "publish /chatter False"]
+
+
+def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
+    asking, desk = Asking(), Desk()
+    station = cast("Station", desk)
+    asking.hold("/drive", BOOL, word())
+    asking.publish("/stop", BOOL, STOP, latched=True)
+    asking._breathe(station)
+    assert desk.done == ["step"]
+    asking._carry_out_orders(station)
+    assert desk.done[1:] == [
+        "look for /drive",
+        "hold /drive",
+        "look for /stop",
+        "publish /stop True",
+    ]
+
+
+def test_what_cannot_be_done_any_more_says_so() -> None:
+    asking = Asking()
+    before = asking.publish("/stop", BOOL, STOP, latched=True)
+    asking._refuse_orders(ObserverError("over"))
+    for future in (before, asking.publish("/stop", BOOL, STOP, latched=True)):
+        with pytest.raises(ObserverError, match="over"):
+            future.result(0)
