@@ -15,6 +15,7 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 
 from nodes import _safety_words as words
+from nodes._arrivals import Arrivals
 from nodes._drive import from_message, to_message
 from nodes._nap import Nap
 from nodes._topics import DEPTH, DRIVE_SAFE
@@ -68,17 +69,17 @@ class Gate:
         self._driver = self._ignored = ""
         self._ignored_s = -math.inf
         self._sent = STOP
-        self._started_s = time.monotonic()
         self._nap = Nap()
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE_SAFE, DEPTH)
+        self._arrivals = Arrivals()
         for name in names:
             hear = functools.partial(self._hear, name)
             node.create_subscription(AckermannDriveStamped, name, hear, DEPTH)
 
     @property
     def starting(self) -> bool:
-        """Whether it has come so lately that it may not have heard of an emergency stop yet."""
-        return time.monotonic() - self._started_s < self._node.number("settle_s")
+        """Whether it may not have heard of an emergency stop yet, having just come."""
+        return self._arrivals.quiet_s < self._node.number("settle_s")
 
     def held_up(self) -> bool:
         """Whether to take nothing in now, for it may have waited for too long already."""
@@ -124,6 +125,7 @@ class Gate:
     def _hear(self, source: str, message: AckermannDriveStamped) -> None:
         if self.held_up():
             return
+        self._arrivals.hear(source)
         self._look()
         asked = from_message(message)
         if not (math.isfinite(asked.speed_m_s) and math.isfinite(asked.steering_rad)):

@@ -10,8 +10,9 @@ short is forgotten: when the way is free again the robot waits for a new one.
 `sources` are the topics with commands, the highest in rank first: a source counts while its newest
 command is younger than `max_age_s`, and what is said below it meanwhile is ignored. When nobody's
 command counts the robot stands. What is allowed at the moment is repeated `rate` times a second, so
-that who obeys /drive_safe can tell a dead gate. For `settle_s` after its start the gate lets
-nothing through: it may not have heard of an emergency stop yet.
+that who obeys /drive_safe can tell a dead gate. A gate that was just started stays shut for
+`settle_s`, and as long again after the first word of a source in its first seconds: it may not have
+heard yet of an emergency stop that is on.
 
 /emergency_stop stops everything until it is released by an explicit false. /safety_state says
 at every change, and once a second, what is blocked and why.

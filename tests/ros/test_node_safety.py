@@ -8,72 +8,16 @@ import signal
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from ackermann_msgs.msg import AckermannDriveStamped
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, Float32
 
+from tests.ros.gate import FRONT, REAR, Gate, drive, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-FRONT, REAR = "/sensor/sonar_front", "/sensor/sonar_rear"
-
-
-def drive(speed: float, steering: float = 0.0) -> AckermannDriveStamped:
-    message = AckermannDriveStamped()
-    message.drive.speed = speed
-    message.drive.steering_angle = steering
-    return message
-
-
-LONG: dict[str, object] = {"stale_after_s": 60, "max_age_s": 60}
-"""What is said or seen once counts for as long as the test takes."""
-
-
-class Gate:
-    """The safety node as a gate, with everything around it."""
-
-    def __init__(self, domain: int, **params: object) -> None:
-        self.process = NodeProcess(
-            "nodes.safety_stop",
-            domain,
-            params={"gate": True, "rate": 50, "settle_s": 0, **LONG, **params},
-        )
-        self.peer = Peer(domain)
-        self.safe = self.peer.hear("/drive_safe", AckermannDriveStamped)
-        self.states = self.peer.hear("/safety_state", DiagnosticArray)
-
-    def close(self) -> None:
-        self.peer.close()
-        self.process.close()
-
-    def see(self, distance: float, place: str = "front") -> None:
-        """Give a reading, and wait until the gate has taken it."""
-        self.peer.say(f"/sensor/sonar_{place}", Float32(data=distance))
-        wait_until(
-            lambda: self.states and values(self.states[-1])[f"{place}_m"] == f"{distance:.3f}",
-            f"{distance} m {place}",
-        )
-
-    def wait_for_speed(self, speed: float) -> AckermannDriveStamped:
-        """Wait until the gate lets this speed through, and no other."""
-        self.safe.clear()
-        wait_until(
-            lambda: self.safe and self.safe[-1].drive.speed == pytest.approx(speed),
-            f"{speed} m/s on /drive_safe",
-        )
-        return self.safe[-1]
-
-    def wait_for_state(self, state: str) -> DiagnosticStatus:
-        wait_until(lambda: self.states and values(self.states[-1])["verdict"] == state, state)
-        return self.states[-1].status[0]
-
-
-def values(message: DiagnosticArray) -> dict[str, str]:
-    return {item.key: item.value for item in message.status[0].values}
 
 
 @pytest.fixture
