@@ -25,6 +25,11 @@ MEASUREMENTS = {
     "recording": "Recording 10 MB/s",
     "log_view": "The log view alone, under 10 000 lines/s",
     "node_ends": "From a signal to the end of a node",
+    "stop_latency": "From a sonar's frame under the threshold to the stop at the Pico",
+    "space_bar": "From the space bar to the emergency stop at the Pico",
+    "cable": "A cable pulled and put back",
+    "serial_cpu": "What the serial drivers cost",
+    "hour": "An hour of simulated driving among boxes",
 }
 """Module to the title of its section."""
 
