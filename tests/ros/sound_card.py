@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import contextlib
 import ctypes.util
+import fcntl
 import os
+import select
 import threading
 from typing import TYPE_CHECKING
 
@@ -57,6 +59,8 @@ class SoundCard:
         # Open at both ends, so that nobody waits for the other end.
         self._said = os.open(folder / "said", os.O_RDWR | os.O_NONBLOCK)
         self._played = os.open(folder / "played", os.O_RDWR | os.O_NONBLOCK)
+        # Nobody shall hear later what was said while nobody listened.
+        fcntl.fcntl(self._said, fcntl.F_SETPIPE_SZ, 2 * select.PIPE_BUF)
         self._sound = b""
         self.played = bytearray()
         """Whatever went to the loudspeaker, its silence included."""

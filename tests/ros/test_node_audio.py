@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import struct
 import subprocess
-import time
 from datetime import datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -22,7 +21,6 @@ from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 MICROPHONE, SPEAKER, LEVEL = "/audio/mic_raw", "/audio/speaker_raw", "/audio/level"
 
@@ -64,6 +62,10 @@ def children(node: NodeProcess) -> list[int]:
     return [int(word) for word in done.stdout.split()]
 
 
+def is_there(pid: int) -> bool:
+    return Path(f"/proc/{pid}").exists()
+
+
 def test_sound_goes_through_byte_for_byte_both_ways(
     peer: Peer, module_domain: int, card: SoundCard
 ) -> None:
@@ -102,7 +104,7 @@ def test_sound_goes_through_byte_for_byte_both_ways(
         running = children(node)
         node.send(signal.SIGTERM)
         assert node.wait() == 0
-        assert not any(os.path.exists(f"/proc/{pid}") for pid in running)  # noqa: PTH110
+        assert not any(map(is_there, running))
         assert "Traceback" not in node.output
 
 
@@ -119,13 +121,10 @@ def test_a_device_that_goes_is_opened_again(
         )
         card.plug("deckmic")
         node.wait_for_words("Microphone: deckmic")
-        os.kill(children(node)[0], signal.SIGKILL)
-        node.wait_for_words("Lost the microphone deckmic: PortAudio has died")
-        wait_until(lambda: node.output.count("Microphone: deckmic") == 2, "the second time")
         card.frozen = True
         node.wait_for_words("Lost the microphone deckmic: no sound moves any more")
         card.frozen = False
-        wait_until(lambda: node.output.count("Microphone: deckmic") == 3, "the third time")
+        wait_until(lambda: node.output.count("Microphone: deckmic") == 2, "the second time")
         heard.clear()
         card.say(ramp(0.2, 7))
         wait_until(lambda: without_silence(b"".join(map(from_message, heard))), "sound")
@@ -143,6 +142,9 @@ def test_a_late_speaker_drops_the_oldest_and_says_so(
         peer.say(SPEAKER, to_message(sound))
         node.wait_for_words("the oldest 1.5 s of sound are dropped")
         wait_until(lambda: without_silence(card.played) == sound[-RATE_HZ:], "the newest")
+        (running,) = children(node)
+        node.process.kill()
+        wait_until(lambda: not is_there(running), "the end of PortAudio with its node")
 
 
 def test_a_missing_library_is_told_with_the_mend(
@@ -155,8 +157,6 @@ def test_a_missing_library_is_told_with_the_mend(
             "No microphone: PortAudio is not installed; sudo apt install libportaudio2",
             "No speaker: PortAudio is not installed",
         )
-        began_s = time.monotonic()
         node.send(signal.SIGTERM)
         assert node.wait() == 0
-        assert time.monotonic() - began_s < 5
         assert "Traceback" not in node.output
