@@ -18,7 +18,7 @@ from nodes import _safety_words as words
 from nodes._arrivals import Arrivals
 from nodes._drive import from_message, to_message
 from nodes._nap import Nap
-from nodes._topics import DEPTH, DRIVE_SAFE
+from nodes._topics import DEPTH, DRIVE_SAFE, DRIVE_TELEOP
 from robot.safety import Shares, Verdict, allowed, gate
 from robot.safety_sources import Sources
 from robot.words import STOP, DriveSetpoint
@@ -65,7 +65,7 @@ class Gate:
         self._node, self._look, self._reason = node, look, reason
         self._verdict, self._shares = Verdict.STARTING, Shares(0.0, 0.0)
         names = node.text("sources").replace(",", " ").split()
-        self._sources = Sources(names, node.number("max_age_s"))
+        self._sources = Sources(names, node.number("max_age_s"), {DRIVE_TELEOP})
         self._driver = self._ignored = ""
         self._ignored_s = -math.inf
         self._sent = STOP
@@ -153,7 +153,8 @@ class Gate:
     def _pass_on(self, order: Order | None) -> None:
         passed = self._passed(order)
         if order is None and self._sent.speed_m_s and self._verdict not in _HOLDING:
-            self._node.say.warn(words.COMMAND_OLD, seconds=self._sources.max_age_s)
+            seconds = self._sources.limit_s(self._driver)
+            self._node.say.warn(words.COMMAND_OLD, seconds=seconds)
         if order is not None and order.setpoint.speed_m_s and not passed.speed_m_s:
             self._tell_cut(order.setpoint)
             self._sources.correct(order, passed)

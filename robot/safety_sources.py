@@ -5,7 +5,10 @@ counts drives, and the others are ignored. What an ignored source said is kept o
 long too, so that a word of long ago never moves the robot when the one above it falls silent.
 
 With a `max_age_s` of 0 no command grows old. Then a source holds the robot until it asks for a
-stop, and what is said below it meanwhile is forgotten.
+stop, and what is said below it meanwhile, or was before, is forgotten.
+
+A source that a person holds, by a key that has to stay down, grows old all the same: nobody may be
+left to ask for the stop.
 """
 
 from __future__ import annotations
@@ -14,9 +17,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from robot.words import DriveSetpoint
+
+HELD_AGE_S = 0.5
+"""A held source says its word twenty times a second."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +42,10 @@ class Order:
 class Sources:
     """The sources by rank, the highest first, and what each said last."""
 
-    def __init__(self, ranked: Sequence[str], max_age_s: float) -> None:
-        """Know these sources; nobody has said anything."""
+    def __init__(self, ranked: Sequence[str], max_age_s: float, held: Collection[str] = ()) -> None:
+        """Know these sources, and which of them are `held`; nobody has said anything."""
         self._ranked = tuple(ranked)
+        self._held = frozenset(held)
         self.max_age_s = max_age_s
         self._orders: dict[str, Order] = {}
         self._newest = ""
@@ -48,8 +55,9 @@ class Sources:
         order = self._orders[source] = Order(source, setpoint, now_s)
         self._newest = source
         driving = self.driving(now_s) or order
-        if driving is not order and self.max_age_s == 0:
-            del self._orders[source]
+        if self.max_age_s == 0:
+            # Nothing grows old: what does not drive now must not do so later.
+            self._orders = {driving.source: driving}
         return driving
 
     def driving(self, now_s: float) -> Order | None:
@@ -66,7 +74,14 @@ class Sources:
         """Wait for new commands of everybody."""
         self._orders.clear()
 
+    def limit_s(self, source: str) -> float:
+        """How old a command of this source may grow, 0 for any age."""
+        if source not in self._held:
+            return self.max_age_s
+        return min(self.max_age_s or HELD_AGE_S, HELD_AGE_S)
+
     def _counts(self, order: Order, now_s: float) -> bool:
-        if self.max_age_s == 0:
+        limit_s = self.limit_s(order.source)
+        if limit_s == 0:
             return order.setpoint.speed_m_s != 0 or order.source == self._newest
-        return order.age_s(now_s) < self.max_age_s
+        return order.age_s(now_s) < limit_s

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.safety_sources import Sources
+from robot.safety_sources import HELD_AGE_S, Sources
 from robot.words import STOP, DriveSetpoint
 
 KEYS, ACTION, WORDS = "/drive_teleop", "/drive_action", "/drive"
@@ -125,3 +125,15 @@ def test_without_an_age_an_ignored_command_never_drives(
         order = sources.driving(now_s)
         assert order is not None
         assert order.heard_s not in ignored
+
+
+def test_a_person_who_is_gone_holds_nothing_even_where_nothing_grows_old() -> None:
+    sources = Sources(RANKED, 0.0, {KEYS})
+    sources.hear(WORDS, FAST, 0.0)
+    assert sources.hear(KEYS, SLOW, 100.0).source == KEYS
+    assert driver(sources, 100.0 + HELD_AGE_S - 0.01) == KEYS
+    assert driver(sources, 100.0 + HELD_AGE_S) == "", "nor does what was said before revive"
+    assert sources.hear(WORDS, FAST, 101.0).source == WORDS
+    assert driver(sources, 1e6) == WORDS
+    assert Sources(RANKED, 9.0, {KEYS}).limit_s(KEYS) == HELD_AGE_S
+    assert Sources(RANKED, 0.1, {KEYS}).limit_s(KEYS) == 0.1
