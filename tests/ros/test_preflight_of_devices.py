@@ -38,6 +38,9 @@ def peer(module_domain: int) -> Iterator[Peer]:
 def _ports(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for device in DEVICES:
         monkeypatch.setenv(f"DECK_{device.upper()}_PORT", str(folder / device))
+    # Cameras and sound cards of this machine are none of this test's.
+    for media in ("CAMERA", "SOUND"):
+        monkeypatch.setenv(f"DECK_{media}_KIND", "none")
 
 
 def preflight() -> tuple[int | None, dict[str, str]]:
@@ -69,7 +72,7 @@ def test_devices_in_each_others_place(folder: Path, monkeypatch: pytest.MonkeyPa
     assert found["tof_rear"].startswith("ok")
 
 
-def test_silence_a_pulled_cable_noise_and_another_program(folder: Path, peer: Peer) -> None:
+def test_silence_a_pulled_cable_and_another_program(folder: Path, peer: Peer) -> None:
     set_parameter(peer, "mock_robot", "pico", "silent")
     set_parameter(peer, "mock_robot", "tof_front", "unplugged")
     other = serial.Serial(str(folder / "tof_rear"), exclusive=True)
@@ -77,13 +80,10 @@ def test_silence_a_pulled_cable_noise_and_another_program(folder: Path, peer: Pe
         code, found = preflight()
     finally:
         other.close()
-        set_parameter(peer, "mock_robot", "pico", "noise")
+        set_parameter(peer, "mock_robot", "pico", "fine")
         set_parameter(peer, "mock_robot", "tof_front", "fine")
     assert code == 2
     assert "the port is silent: no Pico" in found["pico"]
     assert "there is no such port" in found["tof_front"]
     assert "DECK_TOF_FRONT_PORT=" in found["tof_front"]
     assert "has it" in found["tof_rear"]
-    _code, found = preflight()
-    set_parameter(peer, "mock_robot", "pico", "fine")
-    assert "pico" in found, "a noisy Pico is told of in some way, not with a traceback"

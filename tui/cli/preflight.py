@@ -40,7 +40,7 @@ def preflight_command(options: Namespace) -> int:
 
     findings = examine(profile)
     if not findings:
-        write(_("{name} names no serial device").format(name=profile.name))
+        write(_("{name} names no device").format(name=profile.name))
         return 0
     show(findings, Paint(sys.stdout))
     bad = sum(finding.level is Level.FAIL for finding in findings)
