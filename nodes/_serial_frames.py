@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 FRAMES = "~/frames"
 _LOOK_EVERY_S = 1.0
 """How often it is looked whether somebody is subscribed."""
-_TELL_EVERY_S = 0.1
+_TELL_EVERY_S = 0.2
 _MOST_OCTETS = 16_384
 """Bytes of one batch that are kept: of more, nobody could read the frames."""
 

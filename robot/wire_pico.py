@@ -40,7 +40,7 @@ FLAGS = {
 STANDING_FLAGS = frozenset("EWLRUHA")
 """Any of these keeps the motors off."""
 
-_INTEGER = re.compile(r"0|-?[1-9][0-9]{0,9}")
+_INTEGERS = re.compile(r"(?:0|-?[1-9][0-9]{0,9})(?:,(?:0|-?[1-9][0-9]{0,9}))*")
 _VERSION = re.compile(r"[0-9A-Za-z._-]{1,16}")
 
 
@@ -242,11 +242,14 @@ def _telemetry(words: list[str]) -> Telemetry | None:
 
 def _integers(words: list[str], limits: tuple[Limits, ...]) -> list[int] | None:
     """The numbers, None unless there is one inside of each limit, written in the shortest way."""
-    if len(words) != len(limits) or not all(map(_INTEGER.fullmatch, words)):
+    # A hundred lines a second are read so, and one match for all words costs half as much.
+    if len(words) != len(limits) or not _INTEGERS.fullmatch(",".join(words)):
         return None
     numbers = [int(word) for word in words]
-    pairs = zip(numbers, limits, strict=True)
-    return numbers if all(number in limit for number, limit in pairs) else None
+    for number, limit in zip(numbers, limits, strict=True):
+        if not limit.low <= number <= limit.high:
+            return None
+    return numbers
 
 
 def _measured(milli: int) -> float | None:

@@ -131,7 +131,7 @@ def test_without_a_listener_nothing_is_kept_and_it_looks_once_a_second() -> None
     assert (node.published, node.timer.timer_period_ns) == ([], 0)
     node.listeners = 1
     node.look()
-    assert node.timer.timer_period_ns == 100_000_000
+    assert node.timer.timer_period_ns == 200_000_000
     frames.note("in", b"two")
     frames.note("out", b"x" * 20_000)
     node.look()
