@@ -124,7 +124,7 @@ def head(lasting: tuple[Head, ServoBench]) -> tuple[Head, ServoBench]:
     head, bench = lasting
     bench.says = b""
     bench.fail(FINE)
-    head.wait_told(DiagnosticStatus.OK, "not measured")
+    wait_until(lambda: head.turn(0, 0) == 1, "a head that turns")
     head.wait_says()
     bench.taken = b""
     return lasting
