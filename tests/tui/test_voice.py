@@ -75,6 +75,16 @@ async def test_the_newest_is_at_the_bottom_and_long_talk_drops_the_oldest() -> N
         assert "word 295" in shown[0]
 
 
+async def test_one_line_tells_who_and_how_it_begins() -> None:
+    panel = VoicePanel()
+    async with alone(panel, 30, 2).run_test(size=(60, 20)):
+        panel.hear("robot", b"I look round and drive on.", NOW_S)
+        panel.show_level(-30.0)
+        talk, level = rows(panel)
+        assert talk == "◂ robot I look round and driv…"
+        assert "-30 dB" in level
+
+
 async def test_a_stream_of_sound_is_one_entry_that_grows() -> None:
     panel = VoicePanel()
     async with alone(panel, 70, 5).run_test(size=(80, 20)):

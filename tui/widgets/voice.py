@@ -95,6 +95,10 @@ class VoicePanel(Drawing):
         return self._dbfs is not None or self._missing
 
     def _talk(self, width: int, height: int) -> list[Line]:
+        if height == 1:
+            newest = self._sayings[-1]
+            lead, room = self._lead(newest, width)
+            return [[*lead, Ink(fit(newest.what.words, room).rstrip(), _body(newest.what))]]
         lines: list[Line] = []
         for saying in reversed(self._sayings):
             lines[:0] = self._saying_lines(saying, width)
@@ -103,16 +107,24 @@ class VoicePanel(Drawing):
         return lines
 
     def _saying_lines(self, saying: Saying, width: int) -> list[Line]:
+        lead, room = self._lead(saying, width)
+        first, *rest = folded(saying.what.words, room)
+        body = _body(saying.what)
+        indent = Ink(" " * (width - room))
+        return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
+
+    def _lead(self, saying: Saying, width: int) -> tuple[Line, int]:
+        """Who and when, and the cells that are left for what."""
         names = {"human": _("human"), "robot": _("robot")}
         name = fit(names[saying.who], max(map(cell_len, names.values())))
         when = f"{clock(saying.time_s, 8)} " if width >= WITH_TIME_FROM else ""
         sign, look = ("▸", "accent") if saying.who == "human" else ("◂", "second")
         lead = [Ink(when, "muted"), Ink(f"{sign} {name} ", look)]
-        room = max(LEAST_TEXT, width - sum(cell_len(ink.text) for ink in lead))
-        first, *rest = folded(saying.what.words, room)
-        body = "muted" if saying.what.is_sound else ""
-        indent = Ink(" " * (width - room))
-        return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
+        return lead, max(LEAST_TEXT, width - sum(cell_len(ink.text) for ink in lead))
+
+
+def _body(what: Heard) -> str:
+    return "muted" if what.is_sound else ""
 
 
 def _one_sound(last: Saying, saying: Saying) -> bool:
