@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 from graph.data import GraphUpdate, Sample, TopicRow, Trouble
@@ -58,6 +59,7 @@ def reading(place: str, metres: float) -> Sample:
     return sample(f"/sensor/sonar_{place}", FLOAT, {"data": metres}, 8)
 
 
+@lru_cache
 def room(frame: str = "odom") -> Sample:
     """The room of the simulated robot."""
     grid = grid_of(World().room)
@@ -68,7 +70,8 @@ def room(frame: str = "odom") -> Sample:
     return sample("/map", GRID, value, grid.cells.size)
 
 
-def driven() -> tuple[World, list[Pose]]:
+@lru_cache
+def driven() -> tuple[World, tuple[Pose, ...]]:
     """The robot after some curves, and where it was on the way, ten times a second."""
     world, path = World(front=Sonar(noise_m=0.0), rear=Sonar(forward=False, noise_m=0.0)), []
     radius = world.body.wheel_radius_m
@@ -78,7 +81,7 @@ def driven() -> tuple[World, list[Pose]]:
         for _tenth in range(round(10 * seconds)):
             world.advance(0.1)
             path.append(world.pose)
-    return world, path
+    return world, tuple(path)
 
 
 def map_update(
