@@ -65,6 +65,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         #nodes { height: 1fr; }
         #shelf { height: 1fr; }
         #talk { height: 1fr; }
+        &.-flat #teleop { height: 4; }
         #command { display: none; padding: 0 1; border-top: none; background: $panel; }
         &.-driven #command { display: block; }
         &.-home.-shelved #shelf, &.-wide.-shelved #shelf { row-span: 2; }

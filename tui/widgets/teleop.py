@@ -15,7 +15,7 @@ from robot.words import STOP, DriveSetpoint
 from tui import clock
 from tui.actions import REGISTRY, Acting, bindings
 from tui.actions.app import EmergencyRelease
-from tui.actions.teleop import TELEOP_ACTIONS, MoveAction
+from tui.actions.teleop import TELEOP_ACTIONS, MoveAction, OpenTeleop
 from tui.emergency import SAFETY_TOPIC
 from tui.i18n import N_, _
 from tui.panels.panel import newest, row_of
@@ -64,7 +64,6 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         border-title-color: $foreground;
         &:focus { border-top: heavy $accent; }
     }
-    .-flat TeleopPanel { height: 4; }
     """
     topics: ClassVar = frozenset({DRIVE_SAFE, WHEELS, SAFETY_TOPIC})
     """What it shows."""
@@ -188,6 +187,10 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         """Leave nothing moving."""
         self.release()
 
+    def on_focus(self) -> None:
+        """The keys come here."""
+        self.redraw()
+
     def on_blur(self) -> None:
         """The keys go elsewhere, or the terminal has lost the focus."""
         self.release()
@@ -250,8 +253,15 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             return _("emergency stop: nothing moves; {key} releases").format(key=key), "stop"
         if not self._route.topic:
             return nowhere_words(), "warn"
+        if not self.has_focus:
+            key = self._deck.keys_of(OpenTeleop)[0]
+            words = _("the keys go elsewhere now; {key}, or a click here, brings them back")
+            return words.format(key=key), "warn"
         if self._error:
             return plain(self._error, 400), "bad"
+        return self._told_by_gate()
+
+    def _told_by_gate(self) -> tuple[str, str]:
         if not self._route.gated:
             return _("no gate: the keys drive past every sonar"), "warn"
         if self._gate is None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from rich.cells import cell_len
+
 from robot.words import STOP, DriveSetpoint
 from tui.i18n import _
 from tui.teleop import TeleopLimits
@@ -60,13 +62,16 @@ class _Column(NamedTuple):
     speed: str
     detail: str
     look: str
+    short: str = ""
 
     def line(self, row: int, room: int) -> Line:
         """One of its five lines: the title, three of the number, the detail."""
         if row == 0:
             return [Ink(fit(self.title, room), "muted")]
         if row == 4:
-            return [Ink(fit(self.detail, room), "strong")]
+            # Where there is no room for words the arrows do.
+            detail = self.detail if cell_len(self.detail) <= room else self.short
+            return [Ink(fit(detail, room), "strong")]
         unit = _("{speed} m/s").format(speed="").strip() if row == 3 else ""
         number = [*big(self.speed, self.look)[row - 1], Ink(" ")]
         return [*number, Ink(fit(unit, max(0, room - cells_of(number))), "muted")]
@@ -77,7 +82,8 @@ def _column(
 ) -> _Column:
     if setpoint is None:
         return _Column(title, "---", missing or _("no word yet"), "muted")
-    return _Column(title, number_words(setpoint.speed_m_s), detail or _way(setpoint), look)
+    speed, short = number_words(setpoint.speed_m_s), _arrows(setpoint)
+    return _Column(title, speed, detail or _way(setpoint), look, short)
 
 
 def _gone() -> str:
@@ -100,6 +106,16 @@ def _way(setpoint: DriveSetpoint) -> str:
     if abs(speed) >= STANDING_M_S:
         way = "↑ " + _("forward") if speed > 0 else "↓ " + _("back")
     return f"{way}  {_angle(angle)}".rstrip()
+
+
+def _arrows(setpoint: DriveSetpoint) -> str:
+    """`↑ ← 0.30`."""
+    speed, angle = setpoint.speed_m_s, setpoint.steering_rad
+    way = "■" if not abs(speed) >= STANDING_M_S else "↑" if speed > 0 else "↓"
+    side = (
+        "" if not abs(angle) >= STRAIGHT_RAD else f" {'←' if angle > 0 else '→'} {abs(angle):.2f}"
+    )
+    return way + side
 
 
 def _angle(angle: float) -> str:
@@ -135,7 +151,7 @@ def _small(columns: tuple[_Column, ...], width: int) -> Line:
     line: Line = []
     for column in columns:
         line += [Ink(column.title + " ", "muted"), Ink(column.speed + "  ", column.look)]
-    return beside(line, [Ink(columns[0].detail, "strong")], width)
+    return beside(line, [Ink(columns[0].short, "strong")], width)
 
 
 def _limits(limits: TeleopLimits, width: int) -> Line:
@@ -149,5 +165,5 @@ def _limits(limits: TeleopLimits, width: int) -> Line:
         Ink(angle + " ", "strong"),
         Ink("[ ]", "muted"),
     ]
-    right: Line = [Ink(_("hold ↑ ↓ ← → or W A S D; let go: stop"), "muted")]
+    right: Line = [Ink(_("hold ↑↓←→ or WASD; let go: stop"), "muted")]
     return beside(left, right, width) if cells_of(left) + cells_of(right) < width else left
