@@ -78,7 +78,7 @@ def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, Wanted]:
     """Return what is known of the ports of devices, {"pico": {"port": "auto", "kind": "pico"}}."""
     found: dict[str, Wanted] = {}
     for device, settings in devices.items():
-        port = settings.get("port")
+        port = settings.get("port") if isinstance(settings, dict) else None
         if not isinstance(port, str):
             continue
         ids = settings.get(LISTED) or KINDS.get(str(settings.get("kind", "")), ())

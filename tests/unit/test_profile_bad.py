@@ -62,7 +62,7 @@ BAD = {
     "an unknown panel": (
         "panels: [sonr]\nnodes: {a: {exec: [x]}}",
         (
-            "1:10: panels[0]: expected one of sonar, wheels, camera, head, voice, composer,"
+            "1:10: panels[0]: expected one of sonar, wheels, map, camera, head, voice, composer,"
             " found the"
             " text 'sonr' (did you mean sonar?)"
         ),

@@ -103,3 +103,12 @@ def test_other_names_in_braces_stay(tmp_path: Path) -> None:
     node = loaded(tmp_path, "domain: 5\n" + text).nodes["a"]
     assert node.exec == ("x", "${HOME}", "${run_dirs}", "${}")
     assert node.env == {"D": "5"}
+
+
+@pytest.mark.parametrize("hardware", ["mock", "real"])
+@pytest.mark.parametrize("pico", ["5", "[1]", "{port: {x: 1}}", "null", "{mock: 3}"])
+def test_devices_that_make_no_sense_are_told(pico: str, hardware: str, tmp_path: Path) -> None:
+    text = f'devices: {{pico: {pico}}}\nnodes: {{a: {{exec: [x, "${{devices.pico.port}}"]}}}}'
+    path = written(tmp_path, text)
+    with pytest.raises(ProfileError):
+        load_profile(path, hardware=hardware, environ={}, ports=lambda: [PICO])
