@@ -23,6 +23,8 @@ _SEVERITIES = {
     Kind.MORE: Severity.INFO,
 }
 _MARKS = {Kind.NOISE: "~ ", Kind.BAD: "✗ ", Kind.MORE: "⋯ "}
+_READABLE = 4
+"""Fewer bytes are no text, even if each of them is a letter."""
 _WIDEST = 64
 """Cells of the words up to which the bytes stand in a column."""
 
@@ -71,6 +73,6 @@ def octets_text(octets: bytes, *, as_hex: bool = False) -> str:
     """Bytes as text where they are a line of text, else in hex."""
     more = " …" if len(octets) >= MOST_OCTETS else ""
     line = octets.rstrip(b"\r\n")
-    if not as_hex and line and all(0x20 <= octet < 0x7F for octet in line):
+    if not as_hex and len(line) >= _READABLE and all(0x20 <= octet < 0x7F for octet in line):
         return line.decode("ascii") + more
     return octets.hex(" ").upper() + more

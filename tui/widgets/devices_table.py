@@ -46,7 +46,8 @@ class DevicesTable(Rows):
 
     def show_devices(self, devices: Sequence[Device], now_s: float) -> None:
         """Show these; ages are counted up to `now_s` (Unix seconds)."""
-        layout = _layout(self.size.width)
+        # The table is as wide as the screen, and has no width of its own before it is first seen.
+        layout = _layout(self.screen.size.width)
         self.show(_columns(layout), [_row(device, layout, now_s) for device in devices])
 
 

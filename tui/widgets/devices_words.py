@@ -72,7 +72,8 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
         return words.format(name=name, topic=f"…/{name}/frames")
     if device.connected is False:
         return _("Nothing is connected, so nothing comes. The driver tries again by itself.")
-    return _("Listening on {topic}; nothing has gone over the port yet.").format(topic=topic)
+    words = _("Listening on {topic}: within a second comes what goes over the port, if anything.")
+    return words.format(topic=topic)
 
 
 def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> list[str]:
