@@ -36,17 +36,18 @@ def write_film(path: Path, pictures: int = 20, fps: float = 50.0) -> None:
 class Stream:
     """Serves Motion JPEG on localhost while it is used in a `with`."""
 
-    def __init__(self, port: int = 0, *, silent: bool = False) -> None:
-        """A silent one takes a request and never answers; port 0 is any that is free."""
+    def __init__(self, port: int = 0, *, pictures: int | None = None) -> None:
+        """After so many pictures it falls silent, with 0 it never answers; port 0 is any."""
         self.asked = threading.Event()
         self._ending = threading.Event()
+        self._pictures = pictures
         stream = self
 
         class Handler(BaseHTTPRequestHandler):
             def do_GET(self) -> None:
                 stream.asked.set()
                 with contextlib.suppress(OSError):
-                    stream._ending.wait() if silent else stream._serve(self)
+                    stream._serve(self)
 
             def log_message(self, *_: object) -> None:
                 pass
@@ -67,6 +68,8 @@ class Stream:
         self._server.server_close()
 
     def _serve(self, handler: BaseHTTPRequestHandler) -> None:
+        if self._pictures == 0:
+            self._ending.wait()
         handler.send_response(200)
         handler.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={_BOUNDARY}")
         handler.end_headers()
@@ -76,3 +79,5 @@ class Stream:
             head = f"--{_BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}"
             handler.wfile.write(f"{head}\r\n\r\n".encode() + jpeg.tobytes() + b"\r\n")
             number += 1
+            if number == self._pictures:
+                self._ending.wait()

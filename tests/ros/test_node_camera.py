@@ -140,9 +140,16 @@ def test_a_stream_dies_and_comes_back(peer: Peer, ros_domain: int) -> None:
         assert "Traceback" not in node.output
 
 
-def test_a_read_that_blocks_does_not_hold_up_the_end(ros_domain: int) -> None:
-    with Stream(silent=True) as stream, camera(ros_domain, stream.url) as node:
+@pytest.mark.parametrize("pictures", [0, 3])
+def test_a_read_that_blocks_does_not_hold_up_the_end(
+    peer: Peer, ros_domain: int, pictures: int
+) -> None:
+    told = peer.hear("/diagnostics", DiagnosticArray)
+    with Stream(pictures=pictures) as stream, camera(ros_domain, stream.url) as node:
         wait_until(stream.asked.is_set, "a request")
+        if pictures:
+            node.wait_for_words("is open, but no picture came for 2 s")
+            wait_told(told, DiagnosticStatus.ERROR, "no picture came for 2 s")
         began_s = time.monotonic()
         node.send(signal.SIGTERM)
         assert node.wait() == 0
