@@ -89,8 +89,8 @@ def test_an_observer_that_ends_rests_with_its_last_word(watcher: Watcher, peer: 
 
 def test_what_cannot_be_held_says_why(watcher: Watcher, peer: Peer) -> None:
     ready(watcher, peer)
+    wrong = Holding({"drive": {"speedy": 1.0}}, {}, 20.0, time.monotonic() + 1.0)
     with pytest.raises(FieldError, match="speedy"):
-        wrong = Holding({"drive": {"speedy": 1.0}}, {}, 20.0, time.monotonic() + 1.0)
         watcher.observer.hold("/drive", DRIVE, wrong).result(30)
     peer.hear("/other", Float32)
     watcher.wait_for("/other", lambda row: row.subscribers == 1, "another type")

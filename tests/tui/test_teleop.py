@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -13,7 +14,7 @@ from textual.pilot import Pilot
 
 from graph.data import GraphUpdate
 from launcher.events import ClosedEvent
-from tests.tui.app_runs import opened
+from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
     TOPICS,
     RecordedGraph,
@@ -26,6 +27,7 @@ from tests.tui.recorded import (
 )
 from tests.tui.snapshots import Look, SnapCompare, every_look
 from tui import clock
+from tui.actions.teleop import OpenTeleop
 from tui.app import DeckApp
 from tui.emergency import SAFETY_TOPIC
 from tui.screens.deck import LessonDeck
@@ -81,7 +83,7 @@ def pad_of(update: GraphUpdate) -> Pad:
 
 @asynccontextmanager
 async def driving(
-    pad: Pad, size: tuple[int, int] = (120, 40)
+    pad: Pad, size: tuple[int, int] = (80, 24)
 ) -> AsyncIterator[tuple[DeckApp, Pilot[Any], TeleopPanel]]:
     async with opened(pad, size=size) as (app, pilot):
         await pilot.press("t")
@@ -111,7 +113,7 @@ async def test_opening_it_makes_a_publisher_and_publishes_nothing() -> None:
         assert not pad.graph.repeated
 
 
-async def test_each_key_holds_a_command_for_a_while() -> None:
+async def test_each_key_holds_a_command_for_a_while_within_limits_that_keys_change() -> None:
     keys = {
         (0.2, 0.0): ("up", "w", "ц", "W"),
         (-0.2, 0.0): ("down", "s", "ы"),
@@ -133,23 +135,10 @@ async def test_each_key_holds_a_command_for_a_while() -> None:
         await pilot.pause()
         assert app.is_running
         assert pad.link.asked == []
-
-
-async def test_the_limits_are_changed_by_plus_and_minus_and_brackets() -> None:
-    pad = pad_of(gated())
-    async with driving(pad) as (_app, pilot, panel):
         await pilot.press("plus", "plus", "minus", "right_square_bracket", "up", "a")
         assert held(pad)[-1] == (TELEOP, 0.25, 0.35)
         assert "0.25 m/s" in text_of(panel)
         assert "0.35 rad" in text_of(panel)
-
-
-async def test_without_a_gate_for_the_keys_it_drives_by_the_lessons_topic() -> None:
-    pad = Pad()
-    async with driving(pad) as (_app, pilot, panel):
-        assert str(panel.border_title).endswith("→ /drive")
-        await pilot.press("up")
-        assert held(pad) == [(DRIVE, 0.2, 0.0)]
 
 
 async def test_where_nobody_listens_nothing_is_held_and_it_says_why() -> None:
@@ -161,10 +150,12 @@ async def test_where_nobody_listens_nothing_is_held_and_it_says_why() -> None:
         assert "Nobody listens to /drive_teleop or /drive: nothing will move." in text_of(panel)
 
 
-async def test_a_gate_that_comes_takes_over() -> None:
+async def test_it_drives_by_the_lessons_topic_until_a_gate_comes() -> None:
     pad = Pad()
-    async with driving(pad) as (_app, pilot, _panel):
+    async with driving(pad) as (_app, pilot, panel):
+        assert str(panel.border_title).endswith("→ /drive")
         await pilot.press("up")
+        assert held(pad) == [(DRIVE, 0.2, 0.0)]
         pad.graph.show(gated())
         await pilot.pause()
         assert pad.graph.let_go_of == [DRIVE]
@@ -193,6 +184,8 @@ async def test_whatever_takes_the_keys_away_stops() -> None:
             await pilot.pause()
             assert set(pad.graph.let_go_of[before:]) == {TELEOP}, leave
             assert panel.asked.speed_m_s == 0, leave
+            if leave == "tab":
+                assert "the keys go elsewhere now; t, or a click" in text_of(panel)
             await pilot.press(*back)
             await pilot.pause()
             assert bool(app.screen.query(TeleopPanel)) == (leave not in {"escape", "е"})
@@ -259,14 +252,14 @@ async def test_what_cannot_be_published_is_told() -> None:
         assert "/drive_teleop carries ␛[31mother" in text_of(panel)
 
 
-async def test_it_is_not_offered_for_a_recording_or_without_a_session() -> None:
-    pad = pad_of(gated())
-    async with opened(pad) as (app, pilot):
-        app.feed.link = None
-        await pilot.press("t")
-        await pilot.pause()
-        assert not app.screen.query(TeleopPanel)
-        app.feed.link = pad.link
+async def test_it_is_offered_only_where_there_is_a_robot() -> None:
+    app = DeckApp(Pad(), LESSON_9)
+    screen = cast("LessonDeck", SimpleNamespace(feed=app.feed))
+    assert not OpenTeleop.possible(screen)
+    app.feed.link = RecordedSession()
+    assert OpenTeleop.possible(screen)
+    app.feed.link.replay = object()  # type: ignore[attr-defined]
+    assert not OpenTeleop.possible(screen)
 
 
 @pytest.mark.parametrize(
