@@ -109,7 +109,7 @@ class ElectronicDifferential(LessonNode):
         self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
         self._emergency = EmergencyStop(self, self._emergency_changed)
         self.create_subscription(AckermannDriveStamped, topic, self._hear, DEPTH)
-        self._timer = self.every(1.0 / self.number("rate"), self._publish)
+        self._timer = self.every(1.0 / self.number("rate"), self._repeat)
         self._deadline = self.every(1.0, self._too_late)
         self._await_next()
         self.say.info(_STARTED, topic=topic)
@@ -161,6 +161,13 @@ class ElectronicDifferential(LessonNode):
             change_period(self._deadline, max_age_s)
         else:
             self._deadline.cancel()
+
+    def _repeat(self) -> None:
+        left_ns = self._deadline.time_until_next_call()
+        if left_ns is not None and left_ns <= 0:
+            # Who was stopped finds both timers due, in any order.
+            self._too_late()
+        self._publish()
 
     def _too_late(self) -> None:
         self._deadline.cancel()
