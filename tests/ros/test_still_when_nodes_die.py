@@ -22,7 +22,7 @@ from tests.ros.devices import set_parameter
 from tests.ros.peer import LATCHED
 from tests.ros.robot_nodes import BELIEVED_S, NODES, RobotNodes, shuffled
 from tests.ros.test_node_chassis import wheels as wheel_command
-from tests.ros.wheels import SPEED
+from tests.ros.wheels import SPEED, STEERING
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def module_nodes(
 @pytest.fixture
 def nodes(module_nodes: RobotNodes) -> Iterator[RobotNodes]:
     """Everything runs, nobody commands, and the robot stands."""
+    module_nodes.mend()
     yield module_nodes
     module_nodes.wheels.drive(0.0)
     module_nodes.wheels.wait_off()
@@ -142,7 +143,7 @@ def test_what_was_commanded_before_a_fault_is_over_does_not_count(nodes: RobotNo
         ("battery", 5.0, 7.4),
     )
     for trouble, value, fine in troubles:
-        wheels.command("/wheel_commands", partial(wheel_command, way * 4.0))
+        wheels.command("/wheel_commands", partial(wheel_command, way * 4.0, STEERING))
         wheels.wait_moving(way)
         set_parameter(peer, "mock_robot", trouble, value)
         wheels.assert_stands()
@@ -150,7 +151,7 @@ def test_what_was_commanded_before_a_fault_is_over_does_not_count(nodes: RobotNo
         set_parameter(peer, "mock_robot", trouble, fine)
         wheels.assert_stays()
         way = -way
-    wheels.command("/wheel_commands", partial(wheel_command, way * 4.0))
+    wheels.command("/wheel_commands", partial(wheel_command, way * 4.0, STEERING))
     wheels.wait_moving(way)
     set_parameter(peer, "chassis", "max_age_s", 1.0)
     nodes.start("electronic_differential")
@@ -168,7 +169,7 @@ def test_an_emergency_stop_holds_in_each_place_by_itself(nodes: RobotNodes) -> N
     assert not any(message.drive.speed for message in allowed)
     # The chassis, without anybody before it.
     nodes.end("safety_stop", "electronic_differential", number=signal.SIGKILL)
-    wheels.command("/wheel_commands", lambda: wheel_command(4.0))
+    wheels.command("/wheel_commands", lambda: wheel_command(4.0, STEERING))
     wheels.assert_stays()
     # The Pico, without any of them, after its cable was out.
     nodes.end("chassis", number=signal.SIGKILL)
