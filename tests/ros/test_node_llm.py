@@ -151,6 +151,7 @@ def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(
     parser: Parser, ros_domain: int
 ) -> None:
     with NodeProcess("nodes.head_controller", ros_domain, params={"move_time": 30.0}) as slow:
+        slow.wait_for_words("ready for set_head_position")
         parser.send(HEAD, {**HEAD, "pan": 5})
         slow.wait_for_words("pan -45")
         parser.send({**HEAD, "pan": 7})
