@@ -21,7 +21,7 @@ from tui.preflight.answers import Answer
 from tui.preflight.holders import holders
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 WITHIN_S = 12.0
 OFF = "none"
@@ -83,7 +83,8 @@ def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
         there = json.loads(_run(SOUND) or "[]")
     except ValueError:
         there = []
-    found, missing = [], []
+    found: list[str] = []
+    missing: list[tuple[str, str]] = []
     for setting, name in wanted:
         at = 1 if setting == "microphone" else 2
         fitting = [
@@ -94,13 +95,21 @@ def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
         if fitting:
             found.append(fitting[0])
         else:
-            missing.append(variable(device, setting) + f"={name or _('the default')}")
+            missing.append((setting, name))
     if not missing:
         return "", Answer(Level.OK, ", ".join(dict.fromkeys(found)))
-    names = ", ".join(str(each[0]) for each in there) or _("none")
-    text = _("not found: {missing}; sound devices: {names}")
-    mend = _("plug it in, or name a part of its name in the variable; `none` goes without")
-    return "", Answer(Level.FAIL, text.format(missing=", ".join(missing), names=names), mend)
+    return "", _no_sound(device, missing, [str(each[0]) for each in there])
+
+
+def _no_sound(device: str, missing: Sequence[tuple[str, str]], there: Sequence[str]) -> Answer:
+    titles = {"microphone": _("microphone"), "speaker": _("loudspeaker")}
+    wishes = [f"{titles[setting]} {name}".rstrip() for setting, name in missing]
+    text = _("not found: {missing}; sound devices: {names}").format(
+        missing=", ".join(wishes), names=", ".join(there) or _("none")
+    )
+    mend = _("plug it in, or give a part of its name to {variables}; `none` goes without")
+    variables = ", ".join(variable(device, setting) for setting, _name in missing)
+    return Answer(Level.FAIL, text, mend.format(variables=variables))
 
 
 def _is(wanted: str, index: int, name: str) -> bool:
