@@ -29,7 +29,7 @@ def is_late(say: Speech, stamp: Time, max_age_s: float) -> bool:
     """Whether a command is older than that, which is told; 0 seconds: any age will do."""
     if not max_age_s or not (stamp.sec or stamp.nanosec):
         return False
-    age_s = time.time() - stamp.sec - stamp.nanosec * 1e-9
+    age_s = float(time.time() - stamp.sec - stamp.nanosec * 1e-9)
     late = max_age_s < age_s < _ANOTHER_CLOCK_S
     if late:
         say.warn(_LATE, every_s=1.0, age=age_s)
