@@ -61,6 +61,19 @@ def test_check_tells_every_problem_with_its_place(
     ]
 
 
+def test_check_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    written(tmp_path, "domain: 300\nnodes: {a: {exec: [x]}}", "bad.yaml")
+    written(tmp_path, "domain: 150\nnodes: {a: {exec: [x]}}", "high.yaml")
+    assert main(["check", "bad.yaml", "--json"]) == 2
+    (bad,) = json.loads(capsys.readouterr().out)
+    (problem,) = bad["problems"]
+    assert (bad["path"], problem["line"], problem["field"]) == ("bad.yaml", 1, "domain")
+    assert main(["check", "high.yaml", "--json"]) == 0
+    (high,) = json.loads(capsys.readouterr().out)
+    assert high["problems"] == []
+    assert [warning["line"] for warning in high["warnings"]] == [1]
+
+
 def test_check_speaks_russian(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     written(tmp_path, "nodes: {a: {run: nodes.helo}}", "bad.yaml")
     assert main(["check", "bad.yaml", "--lang", "ru"]) == 2

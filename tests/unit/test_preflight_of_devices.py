@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import pty
 import tty
@@ -24,7 +25,7 @@ from robot.wire_pico import encode as encode_pico
 from robot.wire_tfluna import TofFrame
 from robot.wire_tfluna import encode as encode_tof
 from tui.cli import main
-from tui.doctor import Level
+from tui.doctor import Finding, Level
 from tui.preflight import examine, media
 from tui.preflight.answers import Answer, ask
 from tui.preflight.holders import holders
@@ -290,6 +291,17 @@ def test_what_the_command_needs(
 ) -> None:
     assert main(arguments) == 2
     assert words in capsys.readouterr().err
+
+
+def test_findings_for_programs(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = [Finding("device.pico", Level.FAIL, "gone", "bring it")]
+    monkeypatch.setattr("tui.preflight.examine", lambda _profile: found)
+    assert main(["check", "robot", "--hardware", "real", "--preflight", "--json"]) == 2
+    assert json.loads(capsys.readouterr().out) == [
+        {"key": "device.pico", "level": "fail", "text": "gone", "mend": "bring it"}
+    ]
 
 
 def test_a_lesson_without_devices_has_nothing_to_be_asked(

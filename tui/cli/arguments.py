@@ -140,6 +140,7 @@ def _add_check(parser: Parser) -> None:
         action="store_true",
         help=_("ask the devices too, with --hardware real: found, permitted, free, answering"),
     )
+    _add_json(parser)
     _add_profile_options(parser)
     parser.epilog = _("Exit code: 0 if all is well, 2 if not. Nothing moves by it.")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile, list_profiles
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from launcher.catalog import ProfileEntry
     from launcher.errors import ProfileProblem
+    from launcher.profile import Profile
 
 
 def list_command(options: Namespace) -> int:
@@ -51,18 +53,38 @@ def check_command(options: Namespace) -> int:
         paths = [find_profile(options.profile)]
     else:
         paths = [entry.path for entry in list_profiles()]
+    if options.json:
+        found = [_checked(path, options) for path in paths]
+        write(json.dumps(found, ensure_ascii=False, indent=2))
+        return 2 if any(each["problems"] for each in found) else 0
     return max([_check(path, options) for path in paths], default=0)
+
+
+def _load(path: Path, options: Namespace) -> Profile:
+    return load_profile(
+        path, hardware=options.hardware, overrides=options.overrides, domain=options.domain
+    )
+
+
+def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]] | str]:
+    """Return what is wrong with a profile, for programs."""
+    problems: tuple[ProfileProblem, ...] = ()
+    warnings: tuple[ProfileProblem, ...] = ()
+    try:
+        warnings = _load(path, options).warnings
+    except ProfileError as error:
+        problems = error.problems
+    return {
+        "path": str(path),
+        "problems": [asdict(problem) for problem in problems],
+        "warnings": [asdict(problem) for problem in warnings],
+    }
 
 
 def _check(path: Path, options: Namespace) -> int:
     paint = Paint(sys.stdout)
     try:
-        profile = load_profile(
-            path,
-            hardware=options.hardware,
-            overrides=options.overrides,
-            domain=options.domain,
-        )
+        profile = _load(path, options)
     except ProfileError as error:
         for problem in error.problems:
             write(_line(problem, paint, RED))

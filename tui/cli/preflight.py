@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import sys
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile
@@ -39,11 +41,14 @@ def preflight_command(options: Namespace) -> int:
     from tui.preflight import examine
 
     findings = examine(profile)
+    bad = sum(finding.level is Level.FAIL for finding in findings)
+    if options.json:
+        write(json.dumps([asdict(finding) for finding in findings], ensure_ascii=False, indent=2))
+        return NOT_READY if bad else 0
     if not findings:
         write(_("{name} names no device").format(name=profile.name))
         return 0
     show(findings, Paint(sys.stdout))
-    bad = sum(finding.level is Level.FAIL for finding in findings)
     if not bad:
         write(_("every device answers; nothing was moved"))
         return 0
