@@ -74,6 +74,9 @@ _RELEASED = Phrase(
     "Аварийная остановка снята; жду новой команды",
 )
 
+_TOLD_M_S, _TOLD_RAD = 0.05, 0.05
+"""Smaller changes of speed and steering are not told."""
+
 
 class ElectronicDifferential(LessonNode):
     """Publishes wheel speeds for the newest /drive."""
@@ -134,6 +137,8 @@ class ElectronicDifferential(LessonNode):
         self._heard = True
         self._command = self._limited(from_message(message))
         self._publish()
+        # The next repetition counts from here.
+        self._timer.reset()
 
     def _limited(self, asked: DriveSetpoint) -> DriveSetpoint:
         speed, steering = asked.speed_m_s, asked.steering_rad
@@ -195,7 +200,7 @@ class ElectronicDifferential(LessonNode):
         radius_m = self.number("wheel_radius")
         message.velocity = [wheels.left_m_s / radius_m, wheels.right_m_s / radius_m, math.nan]
         self._publisher.publish(message)
-        if self._heard and self._command != self._told:
+        if self._heard and not _much_the_same(self._command, self._told):
             self._tell(wheels)
 
     def _tell(self, wheels: WheelSpeeds) -> None:
@@ -214,6 +219,14 @@ class ElectronicDifferential(LessonNode):
             right=wheels.right_m_s,
         )
         self._told = command
+
+
+def _much_the_same(command: DriveSetpoint, told: DriveSetpoint | None) -> bool:
+    """Whether it need not be told: a gate slows down by a little with each reading of a sonar."""
+    if told is None or (command.speed_m_s == 0.0) != (told.speed_m_s == 0.0):
+        return False
+    faster = abs(command.speed_m_s - told.speed_m_s)
+    return faster < _TOLD_M_S and abs(command.steering_rad - told.steering_rad) < _TOLD_RAD
 
 
 def main(args: list[str] | None = None) -> int:

@@ -171,3 +171,14 @@ def test_the_wheels_stand_when_the_node_has_ended(peer: Peer, ros_domain: int) -
         node.send(signal.SIGTERM)
         assert node.wait() == 0
         wait_until(lambda: rims(heard[-1]) == (0.0, 0.0), "a last stop")
+
+
+def test_slowing_down_by_little_steps_does_not_fill_the_log(peer: Peer, ros_domain: int) -> None:
+    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
+        heard = peer.hear("/wheel_commands", JointState)
+        for hundredths in range(20, 10, -1):
+            peer.say("/drive", drive(hundredths / 100))
+            wait_for_rims(heard, hundredths / 100, hundredths / 100)
+        peer.say("/drive", drive(0.0))
+        node.wait_for_words("Standing")
+        assert 2 <= node.output.count("Straight") <= 3
