@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticArray
 
-from nodes._topics import DEPTH
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -21,7 +19,7 @@ _EVERY_S = 1.0
 
 def tell_every_second(node: LessonNode, status: Callable[[], DiagnosticStatus]) -> None:
     """Publish a status once a second from now on."""
-    publisher = node.create_publisher(DiagnosticArray, DIAGNOSTICS, DEPTH)
+    publisher = node.quick_publisher(DiagnosticArray, DIAGNOSTICS)
 
     def tell() -> None:
         message = DiagnosticArray(status=[status()])

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from std_msgs.msg import String
 
 from nodes._node import change_period
-from nodes._topics import DEPTH
 from robot.frame_lines import encode
 from robot.frame_teller import Chunk, FrameTeller
 
@@ -35,7 +34,7 @@ class SerialFrames:
 
     def __init__(self, node: LessonNode, make: Callable[[str], FrameReader]) -> None:
         """`make` makes what reads the frames of this device and speaks a language."""
-        self._publisher = node.create_publisher(String, FRAMES, DEPTH)
+        self._publisher = node.quick_publisher(String, FRAMES)
         self._teller = FrameTeller(make, node.say.language)
         self._wanted = False
         self._lock = threading.Lock()

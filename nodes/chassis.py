@@ -99,10 +99,10 @@ class Chassis(LessonNode):
         self._sending = threading.Lock()
         self._reckoning = DeadReckoning(self.number("wheelbase"), self.number("wheel_radius"))
         self._pico = PicoClient(self, int(self.number("baud")), self._hear)
-        self._joints = self.create_publisher(JointState, JOINT_STATES, DEPTH)
-        self._odometry = self.create_publisher(Odometry, ODOMETRY, DEPTH)
-        self._transforms = self.create_publisher(TFMessage, TF, DEPTH)
-        self._battery = self.create_publisher(BatteryState, BATTERY, DEPTH)
+        self._joints = self.quick_publisher(JointState, JOINT_STATES)
+        self._odometry = self.quick_publisher(Odometry, ODOMETRY)
+        self._transforms = self.quick_publisher(TFMessage, TF)
+        self._battery = self.quick_publisher(BatteryState, BATTERY)
         self._emergency = EmergencyStop(self, self._emergency_changed)
         # Heard even if this node never saw the stop: the Pico may have kept it.
         self.create_subscription(Bool, EMERGENCY_STOP, self._hear_release, DEPTH)
@@ -143,10 +143,13 @@ class Chassis(LessonNode):
         if self._emergency.active:
             asked = _STILL
         left, right = (max(-_MOST_RAD_S, min(_MOST_RAD_S, speed)) for speed in asked[:2])
+        command = (left, right, max(-_MOST_RAD, min(_MOST_RAD, asked[2])))
         with self._sending:
             self._commanded_s = time.monotonic()
-            self._command = (left, right, max(-_MOST_RAD, min(_MOST_RAD, asked[2])))
-            self._send()
+            if command != self._command:
+                # The same again goes out at its pace.
+                self._command = command
+                self._send()
 
     def _emergency_changed(self, active: bool) -> None:
         with self._sending:

@@ -33,7 +33,7 @@ def link(request: pytest.FixtureRequest) -> Iterator[tuple[SerialLink, Log]]:
     node: Any = SimpleNamespace(
         say=said,
         text=lambda _name: "/dev/ttyACM0",
-        create_publisher=lambda *_: None,
+        quick_publisher=lambda *_: None,
         every=lambda *_: None,
     )
     link = SerialLink(node, 9600, lambda _: None, lambda: None, lambda: None)
