@@ -66,12 +66,13 @@ class Gate:
         return self.peer.node.create_timer(0.05, lambda: publisher.publish(message))
 
     def see(self, distance: float, place: str = "front") -> None:
-        """Give a reading, and wait until the gate has taken it."""
-        self.peer.say(f"/sensor/sonar_{place}", Float32(data=distance))
+        """Give a reading, again and again as a sonar does, until the gate has taken it."""
+        sonar = self.repeat(f"/sensor/sonar_{place}", Float32(data=distance))
         wait_until(
             lambda: self.states and values(self.states[-1])[f"{place}_m"] == f"{distance:.3f}",
             f"{distance} m {place}",
         )
+        self.peer.node.destroy_timer(sonar)
 
     def wait_for_speed(self, speed: float) -> AckermannDriveStamped:
         """Wait until the gate lets this speed through, and no other."""
