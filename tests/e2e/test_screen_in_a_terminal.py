@@ -16,7 +16,7 @@ SCREENS = {
     "f4": '"commands"',
     "f5": "safety_stop",
     "f2": "Sonar",
-    "f1": "^p",
+    "f1": "Keys of this screen",
 }
 """Function key to what stands on the screen that it opens."""
 

@@ -192,7 +192,10 @@ def test_nodes_over_a_narrow_log(language: str, snap_compare: SnapCompare) -> No
 
     async def prepare(pilot: Pilot[Any]) -> None:
         await settle(pilot)
-        await pilot.press("l", "down", "enter")
+        # The next key is for the list, once it is there and has the focus.
+        await pilot.press("l")
+        await pilot.pause()
+        await pilot.press("down", "enter")
 
     assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)
 
