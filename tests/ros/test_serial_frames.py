@@ -112,7 +112,7 @@ class Fake:
         self.look: Any = None
         self.timer = SimpleNamespace(timer_period_ns=0, reset=lambda: None)
 
-    def create_publisher(self, *_: object) -> Any:
+    def quick_publisher(self, *_: object) -> Any:
         return SimpleNamespace(
             get_subscription_count=lambda: self.listeners, publish=self.published.append
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from textual.app import App, ComposeResult
 
 from tui.widgets.rows import Cell, Column, Row, Rows
@@ -74,3 +75,16 @@ async def test_the_cursor_is_softer_while_the_list_has_no_focus() -> None:
             await pilot.pause()
             looks.append(next(iter(app.rows.render_line(1))).style.bgcolor)
         assert looks[0] != looks[1]
+
+
+async def test_a_new_size_that_nobody_tells_of_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Rows, "on_resize", lambda _rows: None)
+    app = ListApp()
+    async with app.run_test(size=(30, 20)) as pilot:
+        app.fill()
+        await pilot.pause()
+        await pilot.resize_terminal(60, 20)
+        await pilot.pause()
+        shown = app.screen._compositor.render_strips()[1].text
+        assert shown.rstrip().endswith("19 MB")
+        assert len(shown.rstrip()) == 60

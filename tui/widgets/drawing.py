@@ -12,7 +12,7 @@ from typing import ClassVar, NamedTuple
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
 from rich.style import Style
-from textual.geometry import Region
+from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -67,6 +67,8 @@ class Drawing(Widget):
         self._detail = ""
         self._age_s: float | None = None
         self._styles: dict[str, Style] = {}
+        self._drawn_in = Size(0, 0)
+        """For which size the lines were drawn."""
 
     @property
     def has_value(self) -> bool:
@@ -119,6 +121,7 @@ class Drawing(Widget):
             self.refresh(*regions)
 
     def _drawn(self, width: int, height: int) -> list[Line]:
+        self._drawn_in = Size(width, height)
         if not self.has_value:
             return []
         lines = self.draw(width, height)[:height]
@@ -135,8 +138,13 @@ class Drawing(Widget):
         self.on_resize()
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Some lines, all in the styles of this moment: Textual works one out in 0.2 ms."""
+        """Some lines, all in the styles of this moment: Textual works one out in 0.2 ms.
+
+        It does not tell of every new size, either, when several layouts come at once.
+        """
         self._styles.clear()
+        if self._drawn_in != self.size:
+            self.on_resize()
         return super().render_lines(crop)
 
     def render_line(self, y: int) -> Strip:

@@ -106,6 +106,8 @@ class Rows(ScrollView, can_focus=True):
         self._top = 1 if header else 0
         self._columns: tuple[Column, ...] = ()
         self._widths: tuple[int, ...] = ()
+        self._placed_in = 0
+        """The width that the columns share."""
         self._rows: tuple[Row, ...] = ()
         self._chosen = ""
 
@@ -133,6 +135,12 @@ class Rows(ScrollView, can_focus=True):
         index = self._index(key)
         if index is not None:
             self._choose(index)
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Some lines; Textual does not tell of every new size when several layouts come at once."""
+        if self._placed_in != self.scrollable_size.width:
+            self._place()
+        return super().render_lines(crop)
 
     def render_line(self, y: int) -> Strip:
         """The header or a row."""
@@ -192,7 +200,8 @@ class Rows(ScrollView, can_focus=True):
         self._refresh_row(self._index(self._chosen))
 
     def _place(self) -> None:
-        self._widths = _widths(self._columns, self.scrollable_size.width - MARK)
+        self._placed_in = self.scrollable_size.width
+        self._widths = _widths(self._columns, self._placed_in - MARK)
         self.refresh()
 
     def _index(self, key: str) -> int | None:
