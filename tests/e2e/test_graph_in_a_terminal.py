@@ -1,4 +1,4 @@
-"""A person looks into the graph of lesson 9: calls the head's service, reads parameters, walks."""
+"""A person looks into the graph: calls the head's service, reads parameters, walks."""
 
 from __future__ import annotations
 
@@ -9,14 +9,12 @@ from tests.e2e import marked
 from tests.e2e.conftest import Deck
 from tests.e2e.terminal import Terminal
 
-BRAIN = ("09-brain", "--lang", "en")
 
-
-def at_the_graph(deck: Deck) -> Terminal:
-    terminal = deck.open(*BRAIN)
-    terminal.wait_for("8/8")
+def at_the_graph(deck: Deck, profile: str, nodes: int) -> Terminal:
+    terminal = deck.open(profile, "--lang", "en")
+    terminal.wait_for(f"{nodes}/{nodes}")
     terminal.press("5")
-    terminal.wait_for("Nodes 8")
+    terminal.wait_for(f"Nodes {nodes}")
     return terminal
 
 
@@ -26,7 +24,7 @@ def wait_for_words(terminal: Terminal, words: str) -> None:
 
 
 def test_the_head_is_turned_by_a_call_from_the_graph(deck: Deck) -> None:
-    terminal = at_the_graph(deck)
+    terminal = at_the_graph(deck, "03-head-service", 1)
     terminal.press("right")
     terminal.wait_for("fits example_interfaces/srv/AddTwoInts")
     terminal.press("enter", "ctrl+s")
@@ -35,7 +33,7 @@ def test_the_head_is_turned_by_a_call_from_the_graph(deck: Deck) -> None:
 
 
 def test_a_parameter_is_read_and_set_and_a_refusal_is_told(deck: Deck) -> None:
-    terminal = at_the_graph(deck)
+    terminal = at_the_graph(deck, "02-sonar-safety", 2)
     terminal.press("/")
     terminal.type("sonar")
     terminal.wait_for("1 of ")
@@ -51,7 +49,7 @@ def test_a_parameter_is_read_and_set_and_a_refusal_is_told(deck: Deck) -> None:
 
 
 def test_the_map_shows_who_talks_to_the_brain(deck: Deck) -> None:
-    terminal = at_the_graph(deck)
+    terminal = at_the_graph(deck, "09-brain", 8)
     # Which node is found first, and chosen, is not for sure.
     terminal.press("/")
     terminal.type("brain")
@@ -65,12 +63,12 @@ def test_the_map_shows_who_talks_to_the_brain(deck: Deck) -> None:
 
 
 def test_a_node_that_hangs_freezes_nothing_and_is_told(deck: Deck) -> None:
-    terminal = at_the_graph(deck)
-    (hung,) = (pid for pid, line in marked.nodes(deck.mark).items() if "audio" in line)
+    terminal = at_the_graph(deck, "02-sonar-safety", 2)
+    (hung,) = (pid for pid, line in marked.nodes(deck.mark).items() if "safety" in line)
     os.kill(hung, signal.SIGSTOP)
     try:
         terminal.press("/")
-        terminal.type("audio")
+        terminal.type("safety")
         terminal.wait_for("1 of ")
         terminal.press("enter")
         terminal.wait_for("p Parameters")

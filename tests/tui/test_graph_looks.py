@@ -79,7 +79,7 @@ def test_a_node(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE))
 
 
-@every_look
+@each_size
 def test_parameters(look: Look, snap_compare: SnapCompare) -> None:
     """Five parameters with type and limits; at 80x24 in place of the links, else below them."""
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE, "p", "down"))
@@ -154,7 +154,7 @@ def test_a_type(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@every_look
+@each_size
 def test_the_map(look: Look, snap_compare: SnapCompare) -> None:
     """safety_stop in a box; what it hears at the left, what it says at the right, with whom."""
     before = at(NODE, "m", "left")
