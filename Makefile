@@ -12,6 +12,9 @@ ifneq ($(AMENT_PREFIX_PATH)$(_ROS_WHEELS_BOOTSTRAP_COMPLETE),)
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH
 endif
 
+# What was compiled once is kept: nodes are started by the hundred.
+unexport PYTHONDONTWRITEBYTECODE
+
 ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
@@ -46,3 +49,4 @@ lint: .venv/.ready
 
 clean:
 	rm -rf .venv build .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	find bench graph launcher nodes robot scripts tests tui -name __pycache__ -exec rm -rf {} +
