@@ -76,6 +76,7 @@ def assert_stopped_for_good(deck: Deck, wheels: Wheels) -> None:
     wheels.assert_stands()
     wait_until(lambda: not marked.nodes(deck.mark), "the end of every node")
     wheels.assert_stays()
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
 
 
 @pytest.mark.parametrize("way", ["run", "up"])

@@ -63,7 +63,7 @@ def test_the_delay_since_a_stamp_is_told_unless_it_is_of_another_clock(
 
 
 FEW = 3
-"""Messages in parts of which the middleware itself loses track when the machine is busy."""
+"""Messages of which the middleware itself loses track when the machine is busy."""
 
 
 def test_what_is_lost_on_the_way_is_counted_and_the_rest_is_not(
@@ -88,15 +88,13 @@ def test_what_is_lost_on_the_way_is_counted_and_the_rest_is_not(
     unknown = sent - 1
     assert send(60).count < sent - unknown, "the flood was none"
 
-    def all_are_accounted_for() -> bool:
+    def most_are_accounted_for() -> bool:
         """A loss shows with the first message that comes after it; a small one comes for sure."""
         row = send(1, size=1)
-        return 0 <= sent - row.count - (row.lost or 0) <= unknown + FEW
+        told = row.count + (row.lost or 0)
+        return bool(row.lost) and sent / 2 < told <= sent - unknown + FEW
 
-    wait_until(all_are_accounted_for, "count and lost make up what was sent", every_s=0.3)
-    row = watcher.row("/flood")
-    assert row is not None
-    assert row.lost
+    wait_until(most_are_accounted_for, "count and lost make up what was sent", every_s=0.3)
 
 
 def test_our_own_short_queue_and_what_was_sent_before_us_lose_nothing(

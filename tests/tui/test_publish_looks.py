@@ -119,7 +119,8 @@ def test_a_new_topic(look: Look, snap_compare: SnapCompare) -> None:
         await filled(new_topic, *"float")(pilot)
         dialog = pilot.app.screen
         assert isinstance(dialog, PublishDialog)
-        await until(pilot, lambda: dialog.target.type.is_listing)
+        kind = dialog.target.type
+        await until(pilot, lambda: kind.is_listing and kind.value == "float")
 
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
