@@ -19,6 +19,8 @@ RUN_MARK = "DECK_RUN_ID"
 """Environment variable that says which run of Deck a process belongs to."""
 NODE_MARK = "DECK_NODE"
 """Environment variable that says which node of that run it is, or descends from."""
+OWN_RUN_DIR = "DECK_RUN_DIR"
+"""Environment variable that keeps the runs of one purpose apart from all others."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ def processes() -> Iterator[Process]:
 
 
 def read_marks(pid: int) -> Mapping[str, str] | None:
-    """Return Deck's marks in a process's environment; None if that may not be read."""
+    """Return Deck's variables in a process's environment; None if that may not be read."""
     try:
         with open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123
             environ = file.read()
@@ -91,7 +93,7 @@ def read_marks(pid: int) -> Mapping[str, str] | None:
     return found
 
 
-_MARKS = frozenset((RUN_MARK.encode(), NODE_MARK.encode()))
+_MARKS = frozenset((RUN_MARK.encode(), NODE_MARK.encode(), OWN_RUN_DIR.encode()))
 
 
 def command_line(pid: int) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from launcher.process_table import (
     NODE_MARK,
+    OWN_RUN_DIR,
     RUN_MARK,
     TICKS_PER_S,
     boot_time_s,
@@ -65,6 +66,9 @@ def find_strays(run_dir: Path) -> tuple[Stray, ...]:
 def _marked(process: Process) -> tuple[str, str]:
     marks = read_marks(process.pid)
     if not marks or RUN_MARK not in marks:
+        return "", ""
+    # Whoever keeps runs apart does not want to be told of the others.
+    if marks.get(OWN_RUN_DIR, "") != os.environ.get(OWN_RUN_DIR, ""):
         return "", ""
     run_id, node = marks[RUN_MARK], marks.get(NODE_MARK, "")
     # A spawn server that has outlived its supervisor is there to tidy up, and ends by itself.
