@@ -44,22 +44,20 @@ def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 class DomainPool:
     """ROS domains that no other test run on this machine holds, by file locks.
 
-    They are handed out in turn, so that one comes back as late as can be: what a test has left in
-    it, a discovery that is not over or a lease that has not run out, is gone by then.
+    All runs together hand them out in turn, so that one comes back as late as can be: what a test
+    has left in it, a discovery that is not over or a lease that has not run out, is gone by then.
     """
 
     def __init__(self) -> None:
-        """Begin anywhere, so that runs at the same time seldom ask for the same."""
+        """Hold none yet."""
         self._folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"
         self._folder.mkdir(exist_ok=True)
         self._held: dict[int, int] = {}
-        self._next = os.getpid() % len(DOMAINS)
 
     def take(self) -> int:
         """Return a domain that is nobody else's until it is let go of."""
         for _ in DOMAINS:
-            domain = DOMAINS[self._next]
-            self._next = (self._next + 1) % len(DOMAINS)
+            domain = self._next()
             path = self._folder / str(domain)
             lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
             try:
@@ -70,6 +68,16 @@ class DomainPool:
             self._held[domain] = lock
             return domain
         raise RuntimeError("every ROS domain from 1 to 101 is held by a test")
+
+    def _next(self) -> int:
+        """The domain whose turn it is, and it will be that of the next one."""
+        with (self._folder / "turn").open("a+") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            file.seek(0)
+            turn = int(file.read() or 0)
+            file.truncate(0)
+            file.write(str(turn + 1))
+        return DOMAINS[turn % len(DOMAINS)]
 
     def let_go(self, *domains: int) -> None:
         """Give domains back; all if none is named."""
