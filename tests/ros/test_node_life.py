@@ -100,9 +100,11 @@ def test_a_middleware_that_does_not_let_go_is_not_waited_for(module_domain: int)
 def test_the_head_ends_in_the_middle_of_a_movement(
     peer: Peer, module_domain: int, number: signal.Signals
 ) -> None:
-    params: dict[str, object] = {"move_time": 30.0}
-    with NodeProcess("nodes.head_controller", module_domain, params=params) as process:
-        client = peer.node.create_client(AddTwoInts, "set_head_position")
+    # Under a name of its own: a head that ended without a good-bye is in the graph for 20 s more.
+    service = f"head_{number.name.lower()}"
+    arguments = ("--ros-args", "-r", f"set_head_position:={service}", "-p", "move_time:=30.0")
+    with NodeProcess("nodes.head_controller", module_domain, arguments=arguments) as process:
+        client = peer.node.create_client(AddTwoInts, service)
         wait_until(client.service_is_ready, "the head's service")
         client.call_async(AddTwoInts.Request(a=45, b=15))
         process.wait_for_words("Turning the head")
