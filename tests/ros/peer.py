@@ -16,7 +16,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from rclpy.publisher import Publisher
     from rclpy.subscription import Subscription
@@ -90,6 +90,16 @@ class Peer:
             f"{listeners} subscribers of {topic}",
         )
         publisher.publish(message)
+
+    @contextlib.contextmanager
+    def saying(self, topic: str, message: Any, every_s: float = 0.05) -> Iterator[None]:
+        """Publish it again and again within the `with`, as who measures something does."""
+        publisher = self.publisher(topic, type(message))
+        timer = self.node.create_timer(every_s, lambda: publisher.publish(message))
+        try:
+            yield
+        finally:
+            self.node.destroy_timer(timer)
 
     def ask(self, service: str, kind: Any, request: Any, within_s: float = 30.0) -> Any:
         """Call a service and return its response."""

@@ -65,9 +65,9 @@ def test_a_command_cut_short_is_not_resumed(gate: Gate) -> None:
 
 @pytest.mark.parametrize("gate", [{"stale_after_s": 0.3}], indirect=True)
 def test_silence_is_danger(gate: Gate) -> None:
-    gate.see(2.0)
     gate.peer.say("/drive", drive(0.3))
-    gate.wait_for_state("free")
+    with gate.peer.saying(FRONT, Float32(data=2.0)):
+        gate.wait_for_state("free")
     state = gate.wait_for_state("blocked_forward")
     assert state.level == DiagnosticStatus.ERROR
     assert "silent" in state.message
