@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from graph import goals_life
 from graph.data import Goal, GoalStatus
 from graph.goals import GoalError
 from graph.making import FieldError
@@ -20,22 +22,52 @@ from tests.waiting import wait_until
 DRIVE = "deck_interfaces/action/DriveToPoint"
 
 
-@pytest.fixture
-def server(ros_domain: int) -> Iterator[Peer]:
-    server = Peer("driver", ros_domain)
-    server.serve_action("/drive_to")
-    yield server
-    server.close()
+SHORT_LEASE = """\
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="mortal" is_default_profile="true">
+    <rtps><builtin><discovery_config>
+      <leaseDuration><sec>4</sec></leaseDuration>
+      <leaseAnnouncement><sec>0</sec><nanosec>200000000</nanosec></leaseAnnouncement>
+    </discovery_config></builtin></rtps>
+  </participant>
+</profiles>
+"""
+"""A node that is killed is missed after this time, in place of 20 s."""
+
+
+@pytest.fixture(scope="module")
+def driver(module_domain: int) -> Iterator[Peer]:
+    driver = Peer("driver", module_domain)
+    driver.serve_action("/drive_to")
+    yield driver
+    driver.close()
 
 
 @pytest.fixture
-def watcher(ros_domain: int) -> Iterator[Watcher]:
-    watcher = Watcher(ros_domain)
+def server(driver: Peer, request: pytest.FixtureRequest) -> Peer:
+    """The driver, with an action that only this test knows."""
+    driver.action = f"/{request.node.originalname}"
+    driver.serve_action(driver.action)
+    return driver
+
+
+@pytest.fixture(scope="module")
+def observing(module_domain: int) -> Iterator[Watcher]:
+    watcher = Watcher(module_domain)
     yield watcher
     watcher.close()
 
 
-def send(watcher: Watcher, x: float = 1.0, action: str = "/drive_to") -> int:
+@pytest.fixture
+def watcher(observing: Watcher) -> Iterator[Watcher]:
+    """The observer of all tests, without the goals of the others."""
+    yield observing
+    for each in observing.update.goals:
+        observing.observer.forget_goal(each.number)
+    wait_until(lambda: not observing.update.goals, "no goals")
+
+
+def send(watcher: Watcher, action: str, x: float = 1.0) -> int:
     return watcher.observer.send_goal(action, DRIVE, {"x": x}).result(30)
 
 
@@ -51,9 +83,10 @@ def wait_for(watcher: Watcher, number: int, *statuses: GoalStatus) -> Goal:
     return wait_until(has, f"goal {number} is one of {statuses}, not {goal(watcher, number)}")
 
 
-def at_work(watcher: Watcher, server: Peer, x: float = 1.0, action: str = "/drive_to") -> int:
+def at_work(watcher: Watcher, server: Peer, x: float = 1.0, action: str = "") -> int:
     """A goal that the server executes."""
-    number = send(watcher, x, action)
+    action = action or server.action
+    number = send(watcher, action, x)
     wait_until(lambda: [x, 0.0] in server.goals(action), "the goal at its server")
     wait_for(watcher, number, GoalStatus.EXECUTING)
     return number
@@ -61,8 +94,8 @@ def at_work(watcher: Watcher, server: Peer, x: float = 1.0, action: str = "/driv
 
 def test_a_goal_is_accepted_executed_and_succeeds(watcher: Watcher, server: Peer) -> None:
     number = at_work(watcher, server, 2.0)
-    server.feedback("/drive_to", goal=0, distance=1.5)
-    server.feedback("/drive_to", goal=0, distance=0.5)
+    server.feedback(server.action, goal=0, distance=1.5)
+    server.feedback(server.action, goal=0, distance=0.5)
 
     def fed() -> Goal | None:
         found = goal(watcher, number)
@@ -72,10 +105,10 @@ def test_a_goal_is_accepted_executed_and_succeeds(watcher: Watcher, server: Peer
     assert told.feedback == {"distance": 0.5}
     assert told.goal == {"x": 2.0, "y": 0.0, "tolerance": 0.0}
     assert (told.result, told.error, told.ended) == (None, "", False)
-    server.finish("/drive_to", goal=0, how="succeed", reached=True, distance=0.1)
+    server.finish(server.action, goal=0, how="succeed", reached=True, distance=0.1)
     told = wait_for(watcher, number, GoalStatus.SUCCEEDED)
     assert told.result == {"reached": True, "distance": 0.1, "message": ""}
-    assert (told.error, told.ended, told.action, told.type_name) == ("", True, "/drive_to", DRIVE)
+    assert (told.error, told.ended, told.action, told.type_name) == ("", True, server.action, DRIVE)
     assert told.elapsed_s > 0
     watcher.observer.forget_goal(number)
     wait_until(lambda: not watcher.update.goals, "the goal is forgotten")
@@ -85,26 +118,26 @@ def test_several_goals_at_once_are_each_their_own(watcher: Watcher, server: Peer
     server.serve_action("/other")
     first, second = at_work(watcher, server, 1.0), at_work(watcher, server, 2.0)
     third = at_work(watcher, server, 3.0, "/other")
-    assert [each.number for each in watcher.update.goals] == [first, second, third] == [1, 2, 3]
-    server.feedback("/drive_to", goal=1, distance=7.0)
-    server.finish("/drive_to", goal=1, how="succeed", message="second")
+    assert [each.number for each in watcher.update.goals] == [first, second, third]
+    server.feedback(server.action, goal=1, distance=7.0)
+    server.finish(server.action, goal=1, how="succeed", message="second")
     server.finish("/other", goal=0, how="abort", message="third")
     assert wait_for(watcher, second, GoalStatus.SUCCEEDED).feedback == {"distance": 7.0}
     assert wait_for(watcher, third, GoalStatus.ABORTED).error == "third"
     assert wait_for(watcher, first, GoalStatus.EXECUTING).feedback is None
-    server.finish("/drive_to", goal=0, how="succeed")
+    server.finish(server.action, goal=0, how="succeed")
     wait_for(watcher, first, GoalStatus.SUCCEEDED)
 
 
 def test_a_rejected_goal_is_told(watcher: Watcher, server: Peer) -> None:
     server.serve_action("/strict", reject=True)
-    told = wait_for(watcher, send(watcher, action="/strict"), GoalStatus.REJECTED)
+    told = wait_for(watcher, send(watcher, "/strict"), GoalStatus.REJECTED)
     assert (told.error, told.ended) == ("the server rejects it", True)
 
 
 def test_an_aborted_goal_gives_its_reason_and_its_result(watcher: Watcher, server: Peer) -> None:
     number = at_work(watcher, server)
-    server.finish("/drive_to", goal=0, how="abort", message="a wall", distance=3.0)
+    server.finish(server.action, goal=0, how="abort", message="a wall", distance=3.0)
     told = wait_for(watcher, number, GoalStatus.ABORTED)
     assert told.error == "a wall"
     assert told.result == {"reached": False, "distance": 3.0, "message": "a wall"}
@@ -114,7 +147,7 @@ def test_a_goal_is_cancelled(watcher: Watcher, server: Peer) -> None:
     number = at_work(watcher, server)
     watcher.observer.cancel_goal(number)
     wait_for(watcher, number, GoalStatus.CANCELING)
-    server.finish("/drive_to", goal=0, how="canceled", distance=2.0)
+    server.finish(server.action, goal=0, how="canceled", distance=2.0)
     told = wait_for(watcher, number, GoalStatus.CANCELED)
     assert (told.error, told.result) == ("", {"reached": False, "distance": 2.0, "message": ""})
 
@@ -142,68 +175,77 @@ def test_a_goal_that_is_forgotten_while_it_runs_is_cancelled(
     number = at_work(watcher, server)
     watcher.observer.forget_goal(number)
     wait_until(lambda: not watcher.update.goals, "the goal is forgotten")
-    wait_until(lambda: server.cancels("/drive_to") == 1, "its server is asked to cancel")
+    wait_until(lambda: server.cancels(server.action) == 1, "its server is asked to cancel")
 
 
-def test_goals_that_run_are_cancelled_when_the_observer_stops(ros_domain: int) -> None:
-    server = Peer("driver", ros_domain)
-    server.serve_action("/drive_to")
-    watcher = Watcher(ros_domain)
+def test_goals_that_run_are_cancelled_when_the_observer_stops(
+    server: Peer, module_domain: int
+) -> None:
+    watcher = Watcher(module_domain)
     at_work(watcher, server)
     watcher.close()
-    assert server.cancels("/drive_to") == 1
-    server.close()
+    assert server.cancels(server.action) == 1
+    with pytest.raises(ObserverError):
+        watcher.observer.send_goal(server.action, DRIVE, {}).result(10)
+    watcher.observer.cancel_goal(1)
+    watcher.observer.forget_goal(1)
 
 
 def test_a_server_that_leaves_in_mid_goal_is_told(watcher: Watcher, server: Peer) -> None:
     number = at_work(watcher, server)
-    server.withdraw_action("/drive_to")
+    server.withdraw_action(server.action)
     told = wait_for(watcher, number, GoalStatus.FAILED)
     assert told.error == "its server has left the graph"
 
 
 def test_a_server_that_is_killed_in_mid_goal_is_told_though_another_takes_its_place(
-    watcher: Watcher, ros_domain: int
+    watcher: Watcher, module_domain: int, tmp_path: Path
 ) -> None:
-    first = Peer("driver", ros_domain)
-    first.serve_action("/drive_to")
-    number = at_work(watcher, first)
+    profile = tmp_path / "short_lease.xml"
+    profile.write_text(SHORT_LEASE)
+    first = Peer("mortal", module_domain, fast_dds=profile)
+    first.serve_action("/mortal")
+    number = at_work(watcher, first, action="/mortal")
     first.process.kill()
     first.process.wait(10)
-    second = Peer("driver", ros_domain)
-    second.serve_action("/drive_to")
-    # Its lease of 20 s has to run out first.
+    second = Peer("mortal", module_domain)
+    second.serve_action("/mortal")
     assert wait_for(watcher, number, GoalStatus.FAILED).error == "its server has left the graph"
-    again = at_work(watcher, second, 5.0)
-    second.finish("/drive_to", goal=0, how="succeed")
+    again = at_work(watcher, second, 5.0, "/mortal")
+    second.finish("/mortal", goal=0, how="succeed")
     wait_for(watcher, again, GoalStatus.SUCCEEDED)
     second.close()
     first.close()
 
 
 def test_a_server_that_does_not_answer_is_given_up_and_what_it_takes_later_is_cancelled(
-    watcher: Watcher, server: Peer
+    watcher: Watcher, server: Peer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    wait_until(lambda: any(a.name == "/drive_to" for a in watcher.update.actions), "the action")
+    action = server.action
+    wait_until(lambda: any(a.name == action for a in watcher.update.actions), "the action")
+    monkeypatch.setattr(goals_life, "ANSWER_WITHIN_S", 1.5)
     os.kill(server.process.pid, signal.SIGSTOP)
-    number = send(watcher)
+    number = send(watcher, action)
     try:
         told = wait_for(watcher, number, GoalStatus.FAILED)
-        assert "within 5 s" in told.error
-        assert 5.0 <= told.elapsed_s < 15.0
+        assert "within 1.5 s" in told.error
+        assert told.elapsed_s >= 1.5
     finally:
         os.kill(server.process.pid, signal.SIGCONT)
-    if told.error == "no answer within 5 s":
-        wait_until(lambda: server.cancels("/drive_to") == 1, "the late goal is cancelled")
+    if told.error == "no answer within 1.5 s":
+        wait_until(lambda: server.cancels(action) == 1, "the late goal is cancelled")
 
 
-def test_an_action_that_nobody_serves_is_named(watcher: Watcher) -> None:
-    told = wait_for(watcher, send(watcher, action="/nobody"), GoalStatus.FAILED)
-    assert told.error == "nobody serves it within 5 s"
+def test_an_action_that_nobody_serves_is_named(
+    watcher: Watcher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(goals_life, "ANSWER_WITHIN_S", 0.5)
+    told = wait_for(watcher, send(watcher, "/nobody"), GoalStatus.FAILED)
+    assert told.error == "nobody serves it within 0.5 s"
 
 
 def test_a_goal_that_is_cancelled_before_it_is_sent_never_is(watcher: Watcher) -> None:
-    number = send(watcher, action="/nobody")
+    number = send(watcher, "/nobody")
     watcher.observer.cancel_goal(number)
     told = wait_for(watcher, number, GoalStatus.CANCELED)
     assert told.error == "it was cancelled before it was sent"
@@ -228,24 +270,15 @@ def test_a_goal_that_is_cancelled_before_it_is_sent_never_is(watcher: Watcher) -
 )
 def test_what_cannot_be_sent_is_refused_in_words(
     watcher: Watcher,
-    server: Peer,
+    driver: Peer,
     action: str,
     type_name: str,
     values: dict[str, Any],
     kind: type[Exception],
     words: str,
 ) -> None:
-    assert server.goals("/drive_to") == []
+    assert driver.goals("/drive_to") == []
     wait_until(lambda: any(a.name == "/drive_to" for a in watcher.update.actions), "the action")
     with pytest.raises(kind, match=words):
         watcher.observer.send_goal(action, type_name, values).result(30)
     assert watcher.update.goals == ()
-
-
-def test_an_observer_that_has_stopped_refuses_goals(ros_domain: int) -> None:
-    watcher = Watcher(ros_domain)
-    watcher.close()
-    with pytest.raises(ObserverError):
-        watcher.observer.send_goal("/drive_to", DRIVE, {}).result(10)
-    watcher.observer.cancel_goal(1)
-    watcher.observer.forget_goal(1)
