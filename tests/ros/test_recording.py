@@ -19,6 +19,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Bool, Float32, String
 from tf2_msgs.msg import TFMessage
 
+from graph import recording_tap
 from graph.bag import open_bag
 from graph.bag_errors import BagError
 from graph.recording import Recorder
@@ -229,7 +230,11 @@ def test_a_recorder_does_not_pass_for_somebody_who_obeys(ros_domain: int, tmp_pa
     watcher.close()
 
 
-def test_lost_messages_are_counted(ros_domain: int, tmp_path: Path) -> None:
+def test_lost_messages_are_counted(
+    ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A publisher on a busy machine may be too slow to fill the whole queue between two turns.
+    monkeypatch.setattr(recording_tap, "DEEP", 5)
     recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
     shallow = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     with Peer(ros_domain) as peer:
@@ -244,8 +249,8 @@ def test_lost_messages_are_counted(ros_domain: int, tmp_path: Path) -> None:
             return row.messages + row.lost if row else 0
 
         wait_until(tell, "the first message")
-        for number in range(20_000):
+        for number in range(1000):
             publisher.publish(Float32(data=float(number)))
-        wait_until(lambda: tell() > 20_000, "every message recorded or counted as lost")
+        wait_until(lambda: tell() > 1000, "every message recorded or counted as lost")
         status = recorder.stop()
-    assert 0 < status.lost < 20_000
+    assert 0 < status.lost < 1000
