@@ -97,13 +97,14 @@ class KeyBar(Widget):
 
     def render(self) -> Content:
         """Draw the keys of every screen at the right, before them as many others as fit."""
-        always = [entry for entry in self.keys() if entry.everywhere]
+        keys = self.keys()
+        always = [entry for entry in keys if entry.everywhere]
         room = self.size.width - sum(map(_cells, always))
         if room < 0:
             # The page of help names all keys, those of the palette too.
             always = [entry for entry in always if entry.id != SPARED]
         shown: list[Key] = []
-        for entry in self.keys():
+        for entry in keys:
             room -= 0 if entry.everywhere else _cells(entry)
             if not entry.everywhere and room >= 0:
                 shown.append(entry)
