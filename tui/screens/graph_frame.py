@@ -31,6 +31,14 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
 
 
+DETAILS: dict[Kind, type[GraphPane]] = {
+    Kind.NODE: NodePane,
+    Kind.SERVICE: ServicePane,
+    Kind.ACTION: ActionPane,
+    Kind.TYPE: TypePane,
+}
+
+
 class GraphFrame(DeckScreen):
     """Kinds and filter above a list and the detail of the chosen one, or above the drawing."""
 
@@ -68,6 +76,7 @@ class GraphFrame(DeckScreen):
         """Whether ROS's own things are listed."""
         self.listed: dict[Kind, list[Entry]] = {}
         """All there is of each kind."""
+        self._panes: dict[Kind, GraphPane] = {}
         self._installed: tuple[str, ...] = ()
         """Every type there is on this computer, once somebody has asked for all."""
 
@@ -81,10 +90,9 @@ class GraphFrame(DeckScreen):
             yield GraphList()
             with ContentSwitcher(id="graph-detail", initial="graph-words"):
                 yield Words(id="graph-words")
-                yield NodePane(id=f"graph-{Kind.NODE.value}")
-                yield ServicePane(id=f"graph-{Kind.SERVICE.value}")
-                yield ActionPane(id=f"graph-{Kind.ACTION.value}")
-                yield TypePane(id=f"graph-{Kind.TYPE.value}")
+                for kind, pane in DETAILS.items():
+                    self._panes[kind] = pane(id=f"graph-{kind.value}")
+                yield from self._panes.values()
         yield GraphMap()
 
     @property
@@ -116,10 +124,8 @@ class GraphFrame(DeckScreen):
     def pane(self) -> GraphPane | None:
         """The detail in front."""
         here = self.trail.here
-        if here is None or not self.is_mounted:
-            return None
-        found = self.query(f"#graph-{here.kind.value}").results(GraphPane)
-        return next(iter(found), None)
+        pane = None if here is None else self._panes.get(here.kind)
+        return pane if pane is not None and pane.is_mounted else None
 
     @property
     def node_pane(self) -> NodePane | None:
