@@ -25,12 +25,18 @@ _LATE = Phrase(
 )
 
 
+def age_s(stamp: Time) -> float | None:
+    """How long ago that was, s; None if the stamp does not tell."""
+    if not (stamp.sec or stamp.nanosec):
+        return None
+    age = float(time.time() - stamp.sec - stamp.nanosec * 1e-9)
+    return age if age < _ANOTHER_CLOCK_S else None
+
+
 def is_late(say: Speech, stamp: Time, max_age_s: float) -> bool:
     """Whether a command is older than that, which is told; 0 seconds: any age will do."""
-    if not max_age_s or not (stamp.sec or stamp.nanosec):
-        return False
-    age_s = float(time.time() - stamp.sec - stamp.nanosec * 1e-9)
-    late = max_age_s < age_s < _ANOTHER_CLOCK_S
+    age = age_s(stamp)
+    late = bool(max_age_s) and age is not None and age > max_age_s
     if late:
-        say.warn(_LATE, every_s=1.0, age=age_s)
+        say.warn(_LATE, every_s=1.0, age=age)
     return late

@@ -1,15 +1,26 @@
 """Whether this process was held up, so that what waits in its queues may be older than it looks.
 
 A process that was stopped, or starved, for seconds finds commands and readings in its queues that
-it would take for new ones. The stamps of messages are no help: clocks of two machines differ.
+it would take for new ones: a command to drive whose stop waits behind it. For a moment it takes
+nothing in. A machine under load takes longer than that to hand over what has waited; then the
+stamp of a message tells, if it has one. Clocks of two machines differ, so stamps are asked only
+for the first seconds.
 """
 
 from __future__ import annotations
 
+import math
 import time
+from typing import TYPE_CHECKING
+
+from nodes._lateness import age_s
+
+if TYPE_CHECKING:
+    from builtin_interfaces.msg import Time
 
 _DRAIN_S = 0.1
 """How long it takes to get rid of what has waited."""
+_DRAIN_UNDER_LOAD_S = 3.0
 
 
 class Nap:
@@ -17,12 +28,18 @@ class Nap:
 
     def __init__(self) -> None:
         self._last_s = time.monotonic()
-        self._deaf_until_s = self._last_s
+        self._woke_s = -math.inf
 
     def lasted(self, longest_s: float) -> bool:
         """Whether to take nothing in now, having just slept for more than `longest_s`."""
         now_s = time.monotonic()
         if now_s - self._last_s > longest_s:
-            self._deaf_until_s = now_s + _DRAIN_S
+            self._woke_s = now_s
         self._last_s = now_s
-        return now_s < self._deaf_until_s
+        return now_s - self._woke_s < _DRAIN_S
+
+    def kept_waiting(self, stamp: Time) -> bool:
+        """Whether a message of this stamp was sent while this process slept."""
+        awake_s = time.monotonic() - self._woke_s
+        age = age_s(stamp) if awake_s < _DRAIN_UNDER_LOAD_S else None
+        return age is not None and age > awake_s

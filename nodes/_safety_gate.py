@@ -123,7 +123,7 @@ class Gate:
         )
 
     def _hear(self, source: str, message: AckermannDriveStamped) -> None:
-        if self.held_up():
+        if self.held_up() or self._nap.kept_waiting(message.header.stamp):
             return
         self._arrivals.hear(source)
         self._look()

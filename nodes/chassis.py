@@ -127,8 +127,9 @@ class Chassis(LessonNode):
     # ---------------------------------------------------------------- the node's thread
 
     def _obey(self, message: JointState) -> None:
-        waited = is_late(self.say, message.header.stamp, self.number("max_age_s"))
-        if self._nap.lasted(_AWAY_S) or waited:
+        stamp = message.header.stamp
+        late = is_late(self.say, stamp, self.number("max_age_s"))
+        if self._nap.lasted(_AWAY_S) or self._nap.kept_waiting(stamp) or late:
             return
         velocity = dict(zip(message.name, message.velocity, strict=False))
         position = dict(zip(message.name, message.position, strict=False))

@@ -22,6 +22,7 @@ from nodes._drive import FRAME, from_message
 from nodes._emergency import EmergencyStop
 from nodes._lateness import is_late
 from nodes._life import run
+from nodes._nap import Nap
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Text
 from nodes._speech import Phrase
@@ -106,6 +107,7 @@ class ElectronicDifferential(LessonNode):
     def __init__(self) -> None:
         super().__init__()
         self._command = STOP
+        self._nap = Nap()
         self._heard = False
         self._told: DriveSetpoint | None = None
         topic = self.text("drive_topic")
@@ -129,7 +131,9 @@ class ElectronicDifferential(LessonNode):
         self._publisher.wait_for_all_acked(_LAST_STOP)
 
     def _hear(self, message: AckermannDriveStamped) -> None:
-        if is_late(self.say, message.header.stamp, self.number("max_age_s")):
+        stamp = message.header.stamp
+        late = is_late(self.say, stamp, self.number("max_age_s"))
+        if self._held_up() or self._nap.kept_waiting(stamp) or late:
             return
         self._await_next()
         if self._emergency.active:
@@ -167,7 +171,13 @@ class ElectronicDifferential(LessonNode):
         else:
             self._deadline.cancel()
 
+    def _held_up(self) -> bool:
+        """Whether to take nothing in now, for it may have waited for too long already."""
+        max_age_s = self.number("max_age_s") or math.inf
+        return self._nap.lasted(max_age_s + 1.0 / self.number("rate"))
+
     def _repeat(self) -> None:
+        self._held_up()
         left_ns = self._deadline.time_until_next_call()
         if left_ns is not None and left_ns <= 0:
             # Who was stopped finds both timers due, in any order.
