@@ -74,7 +74,7 @@ class SimulatedPico:
         """Let `STEP_S` pass; the bytes for the computer come back."""
         self._now_ms += _STEP_MS
         if self._now_ms - self._drove_ms > _WATCHDOG_MS:
-            self.flags.add("W")
+            self.flags |= set("WA")
         self._look_for_faults()
         self._obey()
         listening = self._heard_ms is not None and self._now_ms - self._heard_ms < _QUIET_MS

@@ -99,7 +99,9 @@ class Control:
     def guard(self, _timer=None):
         """Switch the motors off in time, even while something else blocks; for a timer."""
         if self.board.since_ms(self._drove_ms) > self.config.WATCHDOG_MS:
+            # Who was silent may wake with a line on its lips that is long out of date.
             self.flags.add("W")
+            self.flags.add("A")
         self._look_for_faults()
         if self.stands:
             self._drive()

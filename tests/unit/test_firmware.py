@@ -178,7 +178,7 @@ def test_another_protocol_moves_nothing(pico: Pico) -> None:
 
 
 @pytest.mark.parametrize("only_timer", [False, True], ids=["", "while the rest is blocked"])
-def test_silence_stops_within_the_watchdog_and_the_next_line_drives(
+def test_silence_stops_within_the_watchdog_and_what_comes_late_does_not_drive(
     pico: Pico, only_timer: bool
 ) -> None:
     pico.start()
@@ -187,7 +187,9 @@ def test_silence_stops_within_the_watchdog_and_the_next_line_drives(
     moved = [motors != [0, 0] for motors in seen]
     assert moved == sorted(moved, reverse=True)
     assert 245 <= sum(moved) <= 262
-    assert not stood(pico.hear(Drive(3, 5, 5, 0)))
+    assert stood(pico.hear(Drive(3, 5, 5, 0)))
+    pico.hear(Drive(4, 0, 0, 0))
+    assert not stood(pico.hear(Drive(5, 5, 5, 0)))
 
 
 def test_bad_lines_do_not_keep_the_motors_on(pico: Pico) -> None:
