@@ -69,6 +69,14 @@ class RobotNodes:
             assert code == (0 if number != signal.SIGKILL else -number), name
             self.processes.pop(name).close()
 
+    def said(self) -> str:
+        """What the nodes said last, for whoever reads of a test that failed."""
+        ends = (
+            [f"--- {name}", *process.output.splitlines()[-12:]]
+            for name, process in self.processes.items()
+        )
+        return "\n".join(line for end in ends for line in end)
+
     def mend(self) -> None:
         """Let every node run, whatever a test has left."""
         for name in NODES:

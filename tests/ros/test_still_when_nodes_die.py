@@ -41,10 +41,11 @@ def module_nodes(
 
 
 @pytest.fixture
-def nodes(module_nodes: RobotNodes) -> Iterator[RobotNodes]:
+def nodes(request: pytest.FixtureRequest, module_nodes: RobotNodes) -> Iterator[RobotNodes]:
     """Everything runs, nobody commands, and the robot stands."""
     module_nodes.mend()
     yield module_nodes
+    request.node.add_report_section("teardown", "nodes", module_nodes.said())
     module_nodes.wheels.drive(0.0)
     module_nodes.wheels.wait_off()
     module_nodes.wheels.quiet()
