@@ -11,7 +11,7 @@ import pytest
 from textual.pilot import Pilot
 
 from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tests.tui.test_composer import PARSER
 from tests.tui.test_outcome import drive, head, result, safety, wheels
 from tui import clock
@@ -83,14 +83,14 @@ def test_accepted(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_wrong(look: Look, snap_compare: SnapCompare) -> None:
     """Wrong values underlined, their lines marked, each problem listed with its place."""
     app = look.app("composer", pad())
     assert snap_compare(app, terminal_size=look.size, run_before=written(BAD))
 
 
-@each_size
+@both_languages
 def test_refused_and_held(look: Look, snap_compare: SnapCompare) -> None:
     """Sent all the same: refused with its reasons; the safety node holds the wheels meanwhile."""
     problem = {

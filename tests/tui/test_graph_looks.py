@@ -13,7 +13,7 @@ from textual.widgets import Input
 from graph.data import CallResult, GoalStatus, GraphUpdate, ParametersResult
 from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
 from tui.screens.graph import GraphScreen
 from tui.widgets.graph_place import Kind, Place
@@ -79,13 +79,13 @@ def test_a_node(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE))
 
 
-@each_size
+@both_languages
 def test_parameters(look: Look, snap_compare: SnapCompare) -> None:
     """Five parameters with type and limits; at 80x24 in place of the links, else below them."""
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE, "p", "down"))
 
 
-@each_size
+@both_languages
 def test_a_parameter_that_is_refused(look: Look, snap_compare: SnapCompare) -> None:
     """A dialog with description, type, range, the typed value, and why the node refuses it."""
 
@@ -101,7 +101,7 @@ def test_a_parameter_that_is_refused(look: Look, snap_compare: SnapCompare) -> N
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_node_that_does_not_answer(look: Look, snap_compare: SnapCompare) -> None:
     """In place of the parameters: they could not be read, and why."""
 
@@ -112,14 +112,14 @@ def test_a_node_that_does_not_answer(look: Look, snap_compare: SnapCompare) -> N
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_service(look: Look, snap_compare: SnapCompare) -> None:
     """Type and nodes as links, a form that fits, sum 1 with its time; below the call itself."""
     before = at(SERVICE, "enter", "ctrl+s")
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_call_under_way_and_one_that_failed(look: Look, snap_compare: SnapCompare) -> None:
     """The newest call waits, seconds are counted, F7 cancels; the one below failed by time-out."""
 
@@ -140,28 +140,28 @@ def test_a_call_under_way_and_one_that_failed(look: Look, snap_compare: SnapComp
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_an_action(look: Look, snap_compare: SnapCompare) -> None:
     """Goal form, two goals: one succeeded, one executing with its twelfth feedback shown."""
     before = at(ACTION, "enter", "ctrl+s", "ctrl+s", executing)
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_type(look: Look, snap_compare: SnapCompare) -> None:
     """JointState down to its fields, the header unfolded; below the topics that are of it."""
     before = at(TYPE, "enter", "right")
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_the_map(look: Look, snap_compare: SnapCompare) -> None:
     """safety_stop in a box; what it hears at the left, what it says at the right, with whom."""
     before = at(NODE, "m", "left")
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_node_that_has_left(look: Look, snap_compare: SnapCompare) -> None:
     """The list marks it as gone; the detail says so, and what it last did."""
 
@@ -173,7 +173,7 @@ def test_a_node_that_has_left(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_an_empty_domain(look: Look, snap_compare: SnapCompare) -> None:
     """No node at all: it says why that may be."""
     app = app_of(look, GraphUpdate(0.0))

@@ -22,7 +22,7 @@ from tests.tui.recorded_map import (
     room,
     stamped,
 )
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
 from tui.panel_needs import panels_for
 from tui.panels.map import MapFeed
 from tui.panels.panel import Panel
@@ -63,7 +63,7 @@ def test_deck_with_a_map_looks(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
-@each_size
+@both_languages
 def test_deck_with_a_map_without_a_room_looks(look: Look, snap_compare: SnapCompare) -> None:
     """A grid of metres in place of a room; an open cone ahead, a broken mark behind."""
     update = map_update(

@@ -12,7 +12,7 @@ from launcher.errors import ProfileError, ProfileProblem
 from launcher.words import say
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, SESSION, RecordedPad
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
 from tui.orders import Order
 from tui.screens.picker import PickerScreen
 from tui.screens.refused import RefusedScreen
@@ -33,7 +33,7 @@ def test_picker_looks(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("picker"), terminal_size=look.size, run_before=look.settle)
 
 
-@each_size
+@both_languages
 def test_picker_with_a_session_in_the_background_looks(
     look: Look, snap_compare: SnapCompare
 ) -> None:

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from graph.data import Publication
 from tests.tui.recorded import lesson_update
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
 from tui.screens.publish import PublishDialog
 from tui.screens.topics import TopicsScreen
@@ -91,14 +91,14 @@ def test_a_form(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app, terminal_size=look.size, run_before=filled(nothing))
 
 
-@each_size
+@both_languages
 def test_an_error(look: Look, snap_compare: SnapCompare) -> None:
     """A word for a number: line marked, value underlined, field named, nothing sent."""
     app = look.app("topics")
     assert snap_compare(app, terminal_size=look.size, run_before=filled(wrong, "ctrl+s"))
 
 
-@each_size
+@both_languages
 def test_running(look: Look, snap_compare: SnapCompare) -> None:
     """Three publications with rate, count and listeners; the third has ended and says why."""
 
@@ -111,7 +111,7 @@ def test_running(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_new_topic(look: Look, snap_compare: SnapCompare) -> None:
     """Half a type is typed: those that fit are listed below, the best one first."""
 
@@ -125,7 +125,7 @@ def test_a_new_topic(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_stopped(look: Look, snap_compare: SnapCompare) -> None:
     """The title is red and says so while the emergency stop is engaged."""
 

@@ -14,7 +14,7 @@ from graph import recording
 from graph.bag_errors import not_made
 from graph.recording import RecordedTopic, RecordingStatus
 from tests.tui.app_runs import opened
-from tests.tui.snapshots import Look, SnapCompare, each_size
+from tests.tui.snapshots import Look, SnapCompare, both_languages
 from tui.app import DeckApp
 from tui.widgets.title_bar import TitleBar
 
@@ -116,7 +116,7 @@ async def test_a_folder_that_cannot_be_made_is_said() -> None:
         assert not app.recording.active
 
 
-@each_size
+@both_languages
 def test_recording_looks(look: Look, snap_compare: SnapCompare) -> None:
     """The title tells for how long and how much; the lesson's name gives way to it."""
 

@@ -9,7 +9,7 @@ from textual.pilot import Pilot
 
 from graph.replay import Replay
 from tests.tui.replayed import BagPad, replayed
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
 from tests.unit.bags import write_bag, write_robot_bag
 from tui.app import DeckApp
 from tui.i18n import set_language
@@ -61,14 +61,14 @@ def test_replay_looks(look: Look, drive: Path, snap_compare: SnapCompare) -> Non
     assert snap_compare(app, terminal_size=look.size, run_before=there)
 
 
-@each_size
+@both_languages
 def test_replayed_topics_look(look: Look, tmp_path: Path, snap_compare: SnapCompare) -> None:
     """Topics of the bag with rates as they were; the battery is of a package nobody has."""
     app = shown(look, write_bag(tmp_path / "walk"), "topics")
     assert snap_compare(app, terminal_size=look.size, run_before=there)
 
 
-@each_size
+@both_languages
 def test_a_cut_recording_looks(look: Look, tmp_path: Path, snap_compare: SnapCompare) -> None:
     """The bar says that it is cut short, a toast says what is missing."""
     bag = write_bag(tmp_path / "walk", seconds=2000, hz=10)

@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 
 from graph.data import EndpointInfo, GraphUpdate, Trouble
 from tests.tui.recorded import NOW_S, TOPICS, RecordedPad, lesson_update, sample
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tests.tui.test_topics_screen import CAMERA, depth_message, jpeg_message, with_camera
 from tui.app import DeckApp
 from tui.screens.topics import TopicsScreen
@@ -56,14 +56,14 @@ def test_a_message(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_picture(look: Look, snap_compare: SnapCompare) -> None:
     """The camera is chosen: colour bars over a grey ramp, with encoding, size and rate below."""
     before = shown("/camera/color/image_raw")
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
     """Sorted by state, troubles first, each a mark and a word; the QoS mismatch is explained."""
     publisher = EndpointInfo("/lidar", "std_msgs/msg/Float32", "best_effort", "volatile")
@@ -89,7 +89,7 @@ def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_endpoints(look: Look, snap_compare: SnapCompare) -> None:
     """Two mended by words above, a type that differs, then every endpoint with its policies."""
     kind = "std_msgs/msg/Float32"
@@ -110,7 +110,7 @@ def test_endpoints(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@each_size
+@both_languages
 def test_a_plot_of_two_fields(look: Look, snap_compare: SnapCompare) -> None:
     """A wave with a gap and a line that steps, each with its letter, its range and its marks."""
     before = shown("/drive", None, "enter", "down", "down", "down", "down", "m")
@@ -150,7 +150,7 @@ async def drawn(pilot: Pilot[Any]) -> None:
         pytest.param("sensor_msgs/msg/CompressedImage", jpeg_message(5000), id="broken"),
     ],
 )
-@each_size
+@both_languages
 def test_other_pictures(
     look: Look, snap_compare: SnapCompare, type_name: str, value: dict[str, Any]
 ) -> None:
@@ -171,7 +171,7 @@ def test_other_pictures(
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=decoded)
 
 
-@each_size
+@both_languages
 def test_an_unknown_type(look: Look, snap_compare: SnapCompare) -> None:
     """Rates stand in the head; in place of the message the package that would bring its type."""
     facts = {"type": "lidar_msgs/msg/Cloud", "package": "lidar_msgs", "reason": "not installed"}

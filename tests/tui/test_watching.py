@@ -20,7 +20,7 @@ from tests.tui.recorded import (
     sample,
 )
 from tests.tui.recorded_lesson import topic
-from tests.tui.snapshots import Look, SnapCompare, each_size, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
 from tui.orders import Order, WatchOrder
 from tui.screens.deck import LessonDeck
@@ -167,7 +167,7 @@ def test_a_robot_of_others(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
-@each_size
+@both_languages
 def test_nobody_there(look: Look, snap_compare: SnapCompare) -> None:
     """An empty domain: says so in words."""
     app = app_of(look, pad(NOTHING))
