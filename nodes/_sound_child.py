@@ -10,6 +10,7 @@ import os
 import select
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 from nodes._portaudio import IN, OUT
@@ -90,6 +91,9 @@ class SoundChild:
         """End it whatever it does."""
         self._process.kill()
         self.await_end()
+        if self._process.returncode is None:
+            # A device that hangs holds even a killed one: it is collected when it lets go.
+            threading.Thread(target=self._process.wait, daemon=True).start()
         if not self.last_words and self._process.returncode:
             self.last_words = f"exit code {self._process.returncode}"
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):

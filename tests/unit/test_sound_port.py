@@ -166,6 +166,17 @@ def test_whatever_goes_wrong_is_told_and_tried_again(
     has(log, "Microphone: stub")
 
 
+def test_a_child_that_takes_its_time_to_end_is_collected_nevertheless(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "program.py").write_text("import time; time.sleep(60)", encoding="utf-8")
+    monkeypatch.setattr(_sound_child, "PROGRAM", tmp_path / "program.py")
+    monkeypatch.setattr(_sound_child, "_LAST_WAIT_S", 0.0)
+    child = _sound_child.SoundChild(IN, "", RATE_HZ, 100)
+    child.close()
+    wait_until(lambda: child._process.returncode is not None, "its end is taken note of")
+
+
 def test_a_card_that_comes_is_seen_at_once(
     begin: Callable[..., tuple[SoundPort, Log]], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
