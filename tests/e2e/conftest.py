@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,7 +49,10 @@ def deck(ros_domain: int, tmp_path: Path) -> Iterator[Deck]:
     yield started
     for terminal in started.terminals:
         terminal.close()
-    left = marked.alive(mark)
+    # A supervisor ends after its screen, and one that was made ready when it has begun.
+    deadline = time.monotonic() + 20
+    while (left := marked.alive(mark)) and time.monotonic() < deadline:
+        time.sleep(0.02)
     for pid in left:
         os.kill(pid, signal.SIGKILL)
     assert not left, f"left running: {left}"
