@@ -85,7 +85,7 @@ def test_a_voice_sets_the_whole_robot_in_motion(ros_domain: int) -> None:
     nodes: list[tuple[str, str, dict[str, object]]] = [
         ("nodes.mock_sonar", "sonar_front", {"pattern": "constant", "value": 2.0, "rate": 10.0}),
         ("nodes.mock_camera", "camera", {}),
-        ("nodes.mock_audio", "audio", {"first_after": 4.0, "period": 4.0}),
+        ("nodes.mock_audio", "audio", {"first_after": 2.0, "period": 4.0}),
         ("nodes.head_controller", "", {}),
         ("nodes.ai_driver", "ai_driver", {}),
         ("nodes.safety_stop", "safety_stop", {"gate": True}),

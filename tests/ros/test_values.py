@@ -36,7 +36,7 @@ def test_an_empty_message_of_every_type_survives(type_name: str) -> None:
 
 
 @settings(
-    max_examples=300, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True
+    max_examples=150, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True
 )
 @given(data=st.data())
 def test_any_message_survives_the_way_there_and_back(data: st.DataObject) -> None:
@@ -49,7 +49,7 @@ def test_any_message_survives_the_way_there_and_back(data: st.DataObject) -> Non
     assert same(tree, again)
 
 
-@settings(max_examples=500, deadline=None, derandomize=True)
+@settings(max_examples=200, deadline=None, derandomize=True)
 @given(
     type_name=st.sampled_from([t for t in TYPES if t.startswith(("std_msgs", "sensor_msgs"))]),
     tree=st.recursive(
@@ -119,7 +119,7 @@ def test_what_people_write_is_understood() -> None:
     assert (bytes(image.data), image.width, image.height) == (b"\x01\x02", 2, 0)
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=50, deadline=None, derandomize=True)
 @given(tree=trees_of(load_message("sensor_msgs/msg/Image")), cut=st.integers(0, 40))
 def test_pictures_are_read_the_short_way_as_by_rclpy(tree: dict[str, Any], cut: int) -> None:
     cls = load_message("sensor_msgs/msg/Image")

@@ -29,7 +29,7 @@ def test_all_three_kinds_are_tried() -> None:
 
 
 @pytest.mark.parametrize("part", PARTS, ids=[name for name, _cls in PARTS])
-@settings(max_examples=6, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=3, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(data=st.data())
 def test_a_message_survives_yaml(part: tuple[str, type[Any]], data: st.DataObject) -> None:
     _name, cls = part
