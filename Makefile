@@ -39,7 +39,7 @@ run: .venv/.ready
 	exec .venv/bin/deck run $(or $(PROFILE),09-brain) $(ARGS)
 
 test: .venv/.ready
-	@exec .venv/bin/python -m pytest -n 2 --dist loadfile $(ARGS)
+	@exec .venv/bin/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 lint: .venv/.ready
 	@.venv/bin/ruff check .

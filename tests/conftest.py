@@ -11,12 +11,28 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-# A loaded machine is no failure of the code.
-settings.register_profile("deck", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# A loaded machine is no failure of the code. Each run takes other examples: half as many as usual
+# are enough of them.
+settings.register_profile(
+    "deck", deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("deck")
 
 DOMAINS = range(1, 102)
 """Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Spread each room's files over the run: some wait for processes while others compute."""
+    rooms: dict[Path, list[Path]] = {}
+    for path in dict.fromkeys(item.path for item in items):
+        rooms.setdefault(path.parent, []).append(path)
+    place = {
+        path: (number + 0.5) / len(paths)
+        for paths in rooms.values()
+        for number, path in enumerate(paths)
+    }
+    items.sort(key=lambda item: place[item.path])
 
 
 def pytest_collection_finish() -> None:
