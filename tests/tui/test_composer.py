@@ -283,11 +283,11 @@ async def test_without_a_lesson_nothing_is_sent() -> None:
         assert graph.published == []
 
 
-@pytest.mark.parametrize("size", [(1, 1), (10, 4), (30, 8), (59, 19)])
-async def test_any_size_is_survived(room: Room, size: tuple[int, int]) -> None:
+async def test_any_size_is_survived(room: Room) -> None:
     await room.write(TOO_FAST)
-    await room.pilot.resize_terminal(*size)
-    await room.show(drive("/drive", 0.1, 0.0))
+    for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
+        await room.pilot.resize_terminal(*size)
+        await room.show(drive("/drive", 0.1, 0.0))
 
 
 def test_a_broken_history_is_as_good_as_none(tmp_path: Path) -> None:

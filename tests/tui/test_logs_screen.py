@@ -169,14 +169,15 @@ async def test_on_a_narrow_screen_the_list_comes_and_goes() -> None:
         assert not screen.node_list.display
 
 
-@pytest.mark.parametrize("size", [(1, 1), (20, 5), (40, 10), (300, 80)])
-async def test_it_fits_any_terminal(size: tuple[int, int]) -> None:
-    async with HOME.app("logs").run_test(size=size) as pilot:
+async def test_it_fits_any_terminal() -> None:
+    async with HOME.app("logs").run_test(size=(1, 1)) as pilot:
         await settle(pilot)
-        await pilot.press("up", "l", "down", "slash", "x", "escape", "ctrl+s", "escape")
-        await pilot.resize_terminal(80, 24)
-        await pilot.pause()
-        assert len(screen_of(pilot).pane.view.index.shown) == len(LINES)
+        for size in ((1, 1), (20, 5), (300, 80)):
+            await pilot.resize_terminal(*size)
+            await pilot.press("up", "l", "down", "slash", "x", "escape", "ctrl+s", "escape")
+            await pilot.resize_terminal(80, 24)
+            await pilot.pause()
+            assert len(screen_of(pilot).pane.view.index.shown) == len(LINES)
 
 
 @every_look

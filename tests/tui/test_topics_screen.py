@@ -273,7 +273,7 @@ async def test_a_pause_holds_the_message_and_says_so(room: Room) -> None:
     assert "PAUSED" not in room.head()
 
 
-@pytest.mark.parametrize("key", ["y", "c", "с"])
+@pytest.mark.parametrize("key", ["y", "с"])
 async def test_the_message_is_copied_as_yaml(room: Room, key: str) -> None:
     await room.choose("/drive")
     await room.show(lesson_update())
@@ -343,13 +343,13 @@ async def test_the_language_changes_under_the_screen(room: Room) -> None:
     assert "Топик" in room.screen.table.render_line(0).text
 
 
-@pytest.mark.parametrize("size", [(1, 1), (10, 4), (30, 8), (59, 19)])
-async def test_any_size_is_survived(room: Room, size: tuple[int, int]) -> None:
-    await room.choose(CAMERA)
-    await room.pilot.resize_terminal(*size)
-    await room.show(lesson_update())
-    await room.choose(SONAR)
-    await room.show(lesson_update())
+async def test_any_size_is_survived(room: Room) -> None:
+    for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
+        await room.choose(CAMERA)
+        await room.pilot.resize_terminal(*size)
+        await room.show(lesson_update())
+        await room.choose(SONAR)
+        await room.show(lesson_update())
 
 
 def depth_message() -> dict[str, Any]:
