@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
+from textual.events import Key, Paste
 
 from tui.actions import REGISTRY, Acting, Action, bindings, bound
-from tui.actions.app import (
-    APP_ACTIONS,
-)
+from tui.actions.app import APP_ACTIONS, EmergencyStop
 from tui.actions.recording import RECORDING_ACTIONS
 from tui.actions.replay import REPLAY_ACTIONS
 from tui.brake import Brake
@@ -26,11 +25,13 @@ from tui.recording import Recording
 from tui.screens.opening import OpeningScreen
 from tui.sessions import Sessions
 from tui.themes import CYCLE, HIGH_CONTRAST, after
+from tui.typed import Typed
 from tui.widgets.replay_bar import ReplayBar
 
 if TYPE_CHECKING:
     from textual.command import Provider
     from textual.driver import Driver
+    from textual.events import Event
     from textual.screen import Screen
 
     from tui.seams import Launchpad
@@ -78,6 +79,7 @@ class DeckApp(App[int], Acting):
         self.feed = Feed(self)
         self.brake = Brake(self)
         self.recording = Recording(self)
+        self._typed = Typed(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
         self.register_theme(HIGH_CONTRAST)
 
@@ -91,6 +93,26 @@ class DeckApp(App[int], Acting):
         """Go on when the first frame is out."""
         # A moment of rest lets the threads that write to the terminal have their turn.
         self.call_after_refresh(self.set_timer, 0.01, self._begin)
+
+    async def on_event(self, event: Event) -> None:
+        """Take keys one after the other; the emergency stop waits for none."""
+        if not isinstance(event, (Key, Paste)) or event.is_forwarded:
+            await super().on_event(event)
+        elif not self._typed.must_wait(event):
+            target = self.focused or self.screen
+            await super().on_event(event)
+            self._typed.given(event, target)
+        elif not await self._stopped_by(event):
+            self._typed.wait(event)
+
+    async def _stopped_by(self, event: Key | Paste) -> bool:
+        """Stop the wheels if that is what this key, where it is pressed, is for."""
+        keys = self._keymap.get(EmergencyStop.id, EmergencyStop.key).split(",")
+        return (
+            isinstance(event, Key)
+            and event.key in map(str.strip, keys)
+            and await self._check_bindings(event.key, priority=True)
+        )
 
     async def _begin(self) -> None:
         """Show the lesson, or the picker if none was named, and open what was ordered."""

@@ -33,7 +33,7 @@ class Filter(TopicsAction):
     @classmethod
     def possible(cls, target: TopicsScreen) -> bool | None:
         """Not in the filter itself: there a slash is a slash."""
-        return not target.filter.has_focus and not target.is_covered
+        return target.focused is not target.filter and not target.is_covered
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:

@@ -134,7 +134,8 @@ class GraphScreen(GraphFrame):
 
     def go_back(self) -> None:
         """Go back to where the newest link was followed, else to the list."""
-        if self.filter.has_focus or (self.names.has_focus and self.filter.value):
+        in_list = self.focused is self.names
+        if self.focused is self.filter or (in_list and self.filter.value):
             self.filter.value = ""
             self.names.focus()
         elif self.draws:
@@ -142,7 +143,7 @@ class GraphScreen(GraphFrame):
                 self.toggle_map()
             else:
                 self._arrive()
-        elif not self.names.has_focus:
+        elif not in_list:
             self.names.focus()
         elif self.trail.back():
             self._arrive()

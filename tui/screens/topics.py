@@ -165,7 +165,7 @@ class TopicsScreen(TopicsPictures):
         """Leave the filter and show every topic again, or leave the message or the plot."""
         if self.plot_place is PlotPlace.ALONE:
             self.show_plot(PlotPlace.BESIDE)
-        if self.filter.has_focus or self.focused is self.table:
+        if self.focused in (self.filter, self.table):
             self.filter.value = ""
         self.table.focus()
 
