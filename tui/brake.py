@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tui import clock, emergency
 from tui.emergency import Emergency, listeners
+from tui.i18n import _
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from tui.app import DeckApp
 
 SENT_WITHIN_S = 2.0
+WHY_S = 20.0
+"""How long it is told why nodes are being stopped."""
 
 
 class Brake:
@@ -61,7 +64,10 @@ class Brake:
         if reached and await sending:
             return
         unheard = emergency.NO_GRAPH if reached else _unheard(feed.update)
-        self._set(self.state.fallen_back(emergency.NOT_OURS if feed.watching else unheard))
+        reason = emergency.NOT_OURS if feed.watching else unheard
+        self._set(self.state.fallen_back(reason))
+        # The title has room for it on wide terminals only, and forgets it with the release.
+        self._app.notify(_(reason), severity="error", timeout=WHY_S, markup=False)
         if feed.link is not None:
             await feed.link.stop()
         await sending

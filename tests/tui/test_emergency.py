@@ -121,6 +121,7 @@ async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
         assert ("stop",) in pad.link.asked
         assert STOP in pad.graph.published
         assert "nobody listens" in app.screen.query_one(TitleBar).text
+        assert ["nobody listens" in told.message for told in app._notifications] == [True]
 
 
 async def test_where_ros_cannot_be_reached_the_nodes_are_stopped_instead() -> None:
