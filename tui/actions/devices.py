@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
+from tui.actions import lines
 from tui.actions.action import Action
 from tui.i18n import N_
 
@@ -20,24 +21,11 @@ class DevicesAction(Action["DevicesScreen"]):
         return bool(target.chosen)
 
 
-class Pause(DevicesAction):
+class Pause(lines.Pause["DevicesScreen"], DevicesAction):
     """Stand still, or follow."""
 
     id = "devices.pause"
-    key = "p,з"
-    title = N_("Pause")
     tooltip = N_("Stand still while frames come in, or follow the newest again.")
-    footer = True
-
-    @classmethod
-    def label(cls, target: DevicesScreen) -> str:
-        """By what it would do now."""
-        return cls.title if target.pane.view.following else N_("Resume")
-
-    @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
-        """Do the other of the two."""
-        target.pane.view.toggle_following()
 
 
 class OneWay(DevicesAction):
@@ -95,19 +83,10 @@ class Hex(DevicesAction):
         target.toggle_hex()
 
 
-class Fold(DevicesAction):
+class Fold(lines.Fold["DevicesScreen"], DevicesAction):
     """Fold long lines, or not."""
 
     id = "devices.fold"
-    key = "w,ц"
-    title = N_("Fold")
-    tooltip = N_("Fold long lines, or show one row of each: left and right shift it.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
-        """Do the other of the two."""
-        target.pane.view.set_fold(not target.pane.view.fold)
 
 
 class Clear(DevicesAction):
@@ -125,85 +104,37 @@ class Clear(DevicesAction):
         target.clear_frames()
 
 
-class Search(DevicesAction):
+class Search(lines.Search["DevicesScreen"], DevicesAction):
     """Search."""
 
     id = "devices.search"
-    key = "slash,ctrl+f"
-    title = N_("Search")
     tooltip = N_("Find text in the frames while it is written; Escape ends it.")
-    priority = True
-
-    @classmethod
-    def possible(cls, target: DevicesScreen) -> bool | None:
-        """Not where one is asked already: there a slash is a slash."""
-        return bool(target.chosen) and not target.pane.prompt.kind
-
-    @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
-        """Ask what for."""
-        target.pane.search()
 
 
-class _Find(DevicesAction):
-    """Go to a frame that was found."""
-
-    step: ClassVar[int]
-
-    @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
-        """Point at it."""
-        target.pane.find(cls.step)
-
-
-class FindNext(_Find):
+class FindNext(lines.FindNext["DevicesScreen"], DevicesAction):
     """The next found frame."""
 
     id = "devices.next"
-    key = "n,т"
-    title = N_("Next")
     tooltip = N_("Go to the next frame that was found.")
-    step = 1
 
 
-class FindPrevious(_Find):
+class FindPrevious(lines.FindPrevious["DevicesScreen"], DevicesAction):
     """The previous found frame."""
 
     id = "devices.previous"
-    key = "N,Т"
-    title = N_("Previous")
     tooltip = N_("Go to the previous frame that was found.")
-    step = -1
 
 
-class Copy(DevicesAction):
+class Copy(lines.Copy["DevicesScreen"], DevicesAction):
     """Copy the frames chosen."""
 
     id = "devices.copy"
-    key = "c,с"
-    title = N_("Copy")
-    tooltip = N_("Copy the lines chosen to the clipboard of your terminal.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
-        """Copy."""
-        target.pane.copy()
 
 
-class Save(DevicesAction):
+class Save(lines.Save["DevicesScreen"], DevicesAction):
     """Write frames to a file."""
 
     id = "devices.save"
-    key = "ctrl+s"
-    title = N_("Write")
-    tooltip = N_("Write the lines chosen, else all shown, to a file.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
-        """Ask for its name."""
-        target.pane.save()
 
 
 DEVICES_ACTIONS = (

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
+from tui.actions import lines
 from tui.actions.action import Action
 from tui.i18n import N_
 
@@ -16,76 +17,33 @@ class LogsAction(Action["LogsScreen"]):
     """Something about the log."""
 
 
-class Follow(LogsAction):
-    """Follow or pause."""
+class Pause(lines.Pause["LogsScreen"]):
+    """Stand still, or follow."""
 
     id = "logs.follow"
-    key = "p,з"
-    title = N_("Pause")
     tooltip = N_("Stand still while lines come in, or follow the newest again.")
-    footer = True
-
-    @classmethod
-    def label(cls, target: LogsScreen) -> str:
-        """By what it would do now."""
-        return cls.title if target.pane.view.following else N_("Resume")
-
-    @classmethod
-    async def run(cls, target: LogsScreen) -> None:
-        """Do the other of the two."""
-        target.pane.view.toggle_following()
 
 
-class Search(LogsAction):
+class Search(lines.Search["LogsScreen"]):
     """Search."""
 
     id = "logs.search"
-    key = "slash,ctrl+f"
-    title = N_("Search")
     tooltip = N_("Find text in the lines while it is written; Escape ends it.")
     footer = True
-    priority = True
-
-    @classmethod
-    def possible(cls, target: LogsScreen) -> bool | None:
-        """Not where one is asked already: there a slash is a slash."""
-        return not target.pane.prompt.kind
-
-    @classmethod
-    async def run(cls, target: LogsScreen) -> None:
-        """Ask what for."""
-        target.pane.search()
 
 
-class _Find(LogsAction):
-    """Go to a line that was found."""
-
-    step: ClassVar[int]
-
-    @classmethod
-    async def run(cls, target: LogsScreen) -> None:
-        """Point at it."""
-        target.pane.find(cls.step)
-
-
-class FindNext(_Find):
+class FindNext(lines.FindNext["LogsScreen"]):
     """The next found line."""
 
     id = "logs.next"
-    key = "n,т"
-    title = N_("Next")
     tooltip = N_("Go to the next line that was found.")
-    step = 1
 
 
-class FindPrevious(_Find):
+class FindPrevious(lines.FindPrevious["LogsScreen"]):
     """The previous found line."""
 
     id = "logs.previous"
-    key = "N,Т"
-    title = N_("Previous")
     tooltip = N_("Go to the previous line that was found.")
-    step = -1
 
 
 class OnlyFound(LogsAction):
@@ -194,34 +152,16 @@ class HearAll(LogsAction):
         target.hear_all()
 
 
-class Fold(LogsAction):
+class Fold(lines.Fold["LogsScreen"]):
     """Fold long lines, or not."""
 
     id = "logs.fold"
-    key = "w,ц"
-    title = N_("Fold")
-    tooltip = N_("Fold long lines, or show one row of each: left and right shift it.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: LogsScreen) -> None:
-        """Do the other of the two."""
-        target.pane.view.set_fold(not target.pane.view.fold)
 
 
-class Copy(LogsAction):
+class Copy(lines.Copy["LogsScreen"]):
     """Copy the lines chosen."""
 
     id = "logs.copy"
-    key = "c,с"
-    title = N_("Copy")
-    tooltip = N_("Copy the lines chosen to the clipboard of your terminal.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: LogsScreen) -> None:
-        """Copy."""
-        target.pane.copy()
 
 
 class CopyAll(LogsAction):
@@ -238,23 +178,14 @@ class CopyAll(LogsAction):
         target.pane.copy_all()
 
 
-class Save(LogsAction):
+class Save(lines.Save["LogsScreen"]):
     """Write lines to a file."""
 
     id = "logs.save"
-    key = "ctrl+s"
-    title = N_("Write")
-    tooltip = N_("Write the lines chosen, else all shown, to a file.")
-    footer = True
-
-    @classmethod
-    async def run(cls, target: LogsScreen) -> None:
-        """Ask for its name."""
-        target.pane.save()
 
 
 LOGS_ACTIONS = (
-    Follow,
+    Pause,
     Search,
     FindNext,
     FindPrevious,
