@@ -36,6 +36,8 @@ class Sessions:
         self.parting_words = ""
         """Said on the terminal after the screen has gone."""
         self._strays_asked: set[Stray] = set()
+        self._going_back = asyncio.Lock()
+        """Held while the screens of a session that has been closed are taken away."""
         self._leaving = False
         self._code = 0
 
@@ -75,6 +77,9 @@ class Sessions:
     async def _open(self, order: Order) -> None:
         app = self._app
         self.opening = _name_of(order)
+        # The screens of the session before may be on their way out.
+        async with self._going_back:
+            pass
         try:
             if self.picking:
                 await app.show_screen("deck")
@@ -124,8 +129,9 @@ class Sessions:
                 await link.stop_strays(strays)
 
     async def _close(self) -> None:
-        await self._end()
-        await self._back_to_picker()
+        async with self._going_back:
+            await self._end()
+            await self._back_to_picker()
 
     async def _leave(self) -> None:
         await self._end()

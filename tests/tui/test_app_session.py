@@ -28,6 +28,7 @@ from tui import title
 from tui.app import DeckApp
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
+from tui.screens.deck import LessonDeck
 from tui.screens.logs import LogsScreen
 from tui.screens.picker import PickerScreen
 from tui.screens.stopping import StoppingScreen
@@ -55,6 +56,18 @@ def test_updates_that_wait_are_merged_and_no_sample_is_lost() -> None:
     assert [sample.value["data"] for sample in taken.samples["/a"]] == [0, 1, 2, 3, 4]
     assert wakes == [1]
     assert inbox.take() is None
+
+
+async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        app.sessions.close()
+        app.sessions.open(app.sessions.order)
+        await app.workers.wait_for_complete([w for w in app.workers if w.group == "leaving"])
+        await settle(pilot)
+        assert isinstance(app.screen, LessonDeck)
+        assert pad.link.asked == [("shutdown",), ("aclose",)]
+        assert app.feed.session is SESSION
 
 
 def test_a_flood_of_updates_is_bounded_while_the_app_is_busy() -> None:
