@@ -11,14 +11,13 @@ DELETE, F12 = "\x1b[3~", "\x1b[24~"
 
 
 def test_a_message_is_filled_in_published_and_repeated_until_it_is_stopped(deck: Deck) -> None:
-    terminal = deck.open("09-brain", "--lang", "en")
-    terminal.wait_for("8/8")
+    terminal = deck.open("04-ackermann", "--lang", "en")
+    terminal.wait_for("1/1")
+    # Without a pause, as somebody types who knows the way.
     terminal.press("f3")
-    terminal.wait_for("/drive_safe")
     terminal.type("/ai_command")
-    terminal.wait_until(lambda text: "1 of " in text, "the filter")
-    terminal.press("enter")
-    terminal.type("n")
+    terminal.wait_for("1 of ")
+    terminal.press("enter", "n")
     terminal.wait_for("fits std_msgs/msg/String")
     # A word where a text belongs that YAML takes for a truth: named, and not sent.
     terminal.type("data: on #")
