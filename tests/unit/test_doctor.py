@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from launcher.serial_ports import SerialPort
 from tui.cli import main
 from tui.doctor import Finding, Level
 from tui.doctor.login import LoginFacts, setting
@@ -21,7 +22,7 @@ from tui.doctor.ros import MESSAGES, RosFacts
 from tui.doctor.ros import judge as judge_ros
 from tui.doctor.runs import RunFacts
 from tui.doctor.runs import judge as judge_runs
-from tui.doctor.serial_ports import SerialFacts, SerialPort
+from tui.doctor.serial_ports import Access, SerialFacts
 from tui.doctor.serial_ports import judge as judge_serial
 from tui.doctor.shared_memory import SharedMemoryFacts
 from tui.doctor.shared_memory import judge as judge_shared_memory
@@ -187,7 +188,8 @@ def test_terminals(facts: TerminalFacts, verdict: list[tuple[str, str]]) -> None
 
 
 def test_a_serial_port_without_permission_names_the_group_and_the_lasting_name() -> None:
-    port = SerialPort("/dev/ttyACM0", "Pico", "/dev/serial/by-id/usb-Pico", "dialout", False)
+    pico = SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-Pico", description="Pico")
+    port = Access(pico, "dialout", allowed=False)
     outside = judge_serial(SerialFacts((port,), "maria", ("users",)))
     inside = judge_serial(SerialFacts((port,), "maria", ("dialout",)))
     assert bad(outside) == bad(inside) == [("serial", "warn")]
@@ -197,7 +199,7 @@ def test_a_serial_port_without_permission_names_the_group_and_the_lasting_name()
 
 
 def test_serial_ports_that_may_be_opened_and_none_at_all() -> None:
-    port = SerialPort("/dev/ttyUSB0", "CP2102", "", "dialout", True)
+    port = Access(SerialPort("/dev/ttyUSB0", description="CP2102"), "dialout")
     findings = judge_serial(SerialFacts((port,)))
     assert bad(findings) == []
     assert "serial port /dev/ttyUSB0 (CP2102)" in text(findings, "serial")

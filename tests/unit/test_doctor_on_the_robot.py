@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from launcher.serial_ports import SerialPort as FoundPort
+from launcher.serial_ports import SerialPort
 from tests.unit.test_doctor import bad, text
 from tui.doctor import groups, power, serial_ports
 from tui.doctor.groups import GroupFacts
 from tui.doctor.power import PowerFacts
-from tui.doctor.serial_ports import SerialFacts, SerialPort
+from tui.doctor.serial_ports import Access, SerialFacts
 
 PI = "Raspberry Pi 5 Model B Rev 1.0"
 
@@ -128,19 +128,14 @@ def test_groups_of_this_machine_can_be_read(tmp_path: Path) -> None:
 
 def test_ports_are_told_with_what_they_look_like(monkeypatch: pytest.MonkeyPatch) -> None:
     there = [
-        FoundPort("/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython", "2e8a:0005", "Board"),
-        FoundPort("/dev/ttyUSB0", "", "1a86:7523", ""),
-        FoundPort("/dev/ttyACM1", "", "1234:5678", "Modem"),
+        SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython", "2e8a:0005", "Board"),
+        SerialPort("/dev/ttyUSB0", "", "1a86:7523", ""),
+        SerialPort("/dev/ttyACM1", "", "1234:5678", "Modem"),
     ]
     monkeypatch.setattr(serial_ports, "serial_ports", lambda: there)
-    facts = serial_ports.look()
-    assert [port.kind for port in facts.ports] == [port.kind for port in there]
-    allowed = SerialFacts(
-        tuple(
-            SerialPort(port.device, port.description, port.by_id, kind=port.kind)
-            for port in facts.ports
-        )
-    )
+    found = serial_ports.look().ports
+    assert [access.port for access in found] == there
+    allowed = SerialFacts(tuple(Access(port) for port in there))
     assert [finding.text for finding in serial_ports.judge(allowed)] == [
         "serial port /dev/serial/by-id/usb-MicroPython (Board, Pico with MicroPython)",
         "serial port /dev/ttyUSB0 (CH340 bridge: a sonar, or the servos)",

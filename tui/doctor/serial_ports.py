@@ -5,37 +5,31 @@ from __future__ import annotations
 import grp
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from launcher.serial_ports import serial_ports
 from tui.doctor.finding import ok, warn
 from tui.i18n import _, said
 
 if TYPE_CHECKING:
+    from launcher.serial_ports import SerialPort
     from tui.doctor.finding import Finding
 
 
-@dataclass(frozen=True)
-class SerialPort:
-    """One port."""
+class Access(NamedTuple):
+    """One port, and who may open it."""
 
-    device: str
-    """`/dev/ttyACM0`."""
-    description: str = ""
-    by_id: str = ""
-    """The name that stays the same at every plugging, empty if there is none."""
+    port: SerialPort
     group: str = ""
     allowed: bool = True
     """Whether this user may read and write it."""
-    kind: str = ""
-    """What it looks like by its USB ids, empty if they tell nothing."""
 
 
 @dataclass(frozen=True)
 class SerialFacts:
     """What is there."""
 
-    ports: tuple[SerialPort, ...] = ()
+    ports: tuple[Access, ...] = ()
     user: str = ""
     groups: tuple[str, ...] = ()
     """Of this process: a group joined a moment ago counts only after logging in again."""
@@ -49,14 +43,7 @@ def look() -> SerialFacts:
     except ImportError as error:
         return SerialFacts(error=str(error))
     ports = tuple(
-        SerialPort(
-            device=port.device,
-            description=port.description,
-            by_id=port.name,
-            group=_group_of(port.device),
-            allowed=os.access(port.device, os.R_OK | os.W_OK),
-            kind=port.kind,
-        )
+        Access(port, _group_of(port.device), os.access(port.device, os.R_OK | os.W_OK))
         for port in found
     )
     return SerialFacts(ports, os.environ.get("USER", ""), tuple(map(_name, os.getgroups())))
@@ -68,7 +55,7 @@ def judge(facts: SerialFacts) -> list[Finding]:
         return [warn("serial", facts.error, "pip install pyserial")]
     if not facts.ports:
         return [ok("serial", _("no serial port; mocks need none"))]
-    return [_port(port, facts) for port in facts.ports]
+    return [_port(access, facts) for access in facts.ports]
 
 
 def permission_mend(device: str) -> str:
@@ -86,14 +73,14 @@ def _mend(group: str, user: str, groups: tuple[str, ...]) -> str:
     return mend.format(group=group, user=user)
 
 
-def _port(port: SerialPort, facts: SerialFacts) -> Finding:
-    name = port.by_id or port.device
+def _port(access: Access, facts: SerialFacts) -> Finding:
+    port = access.port
     what = ", ".join(part for part in (port.description, said(port.kind)) if part)
-    text = _("serial port {name}").format(name=name) + (f" ({what})" if what else "")
-    if port.allowed:
+    text = _("serial port {name}").format(name=port.path) + (f" ({what})" if what else "")
+    if access.allowed:
         return ok("serial", text)
     text = _("{what}: no permission").format(what=text)
-    return warn("serial", text, _mend(port.group, facts.user, facts.groups))
+    return warn("serial", text, _mend(access.group, facts.user, facts.groups))
 
 
 def _group_of(device: str) -> str:
