@@ -37,7 +37,7 @@ def drive(start: Pose, approach: Approach, model: Chassis) -> tuple[Pose, float]
     return pose, way_m
 
 
-@settings(deadline=None, max_examples=400)
+@settings(deadline=None, max_examples=120)
 @given(poses, angles, st.floats(0.0, 5.0), st.floats(0.03, 0.5), chassis)
 @example(Pose(), math.pi / 2, 0.1, 0.03, Chassis())
 @example(Pose(), math.pi, 5.0, 0.03, Chassis())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
@@ -10,6 +9,13 @@ import pytest
 from graph.bag import open_bag
 from graph.bag_errors import BagError
 from tests.unit.bags import write_bag
+
+
+@pytest.fixture(scope="module")
+def long_bag(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A file of several chunks, with 100 003 messages."""
+    folder = tmp_path_factory.mktemp("long") / "walk"
+    return (write_bag(folder, seconds=5000, hz=20) / "walk.mcap").read_bytes()
 
 
 def said_of(path: Path) -> str:
@@ -78,11 +84,11 @@ def test_broken_metadata_are_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.99])
-def test_a_bag_cut_anywhere_is_read_as_far_as_it_goes(tmp_path: Path, share: float) -> None:
-    write_bag(tmp_path / "walk", seconds=5000, hz=20)
-    file = tmp_path / "walk" / "walk.mcap"
-    whole = file.read_bytes()
-    file.write_bytes(whole[: int(len(whole) * share)])
+def test_a_bag_cut_anywhere_is_read_as_far_as_it_goes(
+    tmp_path: Path, long_bag: bytes, share: float
+) -> None:
+    file = write_bag(tmp_path / "walk") / "walk.mcap"
+    file.write_bytes(long_bag[: int(len(long_bag) * share)])
     with open_bag(tmp_path / "walk") as bag:
         found = list(bag.messages())
         stamps = [stamp for _topic, stamp, _raw in found]
@@ -101,9 +107,9 @@ def test_a_bag_cut_in_its_first_breath_is_empty_but_opens(tmp_path: Path) -> Non
         assert bag.length_s == 0.0
 
 
-def test_a_damaged_middle_is_a_word_when_it_is_come_to(tmp_path: Path) -> None:
-    file = write_bag(tmp_path / "walk", seconds=5000, hz=20) / "walk.mcap"
-    whole = bytearray(file.read_bytes())
+def test_a_damaged_middle_is_a_word_when_it_is_come_to(tmp_path: Path, long_bag: bytes) -> None:
+    file = write_bag(tmp_path / "walk") / "walk.mcap"
+    whole = bytearray(long_bag)
     middle = len(whole) // 3
     whole[middle : middle + 2000] = b"\xff" * 2000
     file.write_bytes(whole)
@@ -111,13 +117,12 @@ def test_a_damaged_middle_is_a_word_when_it_is_come_to(tmp_path: Path) -> None:
         list(bag.messages())
 
 
-def test_several_files_of_one_bag_are_read_though_the_last_is_cut(tmp_path: Path) -> None:
+def test_several_files_of_one_bag_are_read_though_the_last_is_cut(
+    tmp_path: Path, long_bag: bytes
+) -> None:
     folder = write_bag(tmp_path / "walk", seconds=1)
-    second = write_bag(tmp_path / "more", seconds=5000, hz=20) / "more.mcap"
-    data = second.read_bytes()
-    (folder / "walk_1.mcap").write_bytes(data[: len(data) // 2])
+    (folder / "walk_1.mcap").write_bytes(long_bag[: len(long_bag) // 2])
     (folder / "metadata.yaml").unlink()
-    shutil.rmtree(tmp_path / "more")
     with open_bag(folder) as bag:
         assert len(list(bag.messages())) == bag.messages_count > 13
         assert bag.cut

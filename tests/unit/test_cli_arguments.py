@@ -120,7 +120,7 @@ def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("redirection", "code", "told"),
-    [(">/dev/full", 1, "No space left"), (">&-", 0, ""), ("| true", None, ""), ("<&-", 0, "")],
+    [(">/dev/full", 1, "No space left"), ("<&- >&-", 0, ""), ("| true", None, "")],
 )
 def test_whatever_becomes_of_the_output_there_is_no_traceback(
     redirection: str, code: int | None, told: str, tmp_path: Path

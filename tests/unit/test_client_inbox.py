@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from launcher.client_inbox import MAX_LINES, Inbox
+import pytest
+
+from launcher import client_inbox
+from launcher.client_inbox import Inbox
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
 
+MAX_LINES = 1000
 
-async def test_news_that_nobody_takes_are_merged_and_counted() -> None:
+
+async def test_news_that_nobody_takes_are_merged_and_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(client_inbox, "MAX_LINES", MAX_LINES)
     inbox = Inbox()
     for state in (NodeState.STARTING, NodeState.READY):
         inbox.put_nodes([NodeStatus("sonar", "x", state)])

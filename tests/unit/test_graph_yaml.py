@@ -151,7 +151,7 @@ def test_a_bomb_of_aliases_does_not_go_off() -> None:
         from_yaml("\n".join(lines))
 
 
-@settings(max_examples=500, deadline=None, derandomize=True)
+@settings(max_examples=200, deadline=None, derandomize=True)
 @given(st.text(max_size=60) | st.text("ab:-[]{}'\"#&*!|>%@`\t\n ,?0.", max_size=40))
 def test_any_text_is_fields_or_an_error_with_a_place(text: str) -> None:
     place = (1, 1)
@@ -163,7 +163,7 @@ def test_any_text_is_fields_or_an_error_with_a_place(text: str) -> None:
     assert place[1] >= 1
 
 
-@settings(max_examples=500, deadline=None, derandomize=True)
+@settings(max_examples=200, deadline=None, derandomize=True)
 @given(st.text(st.characters(codec="utf-8"), max_size=30) | st.text("onyes1.e0-_: #", max_size=6))
 def test_any_text_stays_the_text_for_deck_and_for_ros2(text: str) -> None:
     written = to_yaml({"a": text, "b": [text]})

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from launcher.errors import ProfileError
@@ -55,7 +55,6 @@ def load(path: Path) -> None:
             assert problem.line > 0 or problem.file.startswith("--set")
 
 
-@settings(max_examples=150, deadline=None)
 @given(data=st.one_of(PROFILE, ANYTHING))
 def test_any_yaml(data: Any, folder: Path) -> None:
     path = folder / "any.yaml"
@@ -63,7 +62,6 @@ def test_any_yaml(data: Any, folder: Path) -> None:
     load(path)
 
 
-@settings(max_examples=150, deadline=None)
 @given(data=st.binary(max_size=200))
 def test_any_bytes(data: bytes, folder: Path) -> None:
     path = folder / "bytes.yaml"

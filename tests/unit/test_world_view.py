@@ -73,7 +73,7 @@ def test_blue_may_come_first() -> None:
     assert (blue != red).any()
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.floats(-0.9, 3.9), st.floats(-1.9, 1.9), st.floats(-math.pi, math.pi))
 def test_a_box_is_seen_where_a_ray_of_the_sonars_meets_it(
     x: float, y: float, heading: float
@@ -102,7 +102,7 @@ def test_a_nearer_box_hides_a_farther_one() -> None:
     assert (pictures[0] == pictures[1])[HEIGHT // 2 - 2 :].all()
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(EYES)
 def test_a_box_is_nowhere_but_in_the_part_that_it_is_looked_for_in(eye: Eye) -> None:
     view = RoomView(LIVING_ROOM, HEIGHT, WIDTH)
