@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import signal
-from collections.abc import Iterator
+from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 
+from launcher.client import attach, running
 from tests.deck_process import DeckProcess, alive, deck
 from tests.unit.profile_files import written
 from tests.waiting import wait_until
@@ -22,10 +23,11 @@ TWO = "nodes: {other: {exec: [sleep, 100]}, quiet: {exec: [sleep, 100]}}"
 
 
 @pytest.fixture(autouse=True)
-def _domain(ros_domain: int) -> Iterator[int]:
+async def _domain(ros_domain: int) -> AsyncIterator[int]:
     yield ros_domain
-    for session in json.loads("\n".join(deck("ps", "--json").lines)):
-        deck("down", session["run_id"])
+    for session in running():
+        client = await attach(session.run_id)
+        await client.shutdown(now=True)
 
 
 def test_from_up_to_down(tmp_path: Path, ros_domain: int) -> None:

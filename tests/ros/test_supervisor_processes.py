@@ -91,33 +91,33 @@ async def test_a_node_hears_sigint_though_whoever_started_deck_ignores_it(start:
     assert await said(client, "node", "int") == "True"
 
 
-@pytest.mark.parametrize(
-    ("text", "state", "code", "name", "detail"),
-    [
-        ("pass", NodeState.EXITED, 0, None, "ended"),
-        ("raise SystemExit(3)", NodeState.FAILED, 3, None, "exit code 3"),
-        (
-            "import os; print('dying'); os.abort()",
-            NodeState.FAILED,
-            None,
-            "SIGABRT",
-            "killed by SIGABRT: dying",
-        ),
-        ("1/0", NodeState.FAILED, 1, None, "exit code 1: ZeroDivisionError: division by zero"),
-    ],
-)
-async def test_how_a_node_ended_is_told(
-    start: Launch,
-    text: str,
-    state: NodeState,
-    code: int | None,
-    name: str | None,
-    detail: str,
-) -> None:
-    client = await start({"node": {"exec": script(text)}})
-    status = await until_state(client, "node", NodeState.EXITED, NodeState.FAILED)
-    assert (status.state, status.exit_code, status.signal) == (state, code, name)
-    assert (status.detail, status.pid) == (detail, None)
+ENDS: dict[str, tuple[str, NodeState, int | None, str | None, str]] = {
+    "well": ("pass", NodeState.EXITED, 0, None, "ended"),
+    "code": ("raise SystemExit(3)", NodeState.FAILED, 3, None, "exit code 3"),
+    "abort": (
+        "import os; print('dying'); os.abort()",
+        NodeState.FAILED,
+        None,
+        "SIGABRT",
+        "killed by SIGABRT: dying",
+    ),
+    "error": (
+        "1/0",
+        NodeState.FAILED,
+        1,
+        None,
+        "exit code 1: ZeroDivisionError: division by zero",
+    ),
+}
+"""What a node does, and how that is told."""
+
+
+async def test_how_a_node_ended_is_told(start: Launch) -> None:
+    client = await start({name: {"exec": script(end[0])} for name, end in ENDS.items()})
+    for name, (_text, state, code, number, detail) in ENDS.items():
+        status = await until_state(client, name, NodeState.EXITED, NodeState.FAILED)
+        assert (status.state, status.exit_code, status.signal) == (state, code, number)
+        assert (status.detail, status.pid) == (detail, None)
 
 
 async def test_a_warm_node_that_had_threads_ends_with_its_own_code(
@@ -195,20 +195,28 @@ async def test_a_stop_is_not_undone(start: Launch) -> None:
     assert client.nodes["node"].state is NodeState.EXITED
 
 
-@pytest.mark.parametrize("way", ["", "session", "session twice"])
-async def test_a_deaf_grandchild_is_ended_with_its_node(start: Launch, way: str) -> None:
-    """In the node's group, in a session of its own, or daemonised."""
-    client = await start({"node": {"exec": script(FORK_OFF, "deaf", *way.split())}})
-    grandchild = int(await said(client, "node", "grandchild"))
-    stopping = asyncio.ensure_future(client.stop("node"))
-    await until(lambda: str(grandchild) in client.nodes["node"].detail, "the word who holds it up")
-    assert client.nodes["node"].state is NodeState.STOPPING
-    assert "SIGINT sent, waits for" in client.nodes["node"].detail
-    assert alive(grandchild)
-    await client.stop("node", now=True)
+WAYS = {"group": "", "session": "session", "daemon": "session twice"}
+"""Where a grandchild may be: in the node's group, in a session of its own, or daemonised."""
+
+
+async def test_a_deaf_grandchild_is_ended_with_its_node(start: Launch) -> None:
+    client = await start(
+        {name: {"exec": script(FORK_OFF, "deaf", *way.split())} for name, way in WAYS.items()}
+    )
+    grandchildren = {name: int(await said(client, name, "grandchild")) for name in WAYS}
+    stopping = asyncio.ensure_future(client.stop())
+    for name, pid in grandchildren.items():
+        await until(
+            lambda name=name, pid=pid: str(pid) in client.nodes[name].detail, "who holds it up"
+        )
+        assert client.nodes[name].state is NodeState.STOPPING
+        assert "SIGINT sent, waits for" in client.nodes[name].detail
+        assert alive(pid)
+    await client.stop(now=True)
     await stopping
-    assert client.nodes["node"].state is NodeState.EXITED
-    assert not alive(grandchild)
+    for name, pid in grandchildren.items():
+        assert client.nodes[name].state is NodeState.EXITED
+        assert not alive(pid)
 
 
 async def test_asking_twice_is_asking_in_a_hurry(start: Launch) -> None:
@@ -222,17 +230,17 @@ async def test_asking_twice_is_asking_in_a_hurry(start: Launch) -> None:
     assert asyncio.get_running_loop().time() - began < 4
 
 
-@pytest.mark.parametrize("way", ["", "session twice"])
-async def test_what_a_crashed_node_leaves_is_ended_before_it_returns(
-    start: Launch,
-    way: str,
-) -> None:
+async def test_what_a_crashed_node_leaves_is_ended_before_it_returns(start: Launch) -> None:
     client = await start(
-        {"node": {"exec": script(FORK_OFF, "quit", *way.split()), "restart": "on-failure"}}
+        {
+            name: {"exec": script(FORK_OFF, "quit", *way.split()), "restart": "on-failure"}
+            for name, way in WAYS.items()
+        }
     )
-    grandchild = int(await said(client, "node", "grandchild"))
-    await until_state(client, "node", NodeState.BACKOFF)
-    assert not alive(grandchild)
+    grandchildren = {name: int(await said(client, name, "grandchild")) for name in WAYS}
+    for name, pid in grandchildren.items():
+        await until_state(client, name, NodeState.BACKOFF)
+        assert not alive(pid)
 
 
 @pytest.fixture

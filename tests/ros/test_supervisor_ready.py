@@ -10,7 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.process_shm import SHARED_MEMORY, held_segments
-from launcher.process_table import NODE_MARK, command_line, processes, read_marks, read_process
+from launcher.process_table import (
+    NODE_MARK,
+    RUN_MARK,
+    command_line,
+    processes,
+    read_marks,
+    read_process,
+)
 from launcher.process_usage import proportional_memory
 from launcher.status import NodeState, Severity
 from tests.ros.supervised import (
@@ -113,7 +120,7 @@ async def test_a_warm_node_is_a_process_of_its_own_in_every_respect(
         assert (process.name, process.parent) == (name, client.session.supervisor_pid)
         assert (process.group, process.session) == (pid, pid)
         marks = read_marks(pid) or {}
-        assert marks == {"DECK_RUN_ID": client.session.run_id, "DECK_NODE": name}
+        assert (marks[RUN_MARK], marks[NODE_MARK]) == (client.session.run_id, name)
     memory = proportional_memory(pids)
     assert memory is not None
     assert memory < 2 * 40_000_000
@@ -181,12 +188,16 @@ async def test_a_node_that_is_late_says_so_and_becomes_ready_all_the_same(
     talker = module(tmp_path, "talker_module", TALKER)
     client = await start(
         {
-            "late": {**talker, "params": {"delay": 3.0}, "ready": {"topic": "/said", "within": 1}},
+            "late": {
+                **talker,
+                "params": {"delay": 2.0},
+                "ready": {"topic": "/said", "within": 0.5},
+            },
             "eager": {"exec": SLEEPER, "needs": ["late"]},
         }
     )
     status = await until_state(client, "late", NodeState.RUNNING)
-    assert status.detail == "not ready within 1 s: no publisher of /said"
+    assert status.detail == "not ready within 0.5 s: no publisher of /said"
     assert client.nodes["eager"].detail == "waits for late (not ready)"
     await until_state(client, "late", NodeState.READY)
     await running_pid(client, "eager")
@@ -197,7 +208,7 @@ async def test_a_node_that_never_gets_ready_leaves_others_waiting_till_started_b
 ) -> None:
     client = await start(
         {
-            "mute": {"exec": SLEEPER, "ready": {"topic": "/said", "within": 1}},
+            "mute": {"exec": SLEEPER, "ready": {"topic": "/said", "within": 0.3}},
             "eager": {"exec": SLEEPER, "needs": ["mute"]},
         }
     )
