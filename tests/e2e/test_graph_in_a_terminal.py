@@ -32,47 +32,36 @@ def test_the_head_is_turned_by_a_call_from_the_graph(deck: Deck) -> None:
     wait_for_words(terminal, "sum: 1")
 
 
-def test_a_parameter_is_read_and_set_and_a_refusal_is_told(deck: Deck) -> None:
-    terminal = at_the_graph(deck, "02-sonar-safety", 2)
+def at_the_node(terminal: Terminal, name: str) -> None:
+    """Choose the node with this in its name, whichever was found first."""
     terminal.press("/")
-    terminal.type("sonar")
+    terminal.type(name)
     terminal.wait_for("1 of ")
     terminal.press("enter")
     terminal.wait_for("p Parameters")
-    terminal.press("p")
+
+
+def test_a_map_is_drawn_a_parameter_refused_and_a_node_that_hangs_is_told(deck: Deck) -> None:
+    terminal = at_the_graph(deck, "02-sonar-safety", 2)
+    at_the_node(terminal, "sonar")
+    terminal.press("m")
+    terminal.wait_for("┌─")
+    terminal.wait_for("│ /sonar_front │─┘    safety_stop")
+    terminal.press("m", "p")
     terminal.wait_for("read in")
     terminal.press("home", "enter")
     terminal.wait_for("Enter sets it")
-    terminal.type("nonsense")
-    terminal.press("enter")
+    terminal.type("nonsense\r")
     terminal.wait_for("Refused:")
-
-
-def test_the_map_shows_who_talks_to_the_brain(deck: Deck) -> None:
-    terminal = at_the_graph(deck, "09-brain", 8)
-    # Which node is found first, and chosen, is not for sure.
-    terminal.press("/")
-    terminal.type("brain")
-    terminal.wait_for("1 of ")
-    terminal.press("enter")
-    terminal.wait_for("p Parameters")
-    terminal.press("m")
-    terminal.wait_for("┌─")
-    terminal.wait_for("/set_head_position()")
-    terminal.wait_for("head_controller")
-
-
-def test_a_node_that_hangs_freezes_nothing_and_is_told(deck: Deck) -> None:
-    terminal = at_the_graph(deck, "02-sonar-safety", 2)
+    terminal.press("escape")
+    # Escape and a sign that follow each other at once are another key.
+    terminal.wait_gone("Refused:")
     (hung,) = (pid for pid, line in marked.nodes(deck.mark).items() if "safety" in line)
     os.kill(hung, signal.SIGSTOP)
     try:
-        terminal.press("/")
-        terminal.type("safety")
-        terminal.wait_for("1 of ")
-        terminal.press("enter")
-        terminal.wait_for("p Parameters")
-        terminal.press("p")
+        terminal.press("/", "escape")
+        terminal.wait_gone("1 of ")
+        at_the_node(terminal, "safety")
         terminal.wait_for("no answer for")
         terminal.press("1")
         terminal.wait_for("Sonar", within_s=3.0)
