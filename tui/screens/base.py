@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
+from textual import on
+from textual.events import ScreenResume
 from textual.screen import Screen
 
 from tui import title
@@ -51,6 +53,7 @@ class DeckScreen(Screen[None], Acting):
     """Seconds between two updates of the graph while this screen is in front."""
     measure_all: bool = False
     """Whether the rates of every topic are wanted while this screen is in front."""
+    _styled_for: tuple[str, frozenset[str], frozenset[str]] | None = None
 
     @property
     def deck(self) -> DeckApp:
@@ -84,6 +87,15 @@ class DeckScreen(Screen[None], Acting):
     def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
         """Yield headings and actions of parts of the screen that have keys of their own."""
         yield from ()
+
+    def on_compose(self) -> None:
+        """Take the classes of this size before the children come, so that each is styled once."""
+        across, down = self.app.size
+        sizes = self._get_breakpoint_classes(across, BREAKPOINTS)
+        sizes |= self._get_breakpoint_classes(down, HEIGHTS)
+        self.update_classes(dict.fromkeys(sizes, True), update=False)
+        self.app.stylesheet.apply(self)
+        self._styled_for = self._surroundings()
 
     def topics_changed(self) -> None:
         """Tell the app that `watch_topics`, `follow_topics` or `measure_all` answer otherwise."""
@@ -133,3 +145,14 @@ class DeckScreen(Screen[None], Acting):
             bar.show(title.tabs(deck, self.tab), title.states(deck), title.look(deck))
         for place in self.query(ReplayBar):
             place.show(self.feed.replay)
+
+    @on(ScreenResume)
+    def _keep_styles(self, event: ScreenResume) -> None:
+        """A hundred widgets are styled anew only if something outside has changed."""
+        around = self._surroundings()
+        event.refresh_styles = around != self._styled_for
+        self._styled_for = around
+
+    def _surroundings(self) -> tuple[str, frozenset[str], frozenset[str]]:
+        """All outside this screen that its styles hang on."""
+        return self.app.theme, self.app.pseudo_classes, self.app.classes
