@@ -28,7 +28,7 @@ def line(deck: Deck) -> Iterator[Line]:
     own, program = pty.openpty()
     fcntl.ioctl(own, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 120, 0, 0))
     process = subprocess.Popen(
-        [sys.executable, "-m", "tui", "02-sonar-safety"],
+        [sys.executable, "-m", "tui", "01-hello"],
         stdin=program,
         stdout=program,
         stderr=program,
@@ -58,7 +58,7 @@ def test_a_terminal_that_takes_nothing_keeps_nobody_from_stopping_the_robot(
     line: Line, deck: Deck
 ) -> None:
     own, program, process = line
-    read_until(own, "2/2")
+    read_until(own, "1/1")
     # What Ctrl+S does, or a line to a host that is gone.
     termios.tcflow(program, termios.TCOOFF)
     process.send_signal(signal.SIGTERM)
@@ -69,7 +69,7 @@ def test_a_terminal_that_takes_nothing_keeps_nobody_from_stopping_the_robot(
 
 def test_a_terminal_that_vanishes_without_a_signal_is_noticed(line: Line, deck: Deck) -> None:
     own, _program, process = line
-    read_until(own, "2/2")
+    read_until(own, "1/1")
     os.close(own)
     assert process.wait(30) == 128 + signal.SIGHUP
     wait_until(lambda: not marked.alive(deck.mark), "every process gone")
@@ -77,7 +77,7 @@ def test_a_terminal_that_vanishes_without_a_signal_is_noticed(line: Line, deck: 
 
 def test_interrupting_twice_does_not_wait_for_anybody(line: Line, deck: Deck) -> None:
     own, _program, process = line
-    read_until(own, "2/2")
+    read_until(own, "1/1")
     process.send_signal(signal.SIGINT)
     process.send_signal(signal.SIGINT)
     assert process.wait(30) == 128 + signal.SIGINT

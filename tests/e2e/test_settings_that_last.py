@@ -13,7 +13,7 @@ def settings_of(deck: Deck) -> Path:
     return Path(deck.env["XDG_CONFIG_HOME"]) / "deck" / "settings.json"
 
 
-def test_theme_and_language_chosen_by_keys_are_there_the_next_time(deck: Deck) -> None:
+def test_theme_and_language_are_there_the_next_time_and_a_key_of_ones_own_works(deck: Deck) -> None:
     del deck.env["DECK_LANG"]
     first = deck.open()
     first.wait_for("One screen instead of five terminals")
@@ -24,20 +24,12 @@ def test_theme_and_language_chosen_by_keys_are_there_the_next_time(deck: Deck) -
     wait_until(lambda: path.exists() and json.loads(path.read_text()) == settled, "both settled")
     first.press("q")
     assert first.wait_exit() == 0
+    path.write_text(json.dumps({**settled, "keys": {"app.quit": "ctrl+t"}}))
     second = deck.open()
     second.wait_for("Один экран вместо пяти терминалов")
-    second.press("q")
+    second.wait_for("^t Выход")
+    second.press("ctrl+t")
     assert second.wait_exit() == 0
-
-
-def test_a_key_of_ones_own_works_and_is_shown(deck: Deck) -> None:
-    path = settings_of(deck)
-    path.parent.mkdir(parents=True)
-    path.write_text('{"keys": {"app.quit": "ctrl+t"}}')
-    terminal = deck.open()
-    terminal.wait_for("^t Quit")
-    terminal.press("ctrl+t")
-    assert terminal.wait_exit() == 0
 
 
 def test_a_broken_file_ends_the_program_with_its_place(deck: Deck) -> None:
