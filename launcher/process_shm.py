@@ -1,8 +1,9 @@
 """Shared memory that Fast DDS nodes leave behind when they are killed.
 
-A participant holds a segment `/dev/shm/fastrtps_<16 hex digits>`, half a megabyte, and an
-exclusive flock(2) on the file beside it, `..._el`, for as long as it lives. A node that ends
-as it should removes both; of one that was killed the lock goes and the files stay.
+A participant holds a segment `/dev/shm/fastrtps_<16 hex digits>`, half a megabyte, and ports that
+it listens on, `/dev/shm/fastrtps_port<number>`, with an exclusive flock(2) on the file beside each,
+`..._el`, for as long as it lives. A node that ends as it should removes all; of one that was killed
+the locks go and the files stay.
 """
 
 from __future__ import annotations
@@ -18,11 +19,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 SHARED_MEMORY = Path("/dev/shm")
-_LOCK = re.compile(r"(fastrtps_[0-9a-f]{16})_el")
+_LOCK = re.compile(r"(fastrtps_(?:[0-9a-f]{16}|port\d+))_el")
+_PORT = "fastrtps_port"
 
 
 def held_segments(pid: int) -> set[str]:
-    """Return the names of the segments that a process holds."""
+    """Return the names of the segments and ports that a process holds."""
     found = set()
     folder = f"/proc/{pid}/fd"
     with contextlib.suppress(OSError):
@@ -33,6 +35,11 @@ def held_segments(pid: int) -> set[str]:
                 if match is not None and target.parent == SHARED_MEMORY:
                     found.add(match[1])
     return found
+
+
+def port_numbers(names: Iterable[str]) -> list[int]:
+    """Return the numbers of those that are ports; a participant has UDP ports of these numbers."""
+    return sorted(int(name.removeprefix(_PORT)) for name in names if name.startswith(_PORT))
 
 
 def sweep(segments: Iterable[str], folder: Path = SHARED_MEMORY) -> list[str]:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from launcher.logs_reader import PipeReader, node_pipe
 from launcher.process_members import Members
-from launcher.process_shm import held_segments, sweep
+from launcher.process_ports import BurntPorts
+from launcher.process_shm import held_segments, port_numbers, sweep
 from launcher.process_spawner import SpawnRequest
 from launcher.process_stop import send
 from launcher.process_table import read_process
@@ -98,6 +99,7 @@ class ProcessLauncher:
         self._plan = plan
         self._book = book
         self._segments: dict[str, set[str]] = {}
+        self._burnt = BurntPorts()
 
     def note_segments(self, members: Mapping[str, Sequence[Process]]) -> None:
         """Note which shared memory the nodes hold: of a killed one nobody could tell."""
@@ -107,8 +109,8 @@ class ProcessLauncher:
                 held |= held_segments(process.pid)
 
     def sweep_segments(self, name: str) -> None:
-        """Remove the shared memory that a node has left behind."""
-        sweep(self._segments.pop(name, ()))
+        """Remove the shared memory that a node has left behind, and let nobody take its place."""
+        self._burnt.keep(port_numbers(sweep(self._segments.pop(name, ()))))
 
     async def launch(self, node: NodePlan) -> NodeProcess:
         """Start a node; raises `SpawnError`."""

@@ -9,7 +9,7 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from launcher.process_shm import SHARED_MEMORY, held_segments
+from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers
 from launcher.process_table import (
     NODE_MARK,
     RUN_MARK,
@@ -264,9 +264,31 @@ async def test_a_killed_nodes_shared_memory_is_given_back(start: Launch, tmp_pat
     client = await start({"node": module(tmp_path, "talker_module", TALKER)})
     status = await until_state(client, "node", NodeState.READY)
     assert status.pid is not None
-    (segment,) = held_segments(status.pid)
+    segments = held_segments(status.pid)
+    assert port_numbers(segments)
+    assert len(segments) > len(port_numbers(segments))
     await until(lambda: client.nodes["node"].cpu_percent is not None, "two measurements")
     kill(status.pid, signal.SIGKILL)
     await until_state(client, "node", NodeState.FAILED)
-    assert not (SHARED_MEMORY / segment).exists()
-    assert not (SHARED_MEMORY / f"{segment}_el").exists()
+    assert not [name for name in segments if (SHARED_MEMORY / name).exists()]
+    assert not [name for name in segments if (SHARED_MEMORY / f"{name}_el").exists()]
+
+
+async def test_a_restarted_node_does_not_take_the_ports_of_a_killed_one(
+    start: Launch, tmp_path: Path
+) -> None:
+    """Who has talked to the dead one would go on talking to it, and not to its successor."""
+    client = await start(
+        {"node": {**module(tmp_path, "talker_module", TALKER), "restart": "on-failure"}}
+    )
+    status = await until_state(client, "node", NodeState.READY)
+    assert status.pid is not None
+    before = port_numbers(held_segments(status.pid))
+    await until(lambda: client.nodes["node"].cpu_percent is not None, "two measurements")
+    kill(status.pid, signal.SIGKILL)
+    await until_state(client, "node", NodeState.BACKOFF)
+    status = await until_state(client, "node", NodeState.READY)
+    assert status.pid is not None
+    after = port_numbers(held_segments(status.pid))
+    assert after
+    assert not set(before) & set(after)

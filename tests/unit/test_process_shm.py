@@ -5,7 +5,7 @@ from __future__ import annotations
 import fcntl
 from typing import TYPE_CHECKING
 
-from launcher.process_shm import sweep
+from launcher.process_shm import port_numbers, sweep
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,3 +29,7 @@ def test_a_link_is_not_followed(tmp_path: Path) -> None:
     (tmp_path / f"{DEAD}_el").symlink_to(precious)
     assert sweep([DEAD], tmp_path) == []
     assert precious.exists()
+
+
+def test_ports_are_told_from_segments() -> None:
+    assert port_numbers([DEAD, "fastrtps_port31413", "fastrtps_port7005"]) == [7005, 31413]
