@@ -5,9 +5,12 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import socket
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import pytest
 
 from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers
 from launcher.process_table import (
@@ -32,8 +35,6 @@ from tests.ros.supervised import (
 )
 
 if TYPE_CHECKING:
-    import pytest
-
     from launcher.client import SupervisorClient
 
 TALKER = """
@@ -260,35 +261,25 @@ def _python_path() -> list[str]:
     return [before] if before else []
 
 
-async def test_a_killed_nodes_shared_memory_is_given_back(start: Launch, tmp_path: Path) -> None:
+async def test_a_killed_nodes_shared_memory_is_given_back_and_its_ports_are_burnt(
+    start: Launch, tmp_path: Path
+) -> None:
+    """Who has talked to it would go on talking to it, and not to a newcomer on its ports."""
     client = await start({"node": module(tmp_path, "talker_module", TALKER)})
     status = await until_state(client, "node", NodeState.READY)
     assert status.pid is not None
     segments = held_segments(status.pid)
-    assert port_numbers(segments)
-    assert len(segments) > len(port_numbers(segments))
+    ports = port_numbers(segments)
+    assert ports
+    assert len(segments) > len(ports)
     await until(lambda: client.nodes["node"].cpu_percent is not None, "two measurements")
     kill(status.pid, signal.SIGKILL)
     await until_state(client, "node", NodeState.FAILED)
     assert not [name for name in segments if (SHARED_MEMORY / name).exists()]
     assert not [name for name in segments if (SHARED_MEMORY / f"{name}_el").exists()]
-
-
-async def test_a_restarted_node_does_not_take_the_ports_of_a_killed_one(
-    start: Launch, tmp_path: Path
-) -> None:
-    """Who has talked to the dead one would go on talking to it, and not to its successor."""
-    client = await start(
-        {"node": {**module(tmp_path, "talker_module", TALKER), "restart": "on-failure"}}
-    )
-    status = await until_state(client, "node", NodeState.READY)
-    assert status.pid is not None
-    before = port_numbers(held_segments(status.pid))
-    await until(lambda: client.nodes["node"].cpu_percent is not None, "two measurements")
-    kill(status.pid, signal.SIGKILL)
-    await until_state(client, "node", NodeState.BACKOFF)
-    status = await until_state(client, "node", NodeState.READY)
-    assert status.pid is not None
-    after = port_numbers(held_segments(status.pid))
-    assert after
-    assert not set(before) & set(after)
+    for port in ports:
+        with (
+            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as newcomer,
+            pytest.raises(OSError, match="in use"),
+        ):
+            newcomer.bind(("", port))
