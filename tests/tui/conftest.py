@@ -12,10 +12,37 @@ os.environ.pop("NO_COLOR", None)
 from collections.abc import Iterator
 
 import pytest
+from textual.css.model import RuleSet
+from textual.css.stylesheet import Stylesheet
+from textual.css.types import CSSLocation
 
 from tests.tui.recorded import NOW_S
 from tui import clock
 from tui.i18n import set_language
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _css_is_parsed_once() -> Iterator[None]:
+    """Keep the rules of a widget's CSS from app to app, as an app itself does between screens."""
+    parse, parsed = Stylesheet._parse_rules, {}
+
+    def remembered(
+        sheet: Stylesheet,
+        css: str,
+        read_from: CSSLocation,
+        is_default_rules: bool = False,
+        tie_breaker: int = 0,
+        scope: str = "",
+    ) -> list[RuleSet]:
+        source = (css, read_from, is_default_rules, tie_breaker, scope)
+        key = (source, frozenset(sheet._variables.items()))
+        if key not in parsed:
+            parsed[key] = parse(sheet, *source)
+        return parsed[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Stylesheet, "_parse_rules", remembered)
+        yield
 
 
 @pytest.fixture(autouse=True)
