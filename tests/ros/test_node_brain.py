@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -40,8 +41,7 @@ class Brain:
         self.peer = Peer(domain)
         self.commands = self.peer.hear("/ai_command", String)
         self.spoken = self.peer.hear("/audio/speaker_raw", ByteMultiArray)
-        for topic in ("/ai_command", "/audio/speaker_raw"):
-            wait_until(lambda topic=topic: self.peer.node.count_publishers(topic), topic)  # type: ignore[misc]
+        wait_until(self._answers, "an answer")
 
     def close(self) -> None:
         self.peer.close()
@@ -50,19 +50,20 @@ class Brain:
     def see(self, distance: float) -> None:
         """Let it know the distance for sure: it tells it with its next thought."""
         self.peer.say("/sensor/sonar_front", Float32(data=distance))
-        shown, said = f"{distance:.2f} m ahead", 0
+        shown = f"{distance:.2f} m ahead"
+        wait_until(lambda: self._answers() and shown in self.process.output, shown)
+
+    def _answers(self) -> bool:
+        """Say a word, one at a time: more might not wait; whether it knows yet who listens."""
         self.commands.clear()
         self.spoken.clear()
-
-        def knows() -> bool:
-            nonlocal said
-            self.peer.say("/audio/mic_raw", voice(b"stop"))
-            said += 1
-            return shown in self.process.output
-
-        wait_until(knows, shown, every_s=0.1)
-        for heard in (self.commands, self.spoken):
-            wait_until(lambda heard=heard: len(heard) == said, "every answer")  # type: ignore[misc]
+        before = self.process.output.count("Decision: ")
+        self.peer.say("/audio/mic_raw", voice(b"stop"))
+        wait_until(lambda: self.process.output.count("Decision: ") > before, "a decision")
+        until_s = time.monotonic() + 1.0
+        while not (self.commands and self.spoken) and time.monotonic() < until_s:
+            time.sleep(0.01)
+        return bool(self.commands and self.spoken)
 
     def hear(self, sound: bytes) -> tuple[str, str]:
         """Say something to it; the word for the driver and the reply come back."""
