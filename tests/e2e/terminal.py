@@ -63,6 +63,8 @@ class Terminal:
         self._lock = threading.Lock()
         self._hung_up = threading.Event()
         self._screen = pyte.Screen(columns, rows)
+        self._seen = (-1, 0, 0)
+        self._text = ""
         self._stream = pyte.Stream(self._screen)
         self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
         self._master, slave = pty.openpty()
@@ -109,7 +111,11 @@ class Terminal:
     def text(self) -> str:
         """What stands on the screen now, a line a row."""
         with self._lock:
-            return "\n".join(self._screen.display)
+            # Waiting looks far oftener than anything changes.
+            seen = (self.received, self._screen.lines, self._screen.columns)
+            if seen != self._seen:
+                self._seen, self._text = seen, "\n".join(self._screen.display)
+            return self._text
 
     def ground(self, column: int, row: int) -> str:
         """The background of a cell as six hexadecimal digits, or its name."""
