@@ -126,6 +126,7 @@ def test_the_camera_of_the_simulated_robot_sees_where_it_looks(peer: Peer, ros_d
     with NodeProcess("nodes.mock_camera", ros_domain, params=params) as node:
         pictures = peer.hear(CAMERA, Image)
         node.wait_for_words("Nobody publishes /mock/pose")
+        wait_until(lambda: pictures, "a first picture")
         at_the_start = bytes(pictures[-1].data)
         turned = PoseStamped()
         turned.pose.orientation.z = turned.pose.orientation.w = 0.5**0.5
