@@ -99,8 +99,8 @@ class Stop:
 
 
 def send(process: Process, number: signal.Signals) -> None:
-    """Send a signal, and wake a process that was suspended so that it hears it."""
+    """Send a signal, and wake the process, which may be suspended, so that it hears it."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.kill(process.pid, number)
-        if process.state in "Tt":
-            os.kill(process.pid, signal.SIGCONT)
+        # Whatever its state was when it was looked at: one that runs does not mind.
+        os.kill(process.pid, signal.SIGCONT)
