@@ -149,7 +149,8 @@ def test_memory_is_bounded_however_much_comes() -> None:
         kept.add(NOW_S + n / 20, float(n))
     grown, _peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert grown < 20_000
+    # Every sample kept would be a megabyte; another thread may take a little meanwhile.
+    assert grown < 100_000
     assert kept.range(NOW_S + 600, 300.0) == pytest.approx((6_000, 11_999), abs=5)
 
 
