@@ -18,16 +18,9 @@ from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 CAMERA = "/camera/color/image_raw"
-
-
-@pytest.fixture
-def peer(ros_domain: int) -> Iterator[Peer]:
-    with Peer(ros_domain) as peer:
-        yield peer
 
 
 def camera(domain: int, source: object, **params: object) -> NodeProcess:

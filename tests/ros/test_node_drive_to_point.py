@@ -23,7 +23,7 @@ from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from rclpy.task import Future
 
@@ -74,12 +74,6 @@ class Asker:
 
     def _answer(self, call: Callable[[], Future], what: str) -> Any:
         return self._peer.answer(self._peer.on_its_thread(call, what), what)
-
-
-@pytest.fixture
-def peer(ros_domain: int) -> Iterator[Peer]:
-    with Peer(ros_domain) as peer:
-        yield peer
 
 
 def odometry(x: float = 0.0, y: float = 0.0) -> Odometry:

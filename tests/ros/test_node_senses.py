@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from array import array
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -19,16 +18,7 @@ from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 CAMERA = "/camera/color/image_raw"
-
-
-@pytest.fixture
-def peer(ros_domain: int) -> Iterator[Peer]:
-    with Peer(ros_domain) as peer:
-        yield peer
 
 
 @pytest.mark.parametrize("encoding", ["bgr8", "rgb8"])

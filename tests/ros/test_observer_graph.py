@@ -17,13 +17,6 @@ ADD = "example_interfaces/srv/AddTwoInts"
 
 
 @pytest.fixture
-def watcher(ros_domain: int) -> Iterator[Watcher]:
-    watcher = Watcher(ros_domain)
-    yield watcher
-    watcher.close()
-
-
-@pytest.fixture
 def peers(ros_domain: int) -> Iterator[list[Peer]]:
     peers = [Peer("driver", ros_domain), Peer("person", ros_domain)]
     yield peers

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -18,19 +17,6 @@ from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
-
-
-@pytest.fixture
-def peer(ros_domain: int) -> Iterator[Peer]:
-    with Peer(ros_domain) as peer:
-        yield peer
-
-
-@pytest.fixture
-def watcher(ros_domain: int) -> Iterator[Watcher]:
-    watcher = Watcher(ros_domain)
-    yield watcher
-    watcher.close()
 
 
 def word(speed: float, for_s: float, hz: float = 20.0) -> Holding:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -21,19 +20,6 @@ from tests.ros.peer import Peer
 from tests.waiting import wait_until
 
 FLOAT = "std_msgs/msg/Float32"
-
-
-@pytest.fixture
-def peer(ros_domain: int) -> Iterator[Peer]:
-    with Peer(ros_domain) as peer:
-        yield peer
-
-
-@pytest.fixture
-def watcher(ros_domain: int) -> Iterator[Watcher]:
-    watcher = Watcher(ros_domain)
-    yield watcher
-    watcher.close()
 
 
 def start(watcher: Watcher, topic: str, hz: float, value: float = 1.0) -> int:
