@@ -52,6 +52,20 @@ async def test_it_moves_while_the_pose_changes_and_rests_when_it_does_not() -> N
         assert "at rest" in "\n".join(rows(panel))
 
 
+async def test_an_age_that_nobody_is_told_of_is_no_reason_to_draw() -> None:
+    panel = HeadPanel()
+    async with alone(panel, 44, 10).run_test(size=(60, 30)):
+        panel.show(Pose(10, 0))
+        panel.show_trouble(None, "", 0.2)
+        drawn: list[int] = []
+        panel.draw = lambda width, _height: drawn.append(width) or []  # type: ignore[method-assign]
+        panel.show_trouble(None, "", 0.4)
+        assert not drawn
+        panel.show_trouble(Trouble.QUIET, "", 5.0)
+        panel.show_trouble(Trouble.QUIET, "", 6.0)
+        assert len(drawn) == 2
+
+
 @pytest.mark.parametrize(("width", "height"), [(44, 10), (30, 10), (24, 4)])
 async def test_a_head_that_nobody_knows_of_does_not_move(width: int, height: int) -> None:
     """Servos tell nothing: before the first turn, and after their cable was pulled."""

@@ -83,7 +83,8 @@ class Drawing(Widget):
         self, trouble: Trouble | None, detail: str = "", age_s: float | None = None
     ) -> None:
         """Tell why nothing comes (None: all is well), and the age of the newest message."""
-        state = (trouble, detail, age_s)
+        # An age that nobody is told of is no reason to draw.
+        state = (trouble, detail, None if trouble is None else age_s)
         if state != (self._trouble, self._detail, self._age_s):
             self._trouble, self._detail, self._age_s = state
             self.redraw()
