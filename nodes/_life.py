@@ -9,6 +9,7 @@ come back is not waited for.
 from __future__ import annotations
 
 import faulthandler
+import gc
 import os
 import signal
 import sys
@@ -80,6 +81,8 @@ def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> 
         node = node_type()
     except NameValidationException as error:
         raise UsageError(_FAILED, problem=" ".join(str(error).split())) from None
+    # What is there by now stays: to look through it for garbage would hold up a callback.
+    gc.freeze()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     ending.wake_with(lambda: executor.create_task(_nothing))
