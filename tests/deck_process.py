@@ -60,6 +60,12 @@ class DeckProcess:
             reader.join(within_s)
         return code
 
+    def close(self) -> None:
+        """End it, whatever it does."""
+        if self.process.poll() is None:
+            self.process.kill()
+        self.finish()
+
     def events(self) -> list[dict[str, Any]]:
         """Return its output as JSON objects."""
         return [json.loads(line) for line in self.lines]

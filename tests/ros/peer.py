@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 ROOT = Path(__file__).parents[2]
+ASKED_AGAIN_S = 8.0
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 DISCOVERY = {
     "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
@@ -106,9 +108,27 @@ class Peer:
         client = self.node.create_client(kind, service)
         try:
             wait_until(client.service_is_ready, f"service {service}", within_s)
-            return self.answer(client.call_async(request), f"an answer of {service}", within_s)
+            return self.insist(
+                lambda: client.call_async(request), f"an answer of {service}", within_s
+            )
         finally:
             self.node.destroy_client(client)
+
+    def insist(self, ask: Callable[[], Future], what: str, within_s: float = 30.0) -> Any:
+        """Ask, anew after a while, and return the first answer.
+
+        An answer is lost for good if the server's middleware has not found within 100 ms who
+        asked, which happens in the first moments of a node ("client will not receive response").
+        """
+        asked: list[Future] = []
+        began_s = time.monotonic()
+
+        def answered() -> Future | None:
+            if time.monotonic() >= began_s + ASKED_AGAIN_S * len(asked):
+                asked.append(ask())
+            return next((future for future in asked if future.done()), None)
+
+        return wait_until(answered, what, within_s).result()
 
     def on_its_thread(self, call: Callable[[], T], what: str) -> T:
         """Call on the thread that spins, and return what comes back.

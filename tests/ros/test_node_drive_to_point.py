@@ -50,11 +50,14 @@ class Asker:
         """Send a goal; whether it was accepted."""
         goal = DriveToPoint.Goal(x=x, y=y, tolerance=tolerance)
         self.feedback.clear()
-        self.handle = self._answer(
-            lambda: self._client.send_goal_async(
+
+        def send() -> Future:
+            return self._client.send_goal_async(
                 goal, feedback_callback=lambda told: self.feedback.append(told.feedback.distance)
-            ),
-            "an answer to the goal",
+            )
+
+        self.handle = self._peer.insist(
+            lambda: self._peer.on_its_thread(send, "a goal on its way"), "an answer to the goal"
         )
         return bool(self.handle.accepted)
 
@@ -297,4 +300,4 @@ def test_the_lesson_ends_in_the_middle_of_a_drive_without_a_crash(
         assert not [line for line in lesson.lines if "killed" in line], lesson.lines
     finally:
         print(*lesson.lines, sep="\n")  # noqa: T201 - for who has to find out why it failed
-        lesson.process.kill()
+        lesson.close()
