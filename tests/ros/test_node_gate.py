@@ -126,8 +126,8 @@ def test_a_gate_that_died_comes_back_to_the_stop_that_is_on(gate: Gate) -> None:
         let_pass(4.2)
         assert values(gate.states[-1])["verdict"] == "emergency_stop"
         assert speeds(gate.safe) == {0.0}
-        other.say("/emergency_stop", Bool(data=False), qos=LATCHED)
-        gate.wait_for_speed(0.3)
+        with other.saying("/emergency_stop", Bool(data=False)):
+            gate.wait_for_speed(0.3)
 
 
 def test_starting_and_ending_never_turns_a_wheel(gate: Gate, ros_domain: int) -> None:
