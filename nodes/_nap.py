@@ -2,7 +2,7 @@
 
 A process that was stopped, or starved, for seconds finds commands and readings in its queues that
 it would take for new ones: a command to drive whose stop waits behind it. For a moment it takes
-nothing in. A machine under load takes longer than that to hand over what has waited; then the
+nothing in. A machine under load may take longer than that to hand over what has waited; then the
 stamp of a message tells, if it has one. Clocks of two machines differ, so stamps are asked only
 for the first seconds.
 """
@@ -18,8 +18,8 @@ from nodes._lateness import age_s
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
 
-_DRAIN_S = 0.1
-"""How long it takes to get rid of what has waited."""
+_DRAIN_S = 0.5
+"""How long it takes to get rid of what has waited, on a machine that is busy besides."""
 _DRAIN_UNDER_LOAD_S = 3.0
 
 
