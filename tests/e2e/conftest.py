@@ -7,7 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
@@ -25,6 +25,8 @@ class Deck:
     mark: str
     env: dict[str, str]
     terminals: list[Terminal]
+    held: set[str] = field(default_factory=set)
+    """What its processes held in shared memory."""
 
     def open(self, *args: str, columns: int = 120, rows: int = 40) -> Terminal:
         """Start `deck ARGS` in a terminal of this size."""

@@ -9,16 +9,12 @@ import sys
 import tempfile
 from typing import TYPE_CHECKING
 
-from launcher.process_ports import BurntPorts
-from launcher.process_shm import held_segments, port_numbers, sweep
+from tests import ports
 from tests.ros.peer import DISCOVERY, ROOT
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from typing_extensions import Self
-
-
-_BURNT = BurntPorts()
 
 
 def _as_anyone() -> tuple[str, ...]:
@@ -93,11 +89,11 @@ class NodeProcess:
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal; to kill it is waited for, and as after a launcher's nodes swept up."""
-        held = held_segments(self.process.pid) if number == signal.SIGKILL else set()
+        held = ports.held_by([self.process.pid]) if number == signal.SIGKILL else set()
         self.process.send_signal(number)
         if held:
             self.process.wait()
-            _BURNT.keep(port_numbers(sweep(held)))
+            ports.burn(held)
 
     def wait(self, within_s: float = 20.0) -> int:
         """Wait for the end; the exit code comes back."""

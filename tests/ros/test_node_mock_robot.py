@@ -66,7 +66,14 @@ def test_the_pico_answers_drives_and_stops_by_itself(folder: Path, peer: Peer) -
         sequence = iter(range(1, 60_000))
         wait_until(lambda: (now := hear(next(sequence), 0)) and not now.flags, "armed")
         assert any(isinstance(message, Welcome) for message in told)
-        wait_until(lambda: (now := hear(next(sequence), 5)) and now.left_rad_s > 4.5, "turning")
+
+        def turns() -> bool:
+            """A test that was held up for 0.25 s has to begin anew with a stop, as a chassis."""
+            now = next(m for m in reversed(told) if isinstance(m, Telemetry))
+            now = hear(next(sequence), 0 if now.flags else 5) or now
+            return now.left_rad_s > 4.5
+
+        wait_until(turns, "turning")
         wait_until(lambda: poses and poses[-1].pose.position.x > 0.01, "a robot that moves")
         wait_until(lambda: motors and motors[-1].velocity[0] > 4.5, "motors that turn")
         assert motors[-1].effort[1] == 5.0

@@ -1,0 +1,27 @@
+"""Ports of nodes that a test has killed, kept from those that are started next.
+
+Whoever has talked to a killed node goes on talking to it: see `launcher.process_ports`. A launcher
+sees to that for the nodes that it starts anew; here it is a test that does.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.process_ports import BurntPorts
+from launcher.process_shm import held_segments, port_numbers, sweep
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_BURNT = BurntPorts()
+
+
+def held_by(pids: Iterable[int]) -> set[str]:
+    """Return what these processes hold in shared memory, before they are killed."""
+    return {name for pid in pids for name in held_segments(pid)}
+
+
+def burn(held: set[str]) -> None:
+    """Remove what is left of it, and let nobody have these ports."""
+    _BURNT.keep(port_numbers(sweep(held)))
