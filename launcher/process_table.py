@@ -10,6 +10,8 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from launcher.rundir import OWN_RUN_DIR
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
@@ -19,8 +21,6 @@ RUN_MARK = "DECK_RUN_ID"
 """Environment variable that says which run of Deck a process belongs to."""
 NODE_MARK = "DECK_NODE"
 """Environment variable that says which node of that run it is, or descends from."""
-OWN_RUN_DIR = "DECK_RUN_DIR"
-"""Environment variable that keeps the runs of one purpose apart from all others."""
 
 
 @dataclass(frozen=True)

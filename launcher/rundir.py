@@ -17,6 +17,9 @@ from launcher.words import say
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+OWN_RUN_DIR = "DECK_RUN_DIR"
+"""Environment variable that keeps the runs of one purpose apart from all others."""
+
 
 def run_dir() -> Path:
     """Return the run directory, made if need be: mode 0700, the user's own.
@@ -56,7 +59,7 @@ def log_dir() -> Path:
 
 def run_path(environ: Mapping[str, str]) -> Path:
     """Return where the run directory is by these variables, whether it is there or not."""
-    chosen = environ.get("DECK_RUN_DIR")
+    chosen = environ.get(OWN_RUN_DIR)
     if chosen:
         return Path(chosen)
     runtime = Path(environ.get("XDG_RUNTIME_DIR") or "/nonexistent")

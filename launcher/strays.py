@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 from launcher.process_table import (
     NODE_MARK,
-    OWN_RUN_DIR,
     RUN_MARK,
     TICKS_PER_S,
     boot_time_s,
@@ -24,6 +23,7 @@ from launcher.process_table import (
     read_marks,
     read_process,
 )
+from launcher.rundir import OWN_RUN_DIR
 from launcher.status import Stray
 from launcher.supervisor_id import supervisor_runs
 from launcher.supervisor_record import read_records

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from launcher.client import attach, running
-from launcher.process_table import NODE_MARK, OWN_RUN_DIR, RUN_MARK, processes, read_marks
+from launcher.process_table import NODE_MARK, RUN_MARK, processes, read_marks
+from launcher.rundir import OWN_RUN_DIR
 from launcher.status import NodeState, Stray
 from launcher.strays import find_strays
 from tests.ros.supervised import (
