@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import signal
 import sys
@@ -33,6 +34,8 @@ LOOK_S = 0.5
 """How often the terminal is asked whether it is still there."""
 PATIENCE_S = 15.0
 """How long a session may take to stop when there is nobody to look at it any more."""
+GARBAGE_AFTER = 10_000
+"""New objects after which garbage is looked for; a screen makes and drops thousands a second."""
 SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 
 
@@ -46,6 +49,7 @@ class LiveApp(DeckApp):
         self._settings = settings
         self._stray_count = 0
         self._deserted = False
+        self._settled = False
 
     def on_mount(self) -> None:
         """Take the settings, and watch the terminal."""
@@ -96,6 +100,7 @@ class LiveApp(DeckApp):
             self.notify(plain(str(error)), severity="warning", markup=False)
 
     def _look(self) -> None:
+        self._settle()
         if isinstance(self._driver, DeckDriver) and self._driver.gone:
             self._driver.give_up()
             if not self._deserted:
@@ -104,6 +109,15 @@ class LiveApp(DeckApp):
         first, self._stray_count = self._stray_count + 1, self._stray_count + len(fresh)
         if fresh:
             self.feed.note(_as_lines(fresh, first))
+
+    def _settle(self) -> None:
+        """Once the first session is seen, look for garbage among what comes after that alone.
+
+        All there is by then, most of it code, would hold up a key for 0.1 s each time.
+        """
+        if not self._settled and self.feed.update is not None:
+            self._settled = True
+            gc.freeze()
 
 
 def _as_lines(texts: Sequence[str], first: int) -> list[LogLine]:
@@ -119,6 +133,7 @@ def _as_lines(texts: Sequence[str], first: int) -> list[LogLine]:
 
 def run_live(order: Order, lang: str | None) -> int:
     """Run the app on this terminal; return the exit code of the program."""
+    gc.set_threshold(GARBAGE_AFTER)
     set_language(detect(lang))
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         return _refused(_("the screen needs a terminal; `deck run` does without"))

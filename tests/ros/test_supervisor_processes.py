@@ -140,6 +140,12 @@ async def test_a_warm_node_that_had_threads_ends_with_its_own_code(
     assert "last word" in [line.text for line in await client.history("node", 5)]
 
 
+async def test_a_warm_node_collects_its_garbage(start: Launch, tmp_path: Path) -> None:
+    (tmp_path / "garbage.py").write_text("import gc; print('collects', gc.isenabled())\n")
+    client = await start({"node": {"run": "garbage", "ready": {"node": "x"}}})
+    assert await said(client, "node", "collects") == "True"
+
+
 async def test_a_command_that_does_not_exist_fails_at_once(start: Launch) -> None:
     client = await start({"node": {"exec": ["no-such-program-1"], "restart": "always"}})
     status = await until_state(client, "node", NodeState.FAILED)
