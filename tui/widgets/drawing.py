@@ -18,6 +18,7 @@ from textual.widget import Widget
 
 from graph.data import Trouble
 from tui.i18n import _
+from tui.widgets.one_style import OneStyle
 from tui.widgets.plain import plain
 from tui.widgets.trouble import no_data_words, trouble_words
 from tui.widgets.words import word_strips
@@ -37,7 +38,7 @@ class Ink(NamedTuple):
 Line = list[Ink]
 
 
-class Drawing(Widget):
+class Drawing(OneStyle, Widget):
     """Base of panels: a subclass draws lines of `Ink` and calls `redraw` when its values change."""
 
     ALLOW_SELECT = False

@@ -10,6 +10,7 @@ from textual.geometry import Region
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
+from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, word_strips
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "
 INDENT = 2
 
 
-class EchoRows(ScrollView, can_focus=True):
+class EchoRows(OneStyle, ScrollView, can_focus=True):
     """Draws `_lines`, or `_words` while there are none."""
 
     ALLOW_SELECT = False

@@ -12,6 +12,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from tui.widgets.flow_lines import STYLES, Line
+from tui.widgets.one_style import OneStyle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 Key = tuple[float, int]
 
 
-class FlowView(ScrollView, can_focus=True):
+class FlowView(OneStyle, ScrollView, can_focus=True):
     """Shows lines that `lay` makes for a width; those with a key can be chosen."""
 
     class Highlighted(Message):

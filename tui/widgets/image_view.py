@@ -13,6 +13,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from graph.images import shrink
+from tui.widgets.one_style import OneStyle
 from tui.widgets.plain import plain
 from tui.widgets.words import cut, in_row, word_strips
 
@@ -39,7 +40,7 @@ class Scale(NamedTuple):
     """Shape (n, 3)."""
 
 
-class ImageView(Widget):
+class ImageView(OneStyle, Widget):
     """Shows an RGB picture in half-blocks, or words where there is none.
 
     Only cells whose colour changed visibly are drawn again. `bits` is the depth of a channel:

@@ -14,8 +14,10 @@ from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.widget import Widget
 
+from tui.widgets.one_style import OneStyle
 
-class TailView(ScrollView, can_focus=True):
+
+class TailView(OneStyle, ScrollView, can_focus=True):
     """Base of views with `total_rows` rows; draws rows that come after `period_s`."""
 
     DEFAULT_CSS = """

@@ -13,6 +13,8 @@ from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
+from tui.widgets.one_style import OneStyle
+
 if TYPE_CHECKING:
     from rich.style import Style
     from textual.events import Click
@@ -47,7 +49,7 @@ class Row(NamedTuple):
     cells: tuple[Cell, ...]
 
 
-class Rows(ScrollView, can_focus=True):
+class Rows(OneStyle, ScrollView, can_focus=True):
     """Shows rows; one of them is chosen, and stays so while others change."""
 
     class Highlighted(Message):

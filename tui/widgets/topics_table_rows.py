@@ -10,6 +10,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from tui.i18n import _
+from tui.widgets.one_style import OneStyle
 from tui.widgets.topics_table_columns import Place, needs_mending, placed
 from tui.widgets.topics_table_order import Order
 from tui.widgets.words import word_strips
@@ -26,7 +27,7 @@ _Drawn: TypeAlias = "tuple[bool, tuple[str, ...]]"
 """Whether the row was the chosen one, and the texts of its cells, as they were last drawn."""
 
 
-class TopicsRows(ScrollView, can_focus=True):
+class TopicsRows(OneStyle, ScrollView, can_focus=True):
     """Draws a header and the rows in `_shown`; what they are and which is chosen, others decide."""
 
     ALLOW_SELECT = False
