@@ -1,7 +1,8 @@
 """Run measurements one after the other and write bench/RESULTS.md: `python -m bench [NAME...]`.
 
-On a machine that does nothing else. Where two things are compared they take turns in one run.
-Named ones are measured anew, the others' results stay.
+On a machine that does nothing else. If it is a virtual one, the results tell how much its host
+kept from it meanwhile: a stalled core makes everything slow. Where two things are compared they
+take turns in one run. Named ones are measured anew, the others' results stay.
 """
 
 from __future__ import annotations
@@ -10,7 +11,10 @@ import os
 import platform
 import subprocess
 import sys
+import time
 from pathlib import Path
+
+from bench.processes import stolen_s
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
 
@@ -46,6 +50,7 @@ def main() -> int:
         title = MEASUREMENTS[module]
         print(f"{module}: {title} ...", file=sys.stderr, flush=True)
         argv = [sys.executable, "-m", f"bench.{module}"]
+        stolen, started = stolen_s(), time.monotonic()
         ended = subprocess.run(argv, stdout=subprocess.PIPE, text=True, check=False)
         if ended.returncode:
             broken = True
@@ -53,7 +58,9 @@ def main() -> int:
         text = ended.stdout.strip()
         if "| --- |" not in text:
             text = f"```\n{text}\n```"
-        sections[title] = f"`python -m bench.{module}`\n\n{text}\n"
+        share = 100 * (stolen_s() - stolen) / (time.monotonic() - started)
+        told = f"`python -m bench.{module}`; the host kept {share:.1f} % of a core to itself"
+        sections[title] = f"{told}\n\n{text}\n"
     RESULTS.write_text(head() + "".join(f"\n## {t}\n\n{sections[t]}" for t in sections))
     return int(broken)
 

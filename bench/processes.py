@@ -1,4 +1,4 @@
-"""CPU and memory of processes, read from /proc."""
+"""CPU and memory of processes, and CPU of the machine, read from /proc."""
 
 from __future__ import annotations
 
@@ -22,6 +22,12 @@ def cpu_s(pids: Iterable[int]) -> float:
 def pss_mb(pids: Iterable[int]) -> float:
     """Proportional set size of the processes together, in megabytes (10^6 bytes)."""
     return sum(_pss_bytes(pid) for pid in pids) / 1e6
+
+
+def stolen_s() -> float:
+    """CPU time that the host of this virtual machine has kept from it so far, in seconds."""
+    fields = Path("/proc/stat").read_text().split(maxsplit=10)
+    return int(fields[8]) / TICKS_PER_S
 
 
 def children(pid: int) -> list[int]:
