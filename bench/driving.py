@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import statistics
 import subprocess
 import sys
@@ -35,7 +34,7 @@ def environment(domain: int = DOMAIN) -> dict[str, str]:
 
 @contextmanager
 def running(argv: Sequence[str], domain: int = DOMAIN) -> Iterator[subprocess.Popen[bytes]]:
-    """A process that is ended by SIGINT."""
+    """A process that is ended by SIGTERM: what a shell starts with `&` ignores SIGINT."""
     process = subprocess.Popen(
         list(argv),
         cwd=ROOT,
@@ -47,7 +46,7 @@ def running(argv: Sequence[str], domain: int = DOMAIN) -> Iterator[subprocess.Po
     try:
         yield process
     finally:
-        process.send_signal(signal.SIGINT)
+        process.terminate()
         process.wait(30)
 
 
