@@ -42,6 +42,24 @@ def test_help_looks(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app(), terminal_size=look.size, run_before=ask)
 
 
+async def test_keys_keep_their_order_whatever_was_imported_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    modules = list(dict.fromkeys(action.__module__ for action in REGISTRY.values()))
+    turned = {
+        name: action
+        for module in reversed(modules)
+        for name, action in REGISTRY.items()
+        if action.__module__ == module
+    }
+    async with opened() as (app, _pilot):
+        shown = footer(app)
+        assert "Restart" in shown
+        assert "Drive" in shown
+        monkeypatch.setattr("tui.widgets.key_bar.REGISTRY", turned)
+        assert footer(app) == shown
+
+
 def test_every_action_has_its_own_id_a_title_and_a_sentence() -> None:
     for name in every_action():
         action = REGISTRY[name]

@@ -13,6 +13,8 @@ from tui.actions import REGISTRY
 from tui.i18n import _
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from textual.binding import ActiveBinding
     from textual.events import MouseMove
     from textual.screen import Screen
@@ -71,8 +73,8 @@ class KeyBar(Widget):
             name = active.binding.id or ""
             if active.binding.show and name in REGISTRY:
                 found.setdefault(name, []).append(active)
-        order = {name: place for place, name in enumerate(REGISTRY)}
-        names = sorted(found, key=lambda name: (found[name][0].node is self.app, order[name]))
+        place = _places(found)
+        names = sorted(found, key=lambda name: (found[name][0].node is self.app, place[name]))
         return [self._key(REGISTRY[name], found[name]) for name in names]
 
     def _key(self, action: type[Action[Any]], keys: list[ActiveBinding]) -> Key:
@@ -118,6 +120,21 @@ class KeyBar(Widget):
         return Content.assemble(
             (f" {entry.key}", key_style + click), (f" {entry.title} ", title_style + click)
         )
+
+
+def _places(names: Iterable[str]) -> dict[str, tuple[int, int]]:
+    """Order these actions by module, the one that is met first before others, and within it.
+
+    Which module was imported first, and so stands first in the registry, is chance.
+    """
+    met: dict[str, int] = {}
+    for name in names:
+        met.setdefault(REGISTRY[name].__module__, len(met))
+    return {
+        name: (met[action.__module__], place)
+        for place, (name, action) in enumerate(REGISTRY.items())
+        if action.__module__ in met
+    }
 
 
 def _cells(entry: Key) -> int:
