@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from graph.clients import Clients
 from graph.data import CallResult
-from graph.making import FieldError, to_message
+from graph.dated import draft
+from graph.making import FieldError
 from graph.types import UnknownTypeError, load_service
 from graph.values import to_tree
 from graph.words import say
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from graph.data import ServiceRow, Value
+    from graph.dated import Draft
 
 
 QUEUE = 10
@@ -33,7 +35,7 @@ GONE_AFTER_S = 0.5
 class _Call:
     service: str
     client: Client
-    request: Any
+    request: Draft
     future: Future[CallResult]
     started_s: float
     timeout_s: float
@@ -73,7 +75,7 @@ class Calls:
             return
         try:
             client = self.prepare(service, type_name)
-            made = to_message(load_service(type_name).Request, request)
+            made = draft(load_service(type_name).Request, request)
         except UnknownTypeError as error:
             future.set_result(_failed(service, error.reason, started_s))
             return
@@ -117,7 +119,7 @@ class Calls:
         try:
             if call.sequence is None and self._has_its_turn(call):
                 with call.client.handle:
-                    call.sequence = call.client.handle.send_request(call.request)
+                    call.sequence = call.client.handle.send_request(call.request.dated())
             answer = answers.get((call.client, call.sequence or 0))
             if answer is not None:
                 elapsed_s = time.monotonic() - call.started_s

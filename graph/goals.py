@@ -8,9 +8,9 @@ import uuid
 from typing import TYPE_CHECKING
 
 from graph.data import Goal, GoalStatus
+from graph.dated import draft
 from graph.goals_life import GoalLife
 from graph.goals_line import ActionLine
-from graph.making import to_message
 from graph.types import UnknownTypeError
 from graph.values import to_tree
 from graph.words import say
@@ -71,12 +71,12 @@ class Goals:
             )
         line = self._line(action, type_name)
         try:
-            message = to_message(line.type.Goal, goal)
+            message = draft(line.type.Goal, goal)
         except Exception:
             self._close_lines()
             raise
         number = next(self._numbers)
-        told = Goal(number, action, type_name, GoalStatus.SENDING, to_tree(message))
+        told = Goal(number, action, type_name, GoalStatus.SENDING, to_tree(message.dated()))
         self._lives[number] = GoalLife(told, uuid.uuid4().bytes, message, line)
         future.set_result(number)
 

@@ -11,6 +11,7 @@ from graph.values import to_tree
 from graph.words import say
 
 if TYPE_CHECKING:
+    from graph.dated import Draft
     from graph.goals_line import ActionLine, Heard
 
 ANSWER_WITHIN_S = 5.0
@@ -32,7 +33,7 @@ ENDS = frozenset({GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED}
 class GoalLife:
     """One goal. `hear` and `act` are called in turn until it `is_settled`."""
 
-    def __init__(self, told: Goal, goal_id: bytes, message: Any, line: ActionLine) -> None:  # noqa: ANN401 - generated
+    def __init__(self, told: Goal, goal_id: bytes, message: Draft, line: ActionLine) -> None:
         """Begin with a goal that is `SENDING`, to be sent as `message` by `line`."""
         self.told = told
         """As the screen is to see it; `elapsed_s` apart."""
@@ -133,7 +134,7 @@ class GoalLife:
         if self._wants_cancel:
             self._end(GoalStatus.CANCELED, say("it was cancelled before it was sent"))
         elif self.line.is_ready:
-            self._request = self.line.send(self._id, self._message)
+            self._request = self.line.send(self._id, self._message.dated())
             self._request_s = now_s
         elif now_s - self._began_s >= ANSWER_WITHIN_S:
             self._end(

@@ -7,7 +7,7 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from graph.making import to_message
+from graph.dated import Draft, draft
 from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
 from graph.types import load_message
 from graph.words import say
@@ -51,7 +51,7 @@ class _Line:
     expected: int
     """Subscribers that the graph knew when it was made."""
     patience_ends_s: float
-    waiting: deque[tuple[Any, Future[int]]] = field(default_factory=deque)
+    waiting: deque[tuple[Draft | None, Future[int]]] = field(default_factory=deque)
     """A message, None if it has gone out, and who wants to know how many it went to."""
     matched_since_s: float | None = None
     is_settled: bool = False
@@ -69,10 +69,10 @@ class _Line:
             if message is None or self.publish(message, future):
                 future.set_result(matched)
 
-    def publish(self, message: Any, future: Future[int]) -> bool:  # noqa: ANN401
+    def publish(self, message: Draft, future: Future[int]) -> bool:
         """Publish; tell whether that went well, and the future if it did not."""
         try:
-            self.publisher.publish(message)
+            self.publisher.publish(message.dated())
         except Exception as error:  # noqa: BLE001 - told to whoever asked for it
             failure = PublishError(f"{self.publisher.topic}: {error}")
             failure.__cause__ = error
@@ -124,7 +124,7 @@ class Outbox:
         Raises PublishError, UnknownTypeError or FieldError.
         """
         line = self._line(topic, type_name, ends, latched=latched)
-        message = to_message(line.cls, value)
+        message = draft(line.cls, value)
         if latched:
             # The middleware hands it to those who are matched later: a stop must not wait.
             if line.publish(message, future):

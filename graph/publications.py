@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from graph.data import Publication
-from graph.making import to_message
+from graph.dated import Draft, draft
 from graph.outbox import PublishError, open_publisher, refuse_other_type
 from graph.qos import Qos, to_be_heard
 from graph.types import load_message
@@ -38,8 +38,8 @@ class _Repeated:
     topic: str
     type_name: str
     hz: float
-    raw: bytes
-    """Serialized once."""
+    message: Draft | bytes
+    """Serialized once, unless it holds the time of sending."""
     cls: type[Any]
     qos: Qos
     publisher: Publisher
@@ -53,7 +53,8 @@ class _Repeated:
             self.due_s = now_s
         while self.due_s <= now_s and not self.error:
             try:
-                self.publisher.publish(self.raw)
+                held = self.message
+                self.publisher.publish(held if isinstance(held, bytes) else held.dated())
             except Exception as error:  # noqa: BLE001 - told in its row
                 self.error = str(error)
             else:
@@ -103,12 +104,13 @@ class Publications:
 
         refuse_other_type(topic, type_name, ends)
         cls = load_message(type_name)
-        raw = serialize_message(to_message(cls, value))
+        made = draft(cls, value)
+        message = made if made.stamps else serialize_message(made.message)
         qos = to_be_heard(ends.subscribers if ends else ())
         publisher = open_publisher(self._node, topic, cls, qos)
         number = next(self._numbers)
         self._repeated[number] = _Repeated(
-            number, topic, type_name, hz, raw, cls, qos, publisher, time.monotonic()
+            number, topic, type_name, hz, message, cls, qos, publisher, time.monotonic()
         )
         future.set_result(number)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from graph.dated import draft, with_words
 from graph.fields import parse, ros_name
-from graph.making import FieldError, NoSuchFieldError, to_message
+from graph.making import FieldError, NoSuchFieldError
 from graph.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
 from graph.values import fields_of, to_tree
 from graph.yaml_reading import read
@@ -45,6 +46,8 @@ def form_class(type_name: str) -> type[Any]:
 def prefilled(type_name: str) -> str:
     """Return YAML with every field at its default, and its type in a comment; `{}` for none.
 
+    The stamp of a header is the word `now`, the time of sending.
+
     For `pkg/msg/X`, for the request of `pkg/srv/X`, for the goal of `pkg/action/X`. Raises
     UnknownTypeError.
     """
@@ -52,11 +55,14 @@ def prefilled(type_name: str) -> str:
 
 
 def filled(type_name: str, tree: Mapping[str, Value], most: int | None = None) -> str:
-    """Return YAML of a whole message, with the type of each field in a comment.
+    """Return YAML of a whole message to be sent, with the type of each field in a comment.
 
-    Arrays are cut at `most` elements; a comment tells. Raises UnknownTypeError.
+    The stamp of a header is the word `now`: the one it had is no longer true. Arrays are cut at
+    `most` elements; a comment tells. Raises UnknownTypeError.
     """
-    remarks = dict(_remarks(form_class(type_name), tree, "", most))
+    cls = form_class(type_name)
+    tree = with_words(cls, tree)
+    remarks = dict(_remarks(cls, tree, "", most))
     return to_yaml(tree, most, lambda path: remarks.get(path, ""))
 
 
@@ -69,7 +75,7 @@ def check(type_name: str, text: str) -> Mapping[str, Value]:
     root = read(text)
     tree: Mapping[str, Value] = root.plain()
     try:
-        to_message(cls, tree)
+        draft(cls, tree)
     except FieldError as error:
         node = root.find(error.field)
         at_key = isinstance(error, NoSuchFieldError) or isinstance(node.value, (dict, list))
@@ -91,7 +97,9 @@ def _remarks(
         kind = parse(text)
         path = f"{prefix}{name}"
         value = tree[name]
-        if kind.is_message and len(value):
+        if kind.is_message and isinstance(value, str):
+            yield path, ros_name(text)
+        elif kind.is_message and len(value):
             nested = load_message(_element(text))
             parts = [("", value)]
             if kind.is_many:

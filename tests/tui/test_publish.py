@@ -113,9 +113,9 @@ async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> Non
         await desk.pilot.press(key)
         await desk.says("Not sent")
     assert (desk.graph.published, desk.graph.repeated) == ([], [])
-    assert "line 9: drive.speed: expected a number, got 'fast'" in desk.dialog.form.verdict
+    assert "line 7: drive.speed: expected a number, got 'fast'" in desk.dialog.form.verdict
     assert desk.dialog.focused is desk.dialog.form.editor
-    assert desk.dialog.form.editor.cursor_location == (8, 9)
+    assert desk.dialog.form.editor.cursor_location == (6, 9)
     desk.fill("fast", "1")
     await desk.until(lambda: desk.dialog.rate.said == "")
 
@@ -272,11 +272,11 @@ async def test_a_click_on_a_tab_leaves_the_dialog_where_it_is(desk: Desk) -> Non
 
 async def test_the_verdict_leads_to_what_is_wrong(desk: Desk) -> None:
     await desk.open()
-    desk.fill("nanosec: 0", "nanosec: -1")
+    desk.fill("stamp: now", "stamp: {sec: 0, nanosec: -1}")
     desk.dialog.rate.field.focus()
     await desk.until(lambda: desk.dialog.form.error is not None)
     await desk.pilot.click("YamlForm > Static")
-    assert desk.dialog.form.editor.cursor_location == (3, 13)
+    assert desk.dialog.form.editor.cursor_location == (1, 27)
 
 
 async def test_what_is_typed_is_checked_beside_the_screen(

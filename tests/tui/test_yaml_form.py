@@ -79,7 +79,7 @@ async def test_a_form_is_prefilled_and_right() -> None:
     app = FormApp(DRIVE)
     async with app.run_test(size=(80, 24)) as pilot:
         await checked(pilot)
-        assert app.form.text.startswith("header:\n  stamp:\n    sec: 0  # int32\n")
+        assert app.form.text.startswith("header:\n  stamp: now  # builtin_interfaces/Time\n")
         assert app.form.verdict == f"✓ fits {DRIVE}"
         value = app.form.value
         assert value is not None
@@ -89,8 +89,8 @@ async def test_a_form_is_prefilled_and_right() -> None:
 @pytest.mark.parametrize(
     ("language", "words"),
     [
-        ("en", "✗ line 9: drive.speed: expected a number, got 'fast'"),
-        ("ru", "✗ строка 9: drive.speed: ожидалось число, здесь 'fast'"),
+        ("en", "✗ line 7: drive.speed: expected a number, got 'fast'"),
+        ("ru", "✗ строка 7: drive.speed: ожидалось число, здесь 'fast'"),
     ],
 )
 async def test_what_is_wrong_is_named_and_its_line_marked(language: str, words: str) -> None:
@@ -102,7 +102,7 @@ async def test_what_is_wrong_is_named_and_its_line_marked(language: str, words: 
         await checked(pilot)
         assert app.form.verdict == words
         assert app.form.value is None
-        assert "✗" in app.lines()[8]
+        assert "✗" in app.lines()[6]
         app.form.editor.replace_all(app.form.text.replace("speed: fast", "speed: 1"))
         await checked(pilot)
         assert "✗" not in "".join(app.lines())

@@ -10,6 +10,7 @@ from deck_interfaces.action import DriveToPoint
 
 from graph import goals_life
 from graph.data import Goal, GoalStatus
+from graph.dated import Draft
 from graph.goals_life import ANSWER_WITHIN_S, GONE_AFTER_S, GoalLife
 from graph.goals_line import Heard
 
@@ -68,7 +69,7 @@ def line() -> Line:
 def life(clock: Clock, line: Line) -> GoalLife:
     assert clock.now_s == 100.0
     told = Goal(1, "/drive", "t", GoalStatus.SENDING, {})
-    return GoalLife(told, ID, None, cast("Any", line))
+    return GoalLife(told, ID, Draft(None), cast("Any", line))
 
 
 def go(life: GoalLife, **heard: Any) -> GoalStatus:
