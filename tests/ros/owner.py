@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import signal
 import sys
 from dataclasses import asdict
 
@@ -25,4 +26,6 @@ async def main(profile: str, domain: str, mode: str) -> None:
 
 
 if __name__ == "__main__":
+    # Under nohup it would be ignored.
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     asyncio.run(main(*sys.argv[1:]))
