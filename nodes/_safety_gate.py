@@ -100,8 +100,9 @@ class Gate:
 
     def tick(self) -> None:
         """Let go of a command that is too old, and repeat what is allowed."""
-        self._sources.max_age_s = self._node.number("max_age_s")
-        self._pass_on(self._sources.driving(time.monotonic()))
+        now_s = time.monotonic()
+        self._sources.let_age(self._node.number("max_age_s"), now_s)
+        self._pass_on(self._sources.driving(now_s))
 
     def stop(self) -> None:
         """Leave the robot standing."""

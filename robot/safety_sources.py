@@ -46,24 +46,30 @@ class Sources:
         """Know these sources, and which of them are `held`; nobody has said anything."""
         self._ranked = tuple(ranked)
         self._held = frozenset(held)
-        self.max_age_s = max_age_s
+        self._max_age_s = max_age_s
         self._orders: dict[str, Order] = {}
         self._newest = ""
+
+    def let_age(self, max_age_s: float, now_s: float) -> None:
+        """Let commands grow so old from now on; one that was too old already stays so."""
+        if max_age_s != self._max_age_s:
+            self._drop_old(now_s)
+            self._max_age_s = max_age_s
 
     def hear(self, source: str, setpoint: DriveSetpoint, now_s: float) -> Order:
         """Take in a command; return the order that drives now, which may be one above it."""
         order = self._orders[source] = Order(source, setpoint, now_s)
         self._newest = source
         driving = self.driving(now_s) or order
-        if self.max_age_s == 0:
+        if self._max_age_s == 0:
             # Nothing grows old: what does not drive now must not do so later.
             self._orders = {driving.source: driving}
         return driving
 
     def driving(self, now_s: float) -> Order | None:
         """The order that drives; None if nobody's counts."""
-        orders = map(self._orders.get, self._ranked)
-        return next((order for order in orders if order and self._counts(order, now_s)), None)
+        self._drop_old(now_s)
+        return next((self._orders[name] for name in self._ranked if name in self._orders), None)
 
     def correct(self, order: Order, setpoint: DriveSetpoint) -> None:
         """Remember less than was asked for, for as long as the order itself would have counted."""
@@ -77,8 +83,13 @@ class Sources:
     def limit_s(self, source: str) -> float:
         """How old a command of this source may grow, 0 for any age."""
         if source not in self._held:
-            return self.max_age_s
-        return min(self.max_age_s or HELD_AGE_S, HELD_AGE_S)
+            return self._max_age_s
+        return min(self._max_age_s or HELD_AGE_S, HELD_AGE_S)
+
+    def _drop_old(self, now_s: float) -> None:
+        self._orders = {
+            name: order for name, order in self._orders.items() if self._counts(order, now_s)
+        }
 
     def _counts(self, order: Order, now_s: float) -> bool:
         limit_s = self.limit_s(order.source)

@@ -40,6 +40,19 @@ def test_what_was_said_long_ago_does_not_revive() -> None:
     assert driver(sources, 1.5) == ""
 
 
+@pytest.mark.parametrize("longer_s", [10.0, 0.0])
+def test_a_longer_age_revives_nothing_that_was_too_old(longer_s: float) -> None:
+    sources = Sources(RANKED, max_age_s=0.5)
+    sources.hear(ACTION, FAST, 0.0)
+    sources.hear(WORDS, FAST, 0.2)
+    sources.let_age(longer_s, 0.6)
+    assert driver(sources, 0.6) == WORDS, "it was young enough"
+    sources.let_age(0.5, 0.6)
+    assert driver(sources, 0.8) == ""
+    sources.let_age(longer_s, 0.8)
+    assert driver(sources, 0.8) == ""
+
+
 def test_a_person_who_asks_for_a_stop_is_obeyed_too() -> None:
     sources = Sources(RANKED, max_age_s=0.5)
     sources.hear(WORDS, FAST, 0.0)
