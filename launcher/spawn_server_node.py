@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from launcher.spawn_server_shared import SharedModules
     from launcher.spawn_server_warm import Preload
 
+ENDING = (signal.SIGINT, signal.SIGTERM)
 NOT_EXECUTABLE = 126
 NOT_FOUND = 127
 """Exit codes as a shell gives them."""
@@ -70,6 +71,8 @@ class Birth:
 
 def become(birth: Birth) -> None:
     """Be the node, to its end; an exception of the node's ends this process as it ought to."""
+    # Whoever is asked to end already does so when he knows how.
+    signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     os.setsid()
     if not die_with_parent(birth.supervisor):
         os._exit(1)
@@ -81,12 +84,14 @@ def become(birth: Birth) -> None:
     except OSError as problem:
         _give_up(f"cannot enter {birth.cwd}: {problem.strerror}", NOT_EXECUTABLE)
     if birth.kind == "exec":
+        _hear_signals()
         _execute(birth)
     show_title(birth.title)
     show_name(birth.name)
     show_mark(NODE_MARK, birth.name)
     _renew_streams()
     if birth.kind == "probe":
+        _hear_signals()
         from launcher.spawn_server_probe import probe
 
         probe(birth.argv)
@@ -100,6 +105,10 @@ def _reset_signals() -> None:
         if signal.getsignal(number) is not signal.SIG_DFL:
             with contextlib.suppress(OSError, ValueError):
                 signal.signal(number, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_SETMASK, ENDING)
+
+
+def _hear_signals() -> None:
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
 
@@ -158,7 +167,6 @@ def _unbuffered(fd: int) -> io.TextIOWrapper:
 def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
     """Do what `python -m` does."""
     # Python's own defaults at start, undone by `_reset_signals`.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     sys.argv = ["-m", *argv[1:]]
@@ -172,7 +180,11 @@ def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
     ]
     sys.excepthook = _report
     importlib.invalidate_caches()
-    shared.renew()
+    shared.renew(argv[0])
+    _hear_signals()
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+        # Not before: interrupted until here, it ends without a traceback.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if "numpy.random" in sys.modules:
         # `random` reseeds itself after a fork, numpy's old global generator does not.
         sys.modules["numpy.random"].seed()

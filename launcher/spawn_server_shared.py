@@ -42,15 +42,19 @@ class SharedModules:
             if _is_project(sys.modules[name])
         }
 
-    def renew(self) -> None:
-        """In a forked node: drop what is no longer as it was imported, run `__init__` again."""
+    def renew(self, module: str) -> None:
+        """In a forked node: drop what is no longer as it was imported.
+
+        The `__init__` of the package that `module`, the node's own, is in runs again: it may look
+        at the command line.
+        """
         for package, stamps in self._packages.items():
             if package not in sys.modules:
                 continue
             if _elsewhere(package) or any(_changed(stamp) for stamp in stamps.values()):
                 for name in stamps:
                     sys.modules.pop(name, None)
-            else:
+            elif module.startswith(f"{package}."):
                 importlib.reload(sys.modules[package])
 
 

@@ -31,6 +31,13 @@ if TYPE_CHECKING:
 
     from launcher.client import SupervisorClient
 
+
+async def pid_of(client: SupervisorClient, name: str) -> int:
+    """Return the number of a node's process as soon as there is one."""
+    pid: int = await until(lambda: client.nodes[name].pid, "a process")
+    return pid
+
+
 FORK_OFF = """
 import os, sys, time
 middle = os.fork()
@@ -138,6 +145,30 @@ async def test_a_warm_node_that_had_threads_ends_with_its_own_code(
     status = await until_state(client, "node", NodeState.EXITED, NodeState.FAILED)
     assert (status.exit_code, status.signal) == (3, None)
     assert "last word" in [line.text for line in await client.history("node", 5)]
+
+
+async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(
+    start: Launch,
+) -> None:
+    client = await start({"node": {"run": "nodes.hello"}})
+    for _ in range(15):
+        kill(await pid_of(client, "node"), signal.SIGINT)
+        status = await until_state(client, "node", NodeState.EXITED, NodeState.FAILED)
+        assert (status.state, status.exit_code, status.signal) == (NodeState.EXITED, 0, None)
+        await client.start("node")
+    text = "\n".join(line.text for line in await client.history("node", 1000))
+    assert "Traceback" not in text
+
+
+async def test_a_module_of_the_users_own_is_interrupted_as_python_has_it(
+    start: Launch, tmp_path: Path
+) -> None:
+    (tmp_path / "mine.py").write_text(
+        "import signal\n"
+        "print('python', signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n"
+    )
+    client = await start({"theirs": {"run": "nodes.hello"}, "mine": {"run": "mine"}})
+    assert await said(client, "mine", "python") == "True"
 
 
 async def test_a_warm_node_collects_its_garbage(start: Launch, tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def test_what_is_as_it_was_is_kept() -> None:
     shared = SharedModules()
     assert list(shared.load(PACKAGE)) == ["_shared"]
     loaded = sys.modules[f"{PACKAGE}._shared"]
-    shared.renew()
+    shared.renew(f"{PACKAGE}.node")
     assert sys.modules[f"{PACKAGE}._shared"] is loaded
     assert sys.modules[PACKAGE]._shared is loaded
 
@@ -50,7 +50,7 @@ def test_what_was_edited_is_imported_anew(package: Path) -> None:
     list(shared.load(PACKAGE))
     (package / "_shared.py").write_text("VALUE = 'afterwards'\n")
     importlib.invalidate_caches()
-    shared.renew()
+    shared.renew(f"{PACKAGE}.node")
     assert value() == "afterwards"
 
 
@@ -60,7 +60,7 @@ def test_an_edit_of_the_same_length_is_seen_by_its_time(package: Path) -> None:
     (package / "_shared.py").write_text("VALUE = 'behind'\n")
     os.utime(package / "_shared.py", ns=(1, 1))
     importlib.invalidate_caches()
-    shared.renew()
+    shared.renew(f"{PACKAGE}.node")
     assert value() == "behind"
 
 
@@ -75,11 +75,11 @@ def test_a_node_whose_path_leads_elsewhere_gets_what_is_there(
     (mine / "__init__.py").write_text("")
     (mine / "_shared.py").write_text("VALUE = 'mine'\n")
     monkeypatch.syspath_prepend(str(tmp_path / "mine"))
-    shared.renew()
+    shared.renew(f"{PACKAGE}.node")
     assert value() == "mine"
 
 
 def test_a_package_that_is_not_there_is_no_trouble() -> None:
     shared = SharedModules()
     assert list(shared.load("no_such_package_of_nodes")) == []
-    shared.renew()
+    shared.renew(f"{PACKAGE}.node")
