@@ -75,6 +75,16 @@ def test_nodes_that_fail_are_named_and_the_exit_code_says_so(tmp_path: Path) -> 
     assert "not ready within 0.5 s" in nodes["late"]["detail"]
 
 
+def test_a_supervisor_that_is_killed_is_the_reason_for_programs(tmp_path: Path) -> None:
+    path = written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}")
+    run = DeckProcess("run", str(path), "--json")
+    run.said('"state": "running"')
+    os.kill(run.events()[0]["supervisor_pid"], signal.SIGKILL)
+    assert run.finish() == 1
+    summary = run.events()[-1]
+    assert (summary["healthy"], summary["reason"]) == (False, "the supervisor is gone")
+
+
 CHAIN = """\
 nodes:
   base: {exec: [sleep, 100]}

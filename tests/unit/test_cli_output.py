@@ -146,13 +146,22 @@ STATUS = NodeStatus("sonar", "nodes.x", NodeState.FAILED, "exit code 3", restart
 
 def test_the_summary_names_who_is_not_well() -> None:
     lines, report = text_report(["sonar"])
-    report.summary([STATUS], {"sonar": False}, 4.25, 1)
+    report.summary([STATUS], {"sonar": False}, 4.25, 1, "")
     assert lines == [
         "",
         "NODE   RESULT  STATE   RESTARTS  DETAIL",
         "sonar  FAILED  failed  2         exit code 3",
         "not healthy: sonar; 4.2 s",
     ]
+
+
+def test_the_summary_ends_with_what_ended_the_run() -> None:
+    lines, report = text_report(["sonar"])
+    gone = say("the supervisor is gone")
+    report.summary([STATUS], {"sonar": True}, 4.25, 1, gone)
+    assert lines[-1] == "ended from elsewhere: the supervisor is gone; 4.2 s"
+    report.summary([STATUS], {"sonar": False}, 4.25, 1, gone)
+    assert lines[-1] == "not healthy: sonar; ended from elsewhere: the supervisor is gone; 4.2 s"
 
 
 def test_json_is_one_object_a_line_and_ends_with_the_summary() -> None:
@@ -163,7 +172,7 @@ def test_json_is_one_object_a_line_and_ends_with_the_summary() -> None:
     report.log(line("Дистанция\u2028", Severity.WARN))
     report.skipped("sonar", 5)
     report.note("nothing for programs")
-    report.summary([STATUS], {"sonar": False}, 4.25, 1)
+    report.summary([STATUS], {"sonar": False}, 4.25, 1, "")
     events = [json.loads(each) for each in lines]
     assert [event["event"] for event in events] == [
         *("session", "status", "log", "skipped", "summary")

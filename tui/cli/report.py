@@ -6,7 +6,8 @@ JSON is one object a line, told apart by `event`:
     status    a node's state has changed: node, state, detail, pid, restarts, exit_code, signal
     log       a line of a node: node, seq, time (unix), severity, text, logger, source
     skipped   node and lines: so many lines were left out here, the log file has them
-    summary   the last one: healthy, exit_code, seconds, and nodes as for `status` with `healthy`
+    summary   the last one: healthy, exit_code, reason (what ended the run if nobody here did),
+              seconds, and nodes as for `status` with `healthy`
 """
 
 from __future__ import annotations
@@ -48,9 +49,17 @@ class Report(Protocol):
         """Tell something about the run itself."""
 
     def summary(
-        self, nodes: Sequence[NodeStatus], healthy: Mapping[str, bool], seconds: float, code: int
+        self,
+        nodes: Sequence[NodeStatus],
+        healthy: Mapping[str, bool],
+        seconds: float,
+        code: int,
+        reason: str,
     ) -> None:
-        """Tell how it went: the nodes before they were stopped, and whether each was well."""
+        """Tell how it went: the nodes before they were stopped, and whether each was well.
+
+        `reason`: what ended the run, empty if it was stopped from here.
+        """
 
 
 class TextReport:
@@ -100,7 +109,12 @@ class TextReport:
         self._line(DECK, text)
 
     def summary(
-        self, nodes: Sequence[NodeStatus], healthy: Mapping[str, bool], seconds: float, code: int
+        self,
+        nodes: Sequence[NodeStatus],
+        healthy: Mapping[str, bool],
+        seconds: float,
+        code: int,
+        reason: str,
     ) -> None:
         """Tell how it went, as a table."""
         del code
@@ -121,10 +135,12 @@ class TextReport:
         for node, line in zip(nodes, others, strict=True):
             self._write(line if healthy[node.name] else self._paint(line, RED))
         bad = [node.name for node in nodes if not healthy[node.name]]
+        parts = []
         if bad:
-            words = _("not healthy: {names}").format(names=", ".join(bad))
-        else:
-            words = _("every node stayed healthy")
+            parts.append(_("not healthy: {names}").format(names=", ".join(bad)))
+        if reason:
+            parts.append(_("ended from elsewhere: {reason}").format(reason=said(reason)))
+        words = "; ".join(parts) or _("every node stayed healthy")
         self._write(_("{words}; {seconds:.1f} s").format(words=words, seconds=seconds))
 
     def _line(self, node: str, text: str) -> None:
@@ -180,13 +196,19 @@ class JsonReport:
         """Say nothing: what a program must know has an event of its own."""
 
     def summary(
-        self, nodes: Sequence[NodeStatus], healthy: Mapping[str, bool], seconds: float, code: int
+        self,
+        nodes: Sequence[NodeStatus],
+        healthy: Mapping[str, bool],
+        seconds: float,
+        code: int,
+        reason: str,
     ) -> None:
         """Tell how it went."""
         self._object(
             "summary",
-            healthy=all(healthy.values()),
+            healthy=all(healthy.values()) and not reason,
             exit_code=code,
+            reason=reason,
             seconds=round(seconds, 3),
             nodes=[{**status_fields(node), "healthy": healthy[node.name]} for node in nodes],
         )

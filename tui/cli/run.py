@@ -17,7 +17,7 @@ from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
 from tui.cli.output import Paint, drop_output
 from tui.cli.report import JsonReport, TextReport
-from tui.i18n import _, language, ngettext, said
+from tui.i18n import _, language, ngettext
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -201,9 +201,7 @@ class Run:
             name: name not in self._ever_bad and well(node, optional, on_the_way=self._on_the_way)
             for name, node in nodes.items()
         }
-        cut_short = not self._asked_to_stop
-        if cut_short:
-            self.report.note(_("ended from elsewhere: {reason}").format(reason=said(reason)))
+        cut_short = "" if self._asked_to_stop else reason
         code = 0 if all(healthy.values()) and not cut_short else 1
-        self.report.summary(list(nodes.values()), healthy, seconds, code)
+        self.report.summary(list(nodes.values()), healthy, seconds, code, cut_short)
         return code
