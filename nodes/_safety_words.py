@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -10,7 +11,7 @@ from nodes._speech import Phrase, Speech
 from robot.safety import Sight, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from nodes._safety_eyes import View
     from nodes._safety_gate import Moment
@@ -63,6 +64,14 @@ _SIGHTS = {
         "Передний сонар молчит {seconds:.1f} с: считаю опасностью.",
     ),
 }
+_SIGHTS_OUT_OF_RANGE = {
+    Sight.FREE: Phrase("The way is free (nothing in range).", "Путь свободен (преград не видно)."),
+    Sight.CLOSE: Phrase(
+        "EMERGENCY BRAKE! Obstacle too close to measure.",
+        "АВАРИЙНОЕ ТОРМОЖЕНИЕ! Препятствие слишком близко.",
+    ),
+}
+"""Instead, by REP-117, of a distance that is infinite."""
 _LOG_EVERY_S = 0.9
 
 _VERDICTS = {
@@ -88,13 +97,22 @@ _REASONS = {
     Sight.INVALID: Phrase("{place} no valid distance", "{place} нет верного расстояния"),
     Sight.SILENT: Phrase("{place} sonar is silent", "{place} сонар молчит"),
 }
+_REASONS_OUT_OF_RANGE = {
+    Sight.FREE: Phrase("{place} nothing in range", "{place} преград не видно"),
+    Sight.CLOSE: Phrase("{place} too close to measure", "{place} слишком близко"),
+}
 
 
 def tell_front(say: Speech, view: View) -> None:
     """Log what the front sonar shows; each kind of news once a second at most."""
     log = say.info if view.sight == Sight.FREE else say.warn
     metres, seconds = view.reading.distance_m, view.reading.age_s
-    log(_SIGHTS[view.sight], every_s=_LOG_EVERY_S, metres=metres, seconds=seconds)
+    log(
+        _phrase(view, _SIGHTS, _SIGHTS_OUT_OF_RANGE),
+        every_s=_LOG_EVERY_S,
+        metres=metres,
+        seconds=seconds,
+    )
 
 
 def diagnosis(
@@ -131,7 +149,16 @@ def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], moment: Mome
 
 def _reason(say: Speech, view: View) -> str:
     place, metres = say.text(_PLACES[view.place]), view.reading.distance_m
-    return say.text(_REASONS[view.sight], place=place, metres=metres)
+    return say.text(_phrase(view, _REASONS, _REASONS_OUT_OF_RANGE), place=place, metres=metres)
+
+
+def _phrase(
+    view: View, phrases: Mapping[Sight, Phrase], out_of_range: Mapping[Sight, Phrase]
+) -> Phrase:
+    metres = view.reading.distance_m
+    if metres is not None and math.isinf(metres):
+        return out_of_range.get(view.sight, phrases[view.sight])
+    return phrases[view.sight]
 
 
 def _values(verdict: Verdict, views: Sequence[View], moment: Moment) -> Iterator[tuple[str, str]]:

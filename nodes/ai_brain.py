@@ -8,6 +8,7 @@ is obeyed as it is, as long as it does not lead into the unknown.
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 
@@ -44,6 +45,9 @@ _THINKING = Phrase(
 _PICTURE = Phrase("a picture", "кадр")
 _NO_PICTURE = Phrase("no picture", "без кадра")
 _DISTANCE = Phrase("{metres:.2f} m ahead", "{metres:.2f} м впереди")
+_NOTHING_NEAR = Phrase("nothing in range ahead", "преград впереди не видно")
+_TOO_CLOSE = Phrase("something too close to measure ahead", "слишком близкая преграда впереди")
+_NOT_VALID = Phrase("no valid distance ahead", "без верного расстояния впереди")
 _NO_DISTANCE = Phrase("no distance", "без расстояния")
 _THOUGHTS = {
     Decision.LOOK_AND_GO: Phrase(
@@ -121,11 +125,7 @@ class AiBrain(LessonNode):
         self._act(decide(order, front), words)
 
     def _tell_what_is_known(self) -> None:
-        distance = (
-            self.say.text(_NO_DISTANCE)
-            if self._front_m is None
-            else self.say.text(_DISTANCE, metres=self._front_m)
-        )
+        distance = self.say.text(_ahead(self._front_m), metres=self._front_m)
         picture = self.say.text(_NO_PICTURE if self._picture is None else _PICTURE)
         self.say.info(_THINKING, picture=picture, distance=distance)
 
@@ -152,6 +152,16 @@ class AiBrain(LessonNode):
             self.say.info(_HEAD_DONE)
         else:
             self.say.warn(_HEAD_REFUSED)
+
+
+def _ahead(metres: float | None) -> Phrase:
+    if metres is None:
+        return _NO_DISTANCE
+    if math.isnan(metres):
+        return _NOT_VALID
+    if math.isinf(metres):
+        return _NOTHING_NEAR if metres > 0 else _TOO_CLOSE
+    return _DISTANCE
 
 
 def _canonical(word: str) -> str:

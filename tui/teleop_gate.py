@@ -14,11 +14,12 @@ if TYPE_CHECKING:
     from graph.data import Sample
 
 NODE = "safety_stop"
+STOPPED = "emergency_stop"
 HELD = {
     "blocked_forward": N_("forward is blocked"),
     "blocked_backward": N_("backward is blocked"),
     "blocked": N_("motion is blocked"),
-    "emergency_stop": N_("emergency stop"),
+    STOPPED: N_("emergency stop"),
     "starting": N_("the gate is starting"),
 }
 EXPLAINED = {"blocked_forward", "blocked_backward", "blocked"}
@@ -39,6 +40,10 @@ PLACES = {
 }
 NOTHING_NEAR = {"front": N_("nothing ahead"), "rear": N_("nothing behind")}
 """Nothing in the range of the sensor."""
+TOO_CLOSE = {
+    "front": N_("obstacle ahead too close to measure"),
+    "rear": N_("obstacle behind too close to measure"),
+}
 SOURCES = {"/drive_teleop": N_("the keys")}
 """Those that are known by a better name than their topic."""
 
@@ -134,8 +139,8 @@ def _sight(gate: Gate, place: str, sight: str) -> str:
     metres = gate.metres.get(place)
     if sight == "free" and metres is None:
         return ""
-    if sight == "free" and metres is not None and math.isinf(metres):
-        return _(NOTHING_NEAR[place])
+    if metres is not None and math.isinf(metres) and sight in ("free", "close"):
+        return _((NOTHING_NEAR if sight == "free" else TOO_CLOSE)[place])
     words = PLACES[place].get(sight, "{metres}")
     return _(words).format(metres="?" if metres is None else f"{metres:.2f}")
 

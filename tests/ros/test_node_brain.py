@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
+AHEAD = {
+    "nan": "with the voice, no picture and no valid distance ahead",
+    "inf": "nothing in range ahead",
+    "-inf": "something too close to measure ahead",
+}
+
+
 def voice(sound: bytes) -> ByteMultiArray:
     return ByteMultiArray(data=[bytes((byte,)) for byte in sound])
 
@@ -50,7 +57,7 @@ class Brain:
     def see(self, distance: float) -> None:
         """Let it know the distance for sure: it tells it with its next thought."""
         self.peer.say("/sensor/sonar_front", Float32(data=distance))
-        shown = f"{distance:.2f} m ahead"
+        shown = AHEAD.get(str(distance), f"{distance:.2f} m ahead")
         wait_until(lambda: self._answers() and shown in self.process.output, shown)
 
     def _answers(self) -> bool:
@@ -139,7 +146,7 @@ def test_without_a_sonar_it_does_not_drive(brain: Brain) -> None:
 
 
 def test_with_a_free_way_and_no_head_it_drives_and_tells_what_is_missing(brain: Brain) -> None:
-    brain.see(1.5)
+    brain.see(math.inf)
     command, reply = brain.hear(b"VOICE_COMMAND: go")
     assert command == "вперед"
     assert "drive on" in reply

@@ -11,9 +11,15 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, Float32
 
+from nodes._safety_eyes import Eye
+from nodes._safety_gate import Moment
+from nodes._safety_words import diagnosis, tell_front
+from nodes._speech import Speech
+from robot.safety import Verdict, Zone
 from tests.ros.gate import FRONT, REAR, Gate, drive, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
+from tests.ros.test_serial_link import Log
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -163,6 +169,31 @@ def test_a_fast_sonar_does_not_flood_the_log(ros_domain: int) -> None:
         peer.say(FRONT, Float32(data=0.1))
         node.wait_for_words("Obstacle at 0.10 m")
         assert node.output.count("free") <= 10
+
+
+@pytest.mark.parametrize(
+    ("lang", "metres", "logged", "told"),
+    [
+        ("en", -math.inf, "Obstacle too close to measure.", "front too close to measure"),
+        ("ru", -math.inf, "Препятствие слишком близко.", "спереди слишком близко"),
+        ("en", math.inf, "The way is free (nothing in range).", "motion is allowed"),
+        ("ru", math.inf, "Путь свободен (преград не видно).", "движение разрешено"),
+    ],
+)
+def test_what_is_out_of_range_is_told_in_words(
+    lang: str, metres: float, logged: str, told: str
+) -> None:
+    log = Log()
+    say = Speech(log, lang)  # type: ignore[arg-type]
+    eye = Eye("front")
+    eye.see(metres)
+    view = eye.view(Zone(0.5, 1.0, 60.0))
+    tell_front(say, view)
+    assert log.lines[-1].endswith(logged)
+    verdict = Verdict.FREE if metres > 0 else Verdict.BLOCKED_FORWARD
+    assert diagnosis(say, verdict, [view], Moment()).message.endswith(told)
+    slowed = diagnosis(say, Verdict.FREE, [view], Moment(allowed=0.5)).message
+    assert "inf" not in slowed
 
 
 # ---------------------------------------------------------------- the sonar
