@@ -8,12 +8,12 @@
     │   ├── ProfileNotFoundError    no profile of that name; `.near` has the likely ones
     │   ├── DomainError             no ROS domain: not a number from 0 to 232
     │   └── UnknownNodeError        the running profile has no node of that name
-    ├── RunDirError                 the run or log directory cannot be made, or is not ours
+    ├── RunDirError                 no run or log directory, or it is not ours, or full (exit 2)
     └── SessionError                about a running supervisor (exit 1)
         ├── NotRunningError         none runs, or none of that name
         ├── SeveralRunningError     more than one runs, choose by name; `.names` (exit 2)
-        ├── AlreadyRunningError     the same profile runs already in that domain; `.session`
-        ├── StartError              the supervisor ended before it answered; its last words
+        ├── AlreadyRunningError     the same profile runs there already; `.session` (exit 2)
+        ├── StartError              the supervisor ended before it answered (exit 2)
         ├── ConnectionLostError     the supervisor has gone, or does not answer
         └── ProtocolError           the other end speaks another version of the protocol
 """
@@ -122,7 +122,9 @@ class UnknownNodeError(UsageError):
 
 
 class RunDirError(LauncherError):
-    """The run or log directory cannot be made, or is somebody else's."""
+    """The run or log directory cannot be made or written, or is somebody else's."""
+
+    exit_code = 2
 
 
 class SessionError(LauncherError):
@@ -161,6 +163,8 @@ class SeveralRunningError(SessionError):
 class AlreadyRunningError(SessionError):
     """The same profile runs already in that domain."""
 
+    exit_code = 2
+
     def __init__(self, session: SessionInfo) -> None:
         """`session`: the one that runs."""
         self.session = session
@@ -177,6 +181,8 @@ class AlreadyRunningError(SessionError):
 
 class StartError(SessionError):
     """The supervisor ended before it answered."""
+
+    exit_code = 2
 
 
 class ConnectionLostError(SessionError):

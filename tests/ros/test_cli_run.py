@@ -85,6 +85,31 @@ def test_a_supervisor_that_is_killed_is_the_reason_for_programs(tmp_path: Path) 
     assert (summary["healthy"], summary["reason"]) == (False, "the supervisor is gone")
 
 
+def test_a_profile_that_runs_already_is_not_started(tmp_path: Path) -> None:
+    path = str(written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}"))
+    first = DeckProcess("run", path)
+    first.said("started, pid")
+    second = deck("run", path)
+    first.signal(signal.SIGINT)
+    assert first.finish() == 0
+    assert second.process.returncode == 2
+    assert "runs already in domain" in second.errors[0]
+
+
+@pytest.mark.parametrize(
+    ("variable", "words"),
+    [("DECK_RUN_DIR", "is not a directory"), ("DECK_LOG_DIR", "cannot be made")],
+)
+def test_without_a_place_for_the_run_nothing_is_started(
+    variable: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}")
+    monkeypatch.setenv(variable, str(path))
+    run = deck("run", str(path))
+    assert run.process.returncode == 2
+    assert words in run.errors[0]
+
+
 CHAIN = """\
 nodes:
   base: {exec: [sleep, 100]}

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING
 
 from launcher import client
 from launcher.catalog import find_profile
-from launcher.errors import ConnectionLostError, NotRunningError, SessionError, UnknownNodeError
+from launcher.errors import (
+    AlreadyRunningError,
+    ConnectionLostError,
+    NotRunningError,
+    SessionError,
+    UnknownNodeError,
+)
 from launcher.events import LogEvent
 from tui.cli.health import settled, well
 from tui.cli.output import Paint, say_error, write
@@ -61,9 +67,13 @@ async def _up(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
-    link = await client.launch(
-        profile, foreground=False, node_lang=language(), supervisor=options.supervisor
-    )
+    try:
+        link = await client.launch(
+            profile, foreground=False, node_lang=language(), supervisor=options.supervisor
+        )
+    except AlreadyRunningError as error:
+        say_error(said(error.args[0]))
+        return 1  # Nothing was wrong with what was asked for: it is up.
     try:
         try:
             await asyncio.wait_for(_settle(link), UP_WITHIN_S)
