@@ -61,6 +61,6 @@ def unreadable(path: Path, error: Exception) -> BagError:
         say(
             "{path} cannot be read: {reason}. Is it whole? `ros2 bag reindex` mends many a bag",
             path=path,
-            reason=reason,
+            reason=str(reason).rstrip("."),
         )
     )

@@ -60,6 +60,15 @@ def test_an_empty_folder_and_another_file_are_no_bags(tmp_path: Path) -> None:
     assert "ends neither in .mcap nor in .db3" in said_of(text)
 
 
+@pytest.mark.parametrize("content", [b"", b"hello, I am no bag"])
+def test_a_reason_that_is_a_sentence_brings_no_second_dot(tmp_path: Path, content: bytes) -> None:
+    fake = tmp_path / "fake.mcap"
+    fake.write_bytes(content)
+    said = said_of(fake)
+    assert ". Is it whole?" in said
+    assert ".. Is it whole?" not in said
+
+
 def test_a_file_that_only_looks_like_one_is_named(tmp_path: Path) -> None:
     fake = tmp_path / "fake.mcap"
     fake.write_bytes(b"hello, I am no bag")
