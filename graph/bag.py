@@ -109,8 +109,8 @@ def open_bag(path: Path) -> Bag:
     """Open a bag. Raises BagError with a word that names the file and the mend."""
     from graph.bag_files import CutFiles, WholeBag
 
+    files = files_of(path)
     path = path.parent if path.name == METADATA else path
-    files = _files(path)
     mcaps = [file for file in files if file.suffix == ".mcap"]
     reason: Exception | None = None
     if (path / METADATA).exists() or len(mcaps) < 2:
@@ -128,14 +128,27 @@ def open_bag(path: Path) -> Bag:
     return Bag(path, cut, cut.missing(path))
 
 
+def files_of(path: Path) -> list[Path]:
+    """Return the files with messages; none of them is opened.
+
+    Raises BagError if there are none, or none that can be read.
+    """
+    try:
+        return _files(path)
+    except OSError as error:
+        raise unreadable(path, error) from error
+
+
 def _files(path: Path) -> list[Path]:
-    """Return the files with messages; a word if there are none, or none that can be read."""
+    path = path.parent if path.name == METADATA else path
     if not path.exists():
         raise no_bag(path, say("there is no such file or folder"))
     if path.is_file():
         if path.suffix not in SUFFIXES:
             raise no_bag(path, say("the name ends neither in .mcap nor in .db3"))
         return [path]
+    if not path.is_dir():
+        raise no_bag(path, say("it is neither a file nor a folder"))
     metadata = _metadata(path / METADATA)
     storage = metadata.get("storage_identifier", "mcap")
     if storage not in STORAGES:

@@ -10,6 +10,8 @@ from tests.e2e.terminal import Terminal
 from tests.unit.bags import write_bag, write_robot_bag
 
 ROOT = Path(__file__).parents[2]
+WORDS_BYTES = 500
+"""More than a refusal is long; a screen draws thousands."""
 WITHOUT_ROS = """
 import sys
 for name in ("rclpy", "std_msgs", "sensor_msgs", "builtin_interfaces", "rcl_interfaces"):
@@ -57,6 +59,19 @@ def test_what_is_no_bag_is_told_on_the_terminal_with_exit_code_two(tmp_path: Pat
         terminal.wait_for("Give the folder that holds")
     finally:
         terminal.close()
+
+
+def test_what_is_no_bag_at_all_is_told_before_any_screen(tmp_path: Path) -> None:
+    link = tmp_path / "l.mcap"
+    link.symlink_to(link)
+    for path in (Path("/dev/null"), link):
+        terminal = replay(path)
+        try:
+            assert terminal.wait_exit() == 2
+            terminal.wait_for("is no bag")
+            assert terminal.received < WORDS_BYTES
+        finally:
+            terminal.close()
 
 
 def test_without_a_terminal_it_says_what_is_wrong_with_the_bag_first(tmp_path: Path) -> None:

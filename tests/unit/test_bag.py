@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -58,6 +59,20 @@ def test_an_empty_folder_and_another_file_are_no_bags(tmp_path: Path) -> None:
     text = tmp_path / "letter.txt"
     text.write_text("hello")
     assert "ends neither in .mcap nor in .db3" in said_of(text)
+
+
+def test_what_is_neither_file_nor_folder_is_no_bag_and_is_not_waited_for(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.mcap"
+    os.mkfifo(pipe)
+    for path in (pipe, Path("/dev/null"), Path("/dev/zero")):
+        assert f"{path} is no bag: it is neither a file nor a folder" in said_of(path)
+
+
+def test_a_link_to_itself_and_an_endless_name_are_told(tmp_path: Path) -> None:
+    link = tmp_path / "l.mcap"
+    link.symlink_to(link)
+    assert "l.mcap is no bag: there is no such file or folder" in said_of(link)
+    assert "cannot be read: File name too long" in said_of(tmp_path / ("n" * 300))
 
 
 @pytest.mark.parametrize("content", [b"", b"hello, I am no bag"])

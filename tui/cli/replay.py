@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 def replay_command(options: Namespace) -> int:
     """Show the screen on a bag until it is left; 2 for what is no bag."""
     bag = Path(options.bag)
+    _check(bag, whole=not has_terminal())
     if not has_terminal():
-        _check(bag)
         say_error(_("replay needs a terminal; `ros2 bag play` does without"))
         return 2
     from tui.live import run_live
@@ -28,12 +28,18 @@ def replay_command(options: Namespace) -> int:
     return run_live(Order(replay=order), options.lang)
 
 
-def _check(bag: Path) -> None:
-    """Say what is wrong with the bag, before anything is said about the terminal."""
-    from graph.bag import open_bag
+def _check(bag: Path, *, whole: bool) -> None:
+    """Say what is wrong with the bag, before anything else is said or shown.
+
+    `whole`: look inside too, which the screen does by itself: it may take a while.
+    """
+    from graph.bag import files_of, open_bag
     from graph.bag_errors import BagError
 
     try:
-        open_bag(bag).close()
+        if whole:
+            open_bag(bag).close()
+        else:
+            files_of(bag)
     except BagError as error:
         raise UsageError(error.words) from error
