@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -186,7 +187,8 @@ def words_of(error: LauncherError) -> str:
 
 def _name_of(order: Order) -> str:
     if order.replay is not None:
-        return order.replay.bag.resolve().stem
+        # Path.resolve() raises for a link to itself.
+        return Path(os.path.realpath(order.replay.bag)).stem
     if order.watch is not None:
         return WATCH
     return order.attach or (order.profile or Path()).stem

@@ -139,8 +139,10 @@ async def test_the_panels_show_what_was_recorded(drive: Path) -> None:
         await until(pilot, lambda: "0.26" in app.export_screenshot())
 
 
-async def test_what_is_no_bag_ends_with_a_word_and_two(tmp_path: Path) -> None:
-    app = DeckApp(BagPad(), Order(replay=ReplayOrder(tmp_path / "nothing")), "deck")
+@pytest.mark.parametrize("name", ["nothing", "link to itself"])
+async def test_what_is_no_bag_ends_with_a_word_and_two(tmp_path: Path, name: str) -> None:
+    (tmp_path / "link to itself").symlink_to(tmp_path / "link to itself")
+    app = DeckApp(BagPad(), Order(replay=ReplayOrder(tmp_path / name)), "deck")
     async with app.run_test() as pilot:
         await until(pilot, lambda: app.sessions.parting_words)
     assert app.return_code == 2
