@@ -62,6 +62,12 @@ def test_when_nothing_came_it_says_so_and_fails(tmp_path: Path) -> None:
     assert any("nothing was recorded" in line for line in run.lines)
 
 
+def test_no_seconds_at_all_end_it_at_once(tmp_path: Path) -> None:
+    run = deck("record", "-o", str(tmp_path / "bag"), "--for", "0")
+    assert run.process.returncode == 1
+    assert any("nothing was recorded" in line for line in run.lines)
+
+
 def test_a_folder_that_is_there_is_refused_with_a_word(tmp_path: Path) -> None:
     run = deck("record", "-o", str(tmp_path))
     assert run.process.returncode == 2

@@ -11,6 +11,7 @@ With `--json` it writes one object a line, told apart by `event`:
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sys
@@ -98,7 +99,7 @@ def _begin(folder: Path, domain: int, *, as_json: bool) -> None:
 
 def _tell_until(recorder: Recorder, stop: threading.Event, options: Namespace) -> None:
     """Tell how it goes each second, until it is stopped, fails, or its time is over."""
-    deadline_s = time.monotonic() + (options.seconds or float("inf"))
+    deadline_s = time.monotonic() + (math.inf if options.seconds is None else options.seconds)
     while not (recorder.status.error or stop.is_set()):
         left_s = deadline_s - time.monotonic()
         if left_s <= 0 or stop.wait(min(left_s, TOLD_S)):
