@@ -53,6 +53,7 @@ def test_the_command_word_is_found(words: list[str], command: str, rest: list[st
         (["list", "--lang", "fr"], "invalid choice: 'fr'"),
         (["logs", "x", "-n", "many"], "'many' is no number of lines"),
         (["logs", "x", "-n", "-3"], "'-3' is no number of lines"),
+        (["record", "-o", ""], "the name of a folder is missing"),
         (["down", "a", "b"], "unrecognized arguments: b"),
     ],
 )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, NoReturn
 
-from tui.cli.values import count, domain, rate, seconds
+from tui.cli.values import count, domain, folder, rate, seconds
 from tui.i18n import LANGUAGES, N_, _, ngettext
 
 if TYPE_CHECKING:
@@ -200,6 +200,7 @@ def _add_record(parser: Parser) -> None:
         "-o",
         "--output",
         metavar="FOLDER",
+        type=folder,
         help=_("where to, a folder that is not there yet; by default named by the time"),
     )
     parser.add_argument(

@@ -43,6 +43,13 @@ def rate(text: str) -> float:
     return rate
 
 
+def folder(text: str) -> str:
+    """Return the name of a folder, which is not empty."""
+    if not text:
+        raise argparse.ArgumentTypeError(_("the name of a folder is missing"))
+    return text
+
+
 def count(text: str) -> int:
     """Return a number of lines."""
     if not (text.isascii() and text.isdigit()):
