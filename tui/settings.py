@@ -48,7 +48,7 @@ def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[s
     except FileNotFoundError:
         return Settings()
     except (OSError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: {error}") from error
+        raise SettingsError(f"{path}: {_unreadable(error)}") from error
     import json
 
     try:
@@ -73,6 +73,18 @@ def save(path: Path, settings: Settings) -> None:
         beside.replace(path)
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
+
+
+def _unreadable(error: OSError | UnicodeDecodeError) -> str:
+    """Return why the text of the file cannot be had, and the mend."""
+    if isinstance(error, UnicodeDecodeError):
+        words = _("is not UTF-8: byte 0x{byte:02x}").format(byte=error.object[error.start])
+        return f"{words} ({_('save the file as UTF-8')})"
+    if isinstance(error, IsADirectoryError):
+        return _("expected a file, found a directory (remove or rename it)")
+    if isinstance(error, PermissionError):
+        return f"{_('no permission to read it')} ({_('chmod u+r it, or ask its owner')})"
+    return _("cannot be read: {reason}").format(reason=error.strerror or str(error))
 
 
 def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collection[str]]) -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -58,11 +60,29 @@ def test_a_broken_file_is_refused_with_place_and_mend(
     assert words in str(refused.value)
 
 
-def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_no_text_is_refused_with_a_mend(tmp_path: Path) -> None:
     path = tmp_path / "settings.json"
     path.write_bytes(b"\xff\xfe{}")
-    with pytest.raises(SettingsError, match=r"settings\.json"):
+    with pytest.raises(SettingsError) as refused:
         read(path)
+    assert str(refused.value) == f"{path}: is not UTF-8: byte 0xff (save the file as UTF-8)"
+
+
+def test_a_folder_in_its_place_is_refused_with_a_mend(tmp_path: Path) -> None:
+    path = tmp_path / "settings.json"
+    path.mkdir()
+    with pytest.raises(SettingsError) as refused:
+        read(path)
+    assert str(refused.value) == f"{path}: expected a file, found a directory (remove or rename it)"
+
+
+def test_a_file_that_cannot_be_read_is_refused_with_the_reason(tmp_path: Path) -> None:
+    path = tmp_path / "settings.json"
+    path.symlink_to(path)
+    with pytest.raises(SettingsError) as refused:
+        read(path)
+    reason = os.strerror(errno.ELOOP)
+    assert str(refused.value) == f"{path}: cannot be read: {reason}"
 
 
 def test_the_refusal_speaks_the_language(tmp_path: Path) -> None:
