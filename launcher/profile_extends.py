@@ -14,6 +14,7 @@ from launcher.profile_yaml import read_yaml
 from launcher.words import say
 
 if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
     from pathlib import Path
 
     from launcher.profile_tree import Problems
@@ -49,9 +50,9 @@ def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | N
     base_path = _base_path(wanted, path)
     seen = (*chain, path.resolve())
     if base_path is None:
-        known = [other.stem for folder in (path.parent, SHIPPED) for other in folder.glob("*.yaml")]
         message = say("there is no profile {name!r} to extend", name=wanted)
-        problems.add(entry.value.place, ("extends",), message, did_you_mean(wanted, known))
+        hint = did_you_mean(wanted, _extendable(path, seen))
+        problems.add(entry.value.place, ("extends",), message, hint)
         return own
     if base_path.resolve() in seen:
         names = [each.stem for each in seen[seen.index(base_path.resolve()) :]]
@@ -71,6 +72,14 @@ def _base_path(wanted: str, path: Path) -> Path | None:
         return next((candidate for candidate in candidates if candidate.is_file()), None)
     except (OSError, ValueError):
         return None
+
+
+def _extendable(path: Path, seen: Collection[Path]) -> Iterator[str]:
+    """Yield the names of profiles that this file may extend without a cycle."""
+    for other in (*path.parent.glob("*.yaml"), *SHIPPED.glob("*.yaml")):
+        found = _base_path(other.stem, path)
+        if found is not None and found.resolve() not in seen:
+            yield other.stem
 
 
 def _joined(base: Branch, own: Branch, joined: Any = JOINED) -> Branch:  # noqa: ANN401 - nested

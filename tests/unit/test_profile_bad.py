@@ -279,6 +279,11 @@ def test_one_message_tells_place_field_and_mend(case: str, tmp_path: Path) -> No
     assert expected in messages[0]
 
 
+def test_a_profile_is_not_offered_to_extend_itself(tmp_path: Path) -> None:
+    messages = told(tmp_path, "extends: lesso\nnodes: {a: {exec: [x]}}")
+    assert messages == ["1:10: extends: there is no profile 'lesso' to extend"]
+
+
 def test_all_that_is_wrong_is_told_at_once_in_order_of_lines(tmp_path: Path) -> None:
     messages = told(
         tmp_path,
