@@ -29,9 +29,13 @@ _BAD_VALUE = Phrase(
     "parameter {name} is {value!r}, but must be {expected}; for example: -p {name}:={example}",
     "параметр {name} равен {value!r}, а должен быть {expected}; например: -p {name}:={example}",
 )
-_UNKNOWN = Phrase(
+_UNKNOWN_NEAR = Phrase(
     "there is no parameter {name}; did you mean {near}?",
     "нет параметра {name}; может быть, {near}?",
+)
+_UNKNOWN = Phrase(
+    "there is no parameter {name}; there are: {known}",
+    "нет параметра {name}; есть: {known}",
 )
 _OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")
 """Beginnings of names that rclpy sees to by itself."""
@@ -127,9 +131,7 @@ class LessonNode(Node):
         given = {name: self.get_parameter(name).value for name in self.get_parameters_by_prefix("")}
         for name in given:
             if name not in self._settings and not name.startswith(_OWN_TO_ROS):
-                near = difflib.get_close_matches(name, self._settings, n=1, cutoff=0.4)
-                known = near[0] if near else ", ".join(self._settings) or "-"
-                raise UsageError(_UNKNOWN, name=name, near=known)
+                raise self._unknown(name)
         for name, setting in self._settings.items():
             if name in given:
                 self.undeclare_parameter(name)
@@ -144,6 +146,12 @@ class LessonNode(Node):
         problem = self.contradiction(self._values)
         if problem is not None:
             raise UsageError(problem, **self._values)
+
+    def _unknown(self, name: str) -> UsageError:
+        near = difflib.get_close_matches(name, self._settings, n=1)
+        if near:
+            return UsageError(_UNKNOWN_NEAR, name=name, near=near[0])
+        return UsageError(_UNKNOWN, name=name, known=", ".join(self._settings) or "-")
 
     def _complaint(
         self, setting: Setting, value: object, error: BadValueError

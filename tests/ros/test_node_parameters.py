@@ -86,6 +86,8 @@ BAD_STARTS = [
     ("mock_sonar", "rate", "fast", "parameter rate is 'fast', but must be a number"),
     ("mock_sonar", "pattern", "square", "must be one of: random, sweep, constant"),
     ("mock_sonar", "rte", "2.0", "there is no parameter rte; did you mean rate?"),
+    ("mock_sonar", "a", "2.0", "there is no parameter a; there are: topic, rate, "),
+    ("hello", "a", "1", "there is no parameter a; there are: period"),
     ("mock_sonar", "min_distance", "5.0", "must be below max_distance"),
     ("mock_sonar", "topic", "/a b", "/a b"),
     ("electronic_differential", "wheelbase", "-0.25", "parameter wheelbase is -0.25"),
