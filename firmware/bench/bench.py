@@ -10,6 +10,8 @@ import main
 import protocol
 
 ENCODERS = ((16, 17), (18, 19))
+_WRAP_MS = 1 << 30
+_IDLE_STEP_MS = 600000
 _clock = [0]
 _here = {}
 
@@ -26,11 +28,13 @@ class Usb:
 
 
 class Clocked(board.Board):
+    """Its milliseconds wrap as those of a Pico do, after 12.4 days."""
+
     def now_ms(self):
-        return _clock[0]
+        return _clock[0] % _WRAP_MS
 
     def since_ms(self, then):
-        return _clock[0] - then
+        return (self.now_ms() - then + _WRAP_MS // 2) % _WRAP_MS - _WRAP_MS // 2
 
 
 def _boot(encoders):
@@ -80,6 +84,13 @@ def _pass(ms, only_timer, turning):
     return seen
 
 
+def _idle(ms):
+    """Let days pass with a round now and then."""
+    for _ in range(ms // _IDLE_STEP_MS):
+        _clock[0] += _IDLE_STEP_MS
+        main.serve(_here["board"], _here["control"])
+
+
 def play(text):
     order = json.loads(text)
     if "lines" in order:
@@ -102,6 +113,7 @@ def play(text):
     usb = _here["usb"]
     usb.incoming.extend(order.get("octets", []))
     usb.outgoing.clear()
+    _idle(order.get("idle_ms", 0))
     seen = _pass(order.get("ms", 0), order.get("only_timer", False), order.get("turning"))
     return json.dumps({
         "motors": _motors(), "seen": seen, "before": _here["before"],

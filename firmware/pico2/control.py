@@ -116,10 +116,18 @@ class Control:
             self._look_at_battery()
             self._measure(passed)
             self._drive(passed)
-        listening = self._heard_any and self.board.since_ms(self._heard_ms) < self.config.QUIET_MS
-        if listening and self.board.since_ms(self._told_ms) >= self.config.TELEMETRY_MS:
+        if not self._listens():
+            # Not left to grow old: after 6.2 days the time since it would be negative.
+            self._told_ms = self.board.now_ms()
+        elif self.board.since_ms(self._told_ms) >= self.config.TELEMETRY_MS:
             self._told_ms = self.board.now_ms()
             self._tell()
+
+    def _listens(self):
+        """Whether somebody was heard lately; who was not is forgotten, for time wraps."""
+        if self.board.since_ms(self._heard_ms) >= self.config.QUIET_MS:
+            self._heard_any = False
+        return self._heard_any
 
     def _look_for_faults(self):
         for flag, fault in zip("LR", self.board.faults()):

@@ -151,6 +151,23 @@ def test_a_hello_is_answered_and_telemetry_comes_fifty_times_a_second(pico: Pico
     assert pico.hear(ms=500)["told"] == []
 
 
+@pytest.mark.parametrize("days", [1, 6.5, 12, 13])
+def test_after_days_of_silence_all_is_as_before(pico: Pico, days: float) -> None:
+    """Milliseconds of a Pico wrap: what was 6.2 to 12.4 days ago seems to come yet."""
+    silence = int(days * 24 * 3600 * 1000)
+    pico.order(boot=False)
+    for _ in range(2):
+        assert pico.order(idle_ms=silence)["text"] == ""
+        answer = pico.hear(Hello(0), Drive(1, 0, 0, 0), Drive(2, 5, 5, 0), ms=100)
+        assert 3 <= sum(isinstance(message, Telemetry) for message in answer["told"]) <= 5
+        assert flags(answer) == {"N"}
+        assert not stood(answer)
+        assert pico.hear(ms=1200)["motors"] == [0, 0]
+    weak = pico.order(idle_ms=silence, analog={BATTERY: 9000})
+    assert weak["text"] == ""
+    assert {"U", "A"} <= flags(pico.hear(Hello(0), Drive(1, 0, 0, 0)))
+
+
 # ---------------------------------------------------------------- when the motors turn
 
 
