@@ -36,6 +36,10 @@ if TYPE_CHECKING:
 
 LATE_S = 60.0
 """For so long after its time was up a node may still become ready."""
+USAGE = 2
+"""Exit code of a program that does not take its arguments; Deck's nodes have it for parameters."""
+USAGE_WITHIN_S = 10.0
+"""What is refused is refused at once."""
 ASKED_TWICE_S = 0.3
 """Two requests to stop that are closer together are one."""
 
@@ -275,10 +279,9 @@ class Node:
     async def _after(self, end: Exit, lasted: float, why: str) -> bool:
         """Do what the restart policy says; return whether to start it again."""
         clock = self._around.clock
-        hopeless = end.code in (NOT_EXECUTABLE, NOT_FOUND) and not self.plan.module
         verdict = (
             GivenUp(1)
-            if hopeless
+            if self._is_hopeless(end, lasted)
             else self._policy.after(clean=end.clean, lasted_s=lasted, now=clock.now())
         )
         if isinstance(verdict, Again):
@@ -303,6 +306,12 @@ class Node:
             self._around.say(self.plan.name, Severity.ERROR, why)
         self._become(NodeState.FAILED, why)
         return False
+
+    def _is_hopeless(self, end: Exit, lasted: float) -> bool:
+        """Whether another try would end in the same way."""
+        if self.plan.module:
+            return end.code == USAGE and lasted < USAGE_WITHIN_S
+        return end.code in (NOT_EXECUTABLE, NOT_FOUND)
 
     def _gravity(self, end: Exit) -> Severity:
         if end.clean or self._down:

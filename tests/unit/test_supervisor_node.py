@@ -372,6 +372,24 @@ async def test_a_command_that_does_not_exist_is_not_tried_again(session: FakeSes
     assert node.state is NodeState.FAILED
 
 
+@pytest.mark.parametrize("restart", ["on-failure", "always"])
+async def test_a_module_that_refuses_its_parameters_is_not_tried_again(
+    session: FakeSession, restart: str
+) -> None:
+    node = await started(session, replace(PLAN, module=("nodes.sonar",), restart=restart))
+    session.process.end(100, Exit(2))
+    await settle()
+    assert (node.state, node.detail) == (NodeState.FAILED, "exit code 2: no such port")
+
+
+async def test_a_module_that_ends_so_later_is_started_again(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, module=("nodes.sonar",)))
+    await session.clock.advance(60)
+    session.process.end(100, Exit(2))
+    await settle()
+    assert node.state is NodeState.BACKOFF
+
+
 async def test_an_optional_node_does_not_fail(session: FakeSession) -> None:
     node = await started(session, replace(PLAN, optional=True, restart="never"))
     session.process.end(100, Exit(127))
