@@ -51,7 +51,8 @@ def list_profiles(
     files = [*_files_of(SHIPPED), *_files_of(Path("profiles"))]
     for path in map(Path, paths):
         files += _files_of(path) if path.is_dir() else [path]
-    different = {path.resolve(): path for path in reversed(files)}
+    # Path.resolve() raises for a link to itself.
+    different = {os.path.realpath(path): path for path in reversed(files)}
     return [_entry(path, hardware) for path in sorted(different.values(), key=_order)]
 
 

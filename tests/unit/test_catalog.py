@@ -91,3 +91,11 @@ def test_a_node_beside_the_profile_is_found(tmp_path: Path) -> None:
     from launcher.profile import load_profile
 
     assert load_profile(folder / "robot.yaml").nodes["a"].source_root == folder
+
+
+def test_a_link_to_itself_is_listed_with_what_is_wrong(tmp_path: Path) -> None:
+    (tmp_path / "profiles").mkdir()
+    link = tmp_path / "profiles" / "loop.yaml"
+    link.symlink_to(link)
+    (entry,) = (entry for entry in list_profiles() if entry.name == "loop")
+    assert "cannot be read: Too many levels of symbolic links" in entry.error
