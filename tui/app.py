@@ -20,6 +20,7 @@ from tui.brake import Brake
 from tui.feed import Feed, GraphReady
 from tui.i18n import LANGUAGES, NAMES, _, language, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
+from tui.nap import Nap
 from tui.orders import Order
 from tui.recording import Recording
 from tui.screens.opening import OpeningScreen
@@ -79,6 +80,7 @@ class DeckApp(App[int], Acting):
         self.feed = Feed(self)
         self.brake = Brake(self)
         self.recording = Recording(self)
+        self.nap = Nap()
         self._typed = Typed(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
         self.register_theme(HIGH_CONTRAST)
@@ -91,8 +93,13 @@ class DeckApp(App[int], Acting):
 
     def on_mount(self) -> None:
         """Go on when the first frame is out."""
+        self.nap.watch()
         # A moment of rest lets the threads that write to the terminal have their turn.
         self.call_after_refresh(self.set_timer, 0.01, self._begin)
+
+    def on_unmount(self) -> None:
+        """Leave no thread behind."""
+        self.nap.end()
 
     async def on_event(self, event: Event) -> None:
         """Take keys one after the other; the emergency stop waits for none."""

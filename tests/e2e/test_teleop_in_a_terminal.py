@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import pytest
@@ -22,6 +24,8 @@ MAX_AGE_S = 0.5
 DEADLINE_S = 3.0
 """For half a second of holding on and the same at the gate, on a machine that is busy."""
 REPEAT_S = 0.033
+ASLEEP_S = 1.5
+"""Longer than a key is good for."""
 
 
 class HeldKey:
@@ -83,6 +87,16 @@ def robot(ros_domain: int) -> Iterator[Robot]:
         yield Robot(ros_domain, stack)
 
 
+@contextmanager
+def stopped(terminal: Terminal) -> Iterator[None]:
+    """Have the screen sleep, as `kill -STOP` does."""
+    os.kill(terminal.process.pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(terminal.process.pid, signal.SIGCONT)
+
+
 def test_wheels_turn_while_a_key_is_held_and_stand_when_it_is_let_go_or_nobody_is_left(
     deck: Deck, robot: Robot
 ) -> None:
@@ -100,6 +114,13 @@ def test_wheels_turn_while_a_key_is_held_and_stand_when_it_is_let_go_or_nobody_i
     # The silence after it is long enough for a command that was left behind.
     terminal.wait_gone("obeys the keys")
     assert not robot.turned_after(let_go_s + DEADLINE_S)
+    stands_s = time.monotonic()
+    with stopped(terminal):
+        terminal.press(*["down"] * 10)
+        wait_until(lambda: time.monotonic() > stands_s + ASLEEP_S, "they are old")
+    woke_s = time.monotonic()
+    wait_until(lambda: time.monotonic() > woke_s + ASLEEP_S, "what was typed meanwhile is read")
+    assert not robot.turned_after(stands_s)
     with HeldKey(terminal, "up"):
         wait_until(robot.turns, "the wheels turn again")
         killed_s = time.monotonic()

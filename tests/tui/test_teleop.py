@@ -30,8 +30,9 @@ from tui import clock
 from tui.actions.teleop import OpenTeleop
 from tui.app import DeckApp
 from tui.emergency import SAFETY_TOPIC
+from tui.nap import DRAIN_S
 from tui.screens.deck import LessonDeck
-from tui.teleop import FIRST_HOLD_S
+from tui.teleop import FIRST_HOLD_S, Move
 from tui.teleop_gate import gate_in, gate_words
 from tui.teleop_route import DRIVE, DRIVE_TYPE, TELEOP
 from tui.widgets.teleop import TeleopPanel
@@ -230,6 +231,33 @@ async def test_a_key_that_has_waited_too_long_moves_nothing() -> None:
         panel.post_message(late)
         await pilot.pause()
         assert pad.graph.held[0][2].until_s == pytest.approx(STARTED_S + 0.2)
+
+
+async def test_a_key_that_may_have_been_typed_while_the_process_slept_moves_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def move_hand(to_s: float) -> None:
+        monkeypatch.setattr(clock, "steady", lambda: to_s)
+
+    pad = pad_of(gated())
+    async with driving(pad) as (_app, pilot, panel):
+        move_hand(STARTED_S + 0.4)
+        panel.press(Move.FORWARD)
+        assert len(pad.graph.held) == 1
+        panel.release()
+        # Read on waking, so stamped as if it were new: by then, or a moment later.
+        woke_s = STARTED_S + 6.0
+        move_hand(woke_s)
+        await pilot.press("up")
+        move_hand(woke_s + DRAIN_S - 0.1)
+        await pilot.press("up")
+        assert len(pad.graph.held) == 1
+        # Handled later than that it is no newer.
+        move_hand(woke_s + DRAIN_S + 0.1)
+        panel.press(Move.FORWARD, woke_s + 0.2)
+        assert len(pad.graph.held) == 1
+        await pilot.press("up")
+        assert len(pad.graph.held) == 2
 
 
 async def test_while_stopped_the_keys_ask_for_nothing() -> None:

@@ -129,9 +129,12 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         """A key is down, or was at that moment of the steady clock."""
         now_s = clock.steady()
         at_s = now_s if at_s is None else min(at_s, now_s)
-        graph = self._deck.feed.graph
-        if graph is None or not self._route.topic or self._deck.brake.state.engaged:
+        deck = self._deck
+        graph = deck.feed.graph
+        if graph is None or not self._route.topic or deck.brake.state.engaged:
             self.redraw()
+            return
+        if deck.nap.may_precede(at_s):
             return
         self._keys = self._keys.pressed(move, at_s)
         if self._keys.at(now_s) is NOTHING:
