@@ -42,7 +42,9 @@ def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
         if end.signal is not None
         else say("exit code {code}", code=end.code)
     )
-    return say("{how}: {last}", how=how, last=_short(last)) if last and not asked else how
+    # Who is killed cannot say why: what it said last is about something else.
+    told = last and not asked and end.signal != "SIGKILL"
+    return say("{how}: {last}", how=how, last=_short(last)) if told else how
 
 
 def what(condition: Condition) -> str:

@@ -197,6 +197,13 @@ async def test_a_crash_is_told_and_the_node_started_again_after_a_while(
     assert node.status().exit_code is None
 
 
+async def test_what_a_killed_node_said_last_is_no_reason(session: FakeSession) -> None:
+    node = await started(session, replace(PLAN, restart="never"))
+    session.process.end(100, Exit(None, "SIGKILL"))
+    await settle()
+    assert (node.state, node.detail) == (NodeState.FAILED, "killed by SIGKILL")
+
+
 async def test_a_crash_loop_ends_with_a_word_why(session: FakeSession) -> None:
     node = await started(session)
     for delay in (1, 2, 4, 8):
