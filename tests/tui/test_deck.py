@@ -232,6 +232,21 @@ def test_every_panel_has_a_place_on_one_page_and_pages_are_filled(width: int, he
         assert sum(lines) == height or len(page) == 1
 
 
+@pytest.mark.parametrize("first", [(60, 20), (80, 24), (120, 40)])
+async def test_panels_of_a_window_that_grew_lie_as_in_one_that_was_large(
+    first: tuple[int, int],
+) -> None:
+    def places(app: DeckApp) -> list[object]:
+        return [panel.region for panel in app.screen.query_one(Shelf).panels]
+
+    async with opened(size=(200, 60)) as (app, _pilot):
+        large = places(app)
+    async with opened(size=first) as (app, pilot):
+        await pilot.resize_terminal(200, 60)
+        await pilot.pause()
+        assert places(app) == large
+
+
 async def test_any_size_is_survived() -> None:
     async with opened() as (app, pilot):
         for size in ((40, 10), (20, 5), (3, 2), (59, 60), (300, 8)):

@@ -84,6 +84,7 @@ class Shelf(Container):
         shown = [panel for row in rows for panel in row]
         for panel in self._panels:
             panel.display = panel in shown
+            panel.styles.column_span = 1
         for row in rows:
             row[-1].styles.column_span = columns - len(row) + 1
         words = ""
