@@ -1,6 +1,7 @@
 """The state of the emergency stop as this screen knows it: plain data and its transitions.
 
-It is latched: only a release clears it, ours or somebody else's seen on the topic.
+It is latched: only a release clears it, ours or somebody else's seen on the topic. One whose
+publisher has gone is known by the gate's word alone, and that word clears it as well.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from tui.i18n import N_, _
-from tui.teleop_gate import Gate, gate_in, held_words
+from tui.teleop_gate import STOPPED, Gate, gate_in, held_words
 from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ TOPIC = "/emergency_stop"
 TOPIC_TYPE = "std_msgs/msg/Bool"
 SAFETY_TOPIC = "/safety_state"
 FOLLOWED = frozenset({TOPIC, SAFETY_TOPIC})
+SETTLED_S = 2.0
+"""So long after a word on the topic the gate may still be saying what was true before it."""
 
 NO_LISTENER = N_("nobody listens to /emergency_stop: all nodes are being stopped")
 NOT_OURS = N_("it may have reached nobody, and Deck has started no node that it could stop")
@@ -32,9 +35,13 @@ class Emergency:
 
     engaged: bool = False
     ours: bool = True
-    """Whether this screen engaged it; False if it was seen on the topic."""
+    """False if somebody else was seen to engage it."""
+    by_gate: bool = False
+    """Whether nothing but the gate's word tells that it is engaged."""
     since_s: float = 0.0
     """Unix time of this screen's own last word on it; older samples do not contradict it."""
+    heard_s: float = 0.0
+    """Unix time of the last word of anybody on the topic."""
     fallback: str = ""
     """Why the nodes are stopped in its place (a message id), empty if it reached somebody."""
     blocked: str = ""
@@ -44,11 +51,15 @@ class Emergency:
 
     def pressed(self, now_s: float) -> Emergency:
         """Engage it from here."""
-        return replace(self, engaged=True, ours=True, since_s=now_s, fallback="")
+        return replace(self.said(True, now_s), ours=True, since_s=now_s)
 
     def released(self, now_s: float) -> Emergency:
         """Release it from here."""
-        return replace(self, engaged=False, ours=True, since_s=now_s, fallback="")
+        return replace(self.said(False, now_s), ours=True, since_s=now_s)
+
+    def said(self, engaged: bool, at_s: float) -> Emergency:
+        """Take it that somebody has said so on the topic."""
+        return replace(self, engaged=engaged, by_gate=False, heard_s=at_s, fallback="")
 
     def fallen_back(self, reason: str) -> Emergency:
         """Remember why the nodes are stopped in its place."""
@@ -58,14 +69,30 @@ class Emergency:
         """Take in what others said on the topics."""
         state = self
         for sample in update.samples.get(TOPIC, ()):
-            engaged = bool(sample.value.get("data"))
-            if engaged != state.engaged and sample.received_s > state.since_s:
-                state = replace(state, engaged=engaged, ours=False, fallback="")
+            state = state.heard(bool(sample.value.get("data")), sample.received_s)
         for sample in update.samples.get(SAFETY_TOPIC, ()):
             gate = gate_in(sample)
+            if gate is not None and sample.received_s - state.heard_s > SETTLED_S:
+                state = state.told(gate)
             gate = gate if gate is not None and gate.is_held else None
             state = replace(state, blocked=blocked_reason(sample), gate=gate)
         return state
+
+    def heard(self, engaged: bool, at_s: float) -> Emergency:
+        """Take in a word on the topic, of others or our own come back."""
+        if at_s <= self.since_s:
+            return self
+        if engaged != self.engaged or self.by_gate:
+            return replace(self.said(engaged, at_s), ours=False)
+        return replace(self, heard_s=at_s)
+
+    def told(self, gate: Gate) -> Emergency:
+        """Take in what the gate obeys: it has heard of a stop that was said before we listened."""
+        if not self.engaged and gate.verdict == STOPPED:
+            return replace(self, engaged=True, ours=True, by_gate=True, fallback="")
+        if self.by_gate and gate.verdict != STOPPED:
+            return replace(self, engaged=False, by_gate=False)
+        return self
 
 
 def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:

@@ -39,6 +39,27 @@ def test_enter_starts_lesson_nine_space_holds_it_and_q_leaves_nothing_running(de
     wait_until(lambda: not marked.alive(deck.mark), "every process gone")
 
 
+def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -> None:
+    assert deck.open("up", "02-sonar-safety", "--lang", "en").wait_exit() == 0
+    first = deck.open("attach", "--lang", "en")
+    first.wait_for("2/2")
+    first.press("f3", "/")
+    first.type("/emergency_stop\r")
+    first.wait_for("1 of ")
+    first.press("ctrl+x", "f2")
+    first.wait_for("EMERGENCY STOP: nothing moves")
+    first.press("q")
+    assert first.wait_exit() == 0
+    second = deck.open("attach", "--lang", "en")
+    second.wait_for("EMERGENCY STOP · ^r releases")
+    second.press("ctrl+r")
+    second.wait_for("The emergency stop is released")
+    second.wait_until(lambda text: "STOP ·" not in title(text), "the title without the stop")
+    second.press("q")
+    assert second.wait_exit() == 0
+    assert deck.open("down").wait_exit() == 0
+
+
 def title(screen: str) -> str:
     return screen.partition("\n")[0]
 

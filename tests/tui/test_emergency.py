@@ -9,9 +9,11 @@ from textual.widgets import Input
 from graph.data import GraphUpdate, Sample
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from tests.tui.snapshots import settle
 from tui import title
 from tui.emergency import SAFETY_TOPIC, TOPIC, TOPIC_TYPE, Emergency, listeners
 from tui.widgets.command_line import CommandLine
+from tui.widgets.key_bar import KeyBar
 from tui.widgets.title_bar import TitleBar
 
 STOP = (TOPIC, TOPIC_TYPE, {"data": True}, True)
@@ -28,6 +30,15 @@ def held(level: bytes, words: str) -> GraphUpdate:
     """The graph with one word of the safety node."""
     status = [{"level": level, "name": "safety_stop", "message": words, "values": []}]
     one = sample(SAFETY_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+    return lesson_update(samples={SAFETY_TOPIC: (one,)})
+
+
+def gate_says(verdict: str, at_s: float) -> GraphUpdate:
+    """The graph with one verdict of the gate, as the safety node words it."""
+    values = [{"key": "verdict", "value": verdict}]
+    status = [{"level": b"\x02", "name": "safety_stop", "message": "held", "values": values}]
+    kind = "diagnostic_msgs/msg/DiagnosticArray"
+    one = Sample(SAFETY_TOPIC, kind, at_s, 0.0, 120, {"status": status})
     return lesson_update(samples={SAFETY_TOPIC: (one,)})
 
 
@@ -48,6 +59,37 @@ def test_the_gravest_word_of_the_safety_node_is_kept(level: bytes) -> None:
     state = Emergency().seen(held(level, "front 0.38 m"))
     assert state.blocked == "front 0.38 m"
     assert state.seen(held(b"\x00", "free")).blocked == ""
+
+
+def test_a_stop_whose_publisher_has_gone_is_known_from_the_gate_until_it_says_otherwise() -> None:
+    state = Emergency().seen(gate_says("emergency_stop", NOW_S))
+    assert state.engaged
+    assert not state.seen(gate_says("starting", NOW_S + 1)).engaged
+
+
+def test_the_gates_word_does_not_undo_a_stop_that_was_said_here() -> None:
+    state = Emergency().seen(gate_says("emergency_stop", NOW_S)).pressed(NOW_S + 1)
+    assert state.seen(gate_says("free", NOW_S + 9)).engaged
+
+
+@pytest.mark.parametrize("by_another", [False, True])
+def test_what_the_gate_said_before_it_heard_of_a_release_does_not_stop_anew(
+    by_another: bool,
+) -> None:
+    state = Emergency().seen(gate_says("emergency_stop", NOW_S))
+    state = state.seen(said(False, NOW_S + 1)) if by_another else state.released(NOW_S + 1)
+    assert not state.engaged
+    for seconds in (0.9, 1.1, 2.0):
+        state = state.seen(gate_says("emergency_stop", NOW_S + seconds))
+        assert not state.engaged
+    assert state.seen(gate_says("emergency_stop", NOW_S + 4)).engaged
+
+
+def test_a_stop_by_somebody_else_is_told_apart_also_where_the_gate_tells_of_it_first() -> None:
+    state = Emergency().seen(gate_says("emergency_stop", NOW_S)).seen(said(True, NOW_S + 0.1))
+    assert state.engaged
+    assert not state.ours
+    assert state.seen(gate_says("free", NOW_S + 9)).engaged
 
 
 def test_listeners_are_those_that_the_graph_knows() -> None:
@@ -141,6 +183,17 @@ async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> No
         await pilot.pause()
         await pilot.pause()
         assert "by another" in app.screen.query_one(TitleBar).text
+        await pilot.press("ctrl+r")
+        assert pad.graph.published == [GO]
+
+
+async def test_a_stop_whose_publisher_has_gone_can_be_released() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(gate_says("emergency_stop", NOW_S))
+        await settle(pilot)
+        assert "■ EMERGENCY STOP · ^r releases" in app.screen.query_one(TitleBar).text
+        assert "^r Release" in str(app.screen.query_one(KeyBar).render())
         await pilot.press("ctrl+r")
         assert pad.graph.published == [GO]
 
