@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from typing import TYPE_CHECKING
@@ -55,12 +56,12 @@ class PicoClient:
 
     def __init__(self, node: LessonNode, baud: int, heard: Callable[[Telemetry], None]) -> None:
         self._say, self._heard = node.say, heard
-        self.link = SerialLink(node, baud, self._hear, self._greet, self._forget, PicoReader)
+        self.link = SerialLink(node, baud, self._hear, self._opened, self._forget, PicoReader)
         self._lock = threading.Lock()
         self._decoder = PicoDecoder()
         self._sequence = 0
         self._greeted_s = 0.0
-        self._heard_s = self._opened_s = 0.0
+        self._heard_s, self._opened_s = 0.0, math.inf
         self.telemetry: Telemetry | None = None
         """The newest one, None while there is no connection."""
         self.frames = 0
@@ -117,14 +118,16 @@ class PicoClient:
 
     # ---------------------------------------------------------------- the reader's thread
 
+    def _opened(self) -> None:
+        self._opened_s = time.monotonic()
+        self._greet()
+
     def _greet(self) -> None:
         self._greeted_s = time.monotonic()
-        if self._opened_s == 0.0:
-            self._opened_s = self._greeted_s
         self._send(Hello)
 
     def _forget(self) -> None:
-        self.telemetry, self._opened_s = None, 0.0
+        self.telemetry, self._opened_s = None, math.inf
 
     def _hear(self, data: bytes) -> None:
         for message in self._decoder.feed(data):
