@@ -139,7 +139,8 @@ class Gate:
             )
             asked = STOP
         if self._verdict in _HOLDING:
-            self._tell_cut(asked)
+            if asked.speed_m_s:
+                self._tell_cut(asked)
             return
         driving = self._sources.hear(source, asked, time.monotonic())
         if driving.source == source:

@@ -98,6 +98,16 @@ def test_a_rear_sonar_blocks_the_way_back(gate: Gate) -> None:
     gate.wait_for_state("blocked")
 
 
+def test_a_stop_is_not_told_as_cut(gate: Gate) -> None:
+    gate.see(2.0)
+    gate.peer.say("/emergency_stop", Bool(data=True), qos=LATCHED)
+    gate.wait_for_state("emergency_stop")
+    gate.peer.say("/drive", drive(0.0, 0.2))
+    gate.peer.say("/drive", drive(0.1, 0.2))
+    gate.process.wait_for_words("0.10 m/s, 0.20 rad is stopped")
+    assert "The command 0.00 m/s" not in gate.process.output
+
+
 @pytest.mark.parametrize("qos", [LATCHED, 10], ids=["latched", "volatile"])
 def test_an_emergency_stop_holds_until_it_is_released(gate: Gate, qos: Any) -> None:
     gate.see(2.0)
