@@ -73,12 +73,13 @@ class StartingSupervisor:
 
         Raises:
             AlreadyRunningError: if one of the nodes runs in that domain already.
+            RunDirError: if the run or log directory cannot be written.
             StartError: if it ended before it answered.
         """
         import asyncio
 
-        from launcher.control_protocol import unpack_session
-        from launcher.errors import AlreadyRunningError, StartError
+        from launcher.control_protocol import unpack_session, unpack_text
+        from launcher.errors import AlreadyRunningError, RunDirError, StartError
 
         stdin = self._process.stdin
         assert stdin is not None
@@ -88,6 +89,8 @@ class StartingSupervisor:
                 answer = await asyncio.wait_for(self._answer(), ANSWER_WITHIN_S)
             except (OSError, ValueError, asyncio.TimeoutError) as problem:
                 raise StartError(self._last_words()) from problem
+            if "no_room" in answer:
+                raise RunDirError(unpack_text(answer["no_room"]))
             if "running" in answer:
                 raise AlreadyRunningError(unpack_session(answer["running"]))
             return Path(answer["folder"]), os.dup(stdin.fileno())

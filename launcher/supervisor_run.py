@@ -6,10 +6,11 @@ import asyncio
 import contextlib
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.control_protocol import MAX_MESSAGE_BYTES, encode, pack_session
+from launcher.control_protocol import MAX_MESSAGE_BYTES, encode, pack_session, pack_text
 from launcher.control_server import ControlServer
 from launcher.control_socket import listen
 from launcher.logs_book import DECK, LogBook
@@ -44,12 +45,10 @@ async def run(run_id: str, spawn_server: SpawnServerHandle) -> None:
     if not line.endswith(b"\n"):
         return  # The profile was no good, or the client has gone: there is nothing to do.
     plan = Plan.from_json(line)
-    record = _claim(plan, run_id)
-    if record is None:
-        return
-    _keep_last_words(Path(record.session.log_dir))
+    record = _record(plan, run_id)
     try:
-        await Supervisor(plan, record, spawn_server).run(stdin)
+        if _claim(record, plan) and _keep_last_words(Path(record.session.log_dir)):
+            await Supervisor(plan, record, spawn_server).run(stdin)
     finally:
         record.remove()
 
@@ -62,10 +61,7 @@ async def _open_stdin() -> asyncio.StreamReader:
     return reader
 
 
-def _claim(plan: Plan, run_id: str) -> RunRecord | None:
-    """Write the record of this run, unless another has these nodes in this domain."""
-    run_dir = Path(plan.run_dir)
-    log_dir = Path(plan.log_dir) / plan.name / run_id
+def _record(plan: Plan, run_id: str) -> RunRecord:
     session = SessionInfo(
         run_id=run_id,
         profile=plan.profile,
@@ -77,18 +73,37 @@ def _claim(plan: Plan, run_id: str) -> RunRecord | None:
         hardware=plan.hardware,
         panels=plan.panels,
         supervisor_pid=os.getpid(),
-        log_dir=str(log_dir),
+        log_dir=str(Path(plan.log_dir, plan.name, run_id)),
         foreground=plan.foreground,
     )
     nodes = tuple(node.name for node in plan.nodes)
-    record = RunRecord(run_dir / run_id, session, nodes, {})
-    with exclusively(run_dir):
-        other = rival(read_records(run_dir), nodes, plan.domain)
-        if other is not None:
-            _answer({"running": pack_session(other.session)})
-            return None
-        record.write()
-    return record
+    return RunRecord(Path(plan.run_dir, run_id), session, nodes, {})
+
+
+def _claim(record: RunRecord, plan: Plan) -> bool:
+    """Write the record of this run, unless another has these nodes in this domain."""
+    run_dir = record.folder.parent
+    try:
+        with exclusively(run_dir):
+            other = rival(read_records(run_dir), record.nodes, plan.domain)
+            if other is not None:
+                _answer({"running": pack_session(other.session)})
+                return False
+            record.write()
+    except OSError as problem:
+        return _refuse(run_dir, problem)
+    return True
+
+
+def _refuse(folder: Path, problem: OSError) -> bool:
+    """Answer that this run has no room in `folder`."""
+    _answer({"no_room": pack_text(_no_room(folder, problem))})
+    return False
+
+
+def _no_room(folder: Path, problem: OSError) -> Words:
+    reason = problem.strerror or str(problem)
+    return say("{path} cannot be written: {reason}", path=folder, reason=reason)
 
 
 def _answer(message: Mapping[str, object]) -> None:
@@ -104,12 +119,15 @@ def _say_nothing(*_: object) -> None:
     pass
 
 
-def _keep_last_words(folder: Path) -> None:
+def _keep_last_words(folder: Path) -> bool:
     """Send stderr to a file: the client that started this process may be gone long before."""
-    folder.mkdir(parents=True, exist_ok=True)
-    descriptor = os.open(folder / "supervisor.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
-    os.dup2(descriptor, 2)
-    os.close(descriptor)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with (folder / "supervisor.log").open("ab") as words:
+            os.dup2(words.fileno(), 2)
+    except OSError as problem:
+        return _refuse(folder, problem)
+    return True
 
 
 class Supervisor:
@@ -245,12 +263,10 @@ class Supervisor:
 
     def _write_record(self) -> None:
         """Note which processes there are, for whoever comes after a sudden end."""
-        RunRecord(
-            self._record.folder,
-            self.info,
-            self._record.nodes,
-            self._session.processes,
-        ).write()
+        try:
+            replace(self._record, processes=self._session.processes).write()
+        except OSError as problem:
+            self._book.say(DECK, Severity.ERROR, _no_room(self._record.folder, problem))
 
     def _spawn_server_died(self, pid: int) -> None:
         self._book.say(

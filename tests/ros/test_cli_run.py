@@ -110,6 +110,23 @@ def test_without_a_place_for_the_run_nothing_is_started(
     assert words in run.errors[0]
 
 
+def test_a_run_directory_that_takes_no_more_is_named_and_left_as_it_was(tmp_path: Path) -> None:
+    path = written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}")
+    # As on a full disk, files can be made there, but nothing goes into them.
+    full = ["sh", "-c", 'ulimit -f 0; exec "$@"', "sh"]
+    run = subprocess.run(
+        [*full, sys.executable, "-m", "tui", "run", str(path)],
+        capture_output=True,
+        text=True,
+        timeout=40,
+        check=False,
+    )
+    assert run.returncode == 2
+    folder = tmp_path / "run"
+    assert run.stderr == f"{folder} cannot be written: File too large\n"
+    assert not [left for left in folder.iterdir() if left.is_dir()]
+
+
 CHAIN = """\
 nodes:
   base: {exec: [sleep, 100]}

@@ -214,6 +214,17 @@ async def test_the_same_profile_is_not_started_twice_in_a_domain(
     await start({"other": {"exec": SLEEPER}}, name="other")
 
 
+async def test_a_run_directory_that_fills_up_stops_no_node_from_starting(start: Launch) -> None:
+    client = await start(NODE)
+    before = await running_pid(client, "node")
+    # Where the record is to be written, nothing can be.
+    (run_dir() / client.session.run_id / "session.json.new").mkdir()
+    await client.restart("node")
+    await until(lambda: client.nodes["node"].pid not in (None, before), "another process")
+    await running_pid(client, "node")
+    assert any("cannot be written" in line.text for line in await client.history(None, 100))
+
+
 async def test_sessions_are_found_by_name(start: Launch) -> None:
     with pytest.raises(NotRunningError):
         await attach()
