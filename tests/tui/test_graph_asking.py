@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator
+from concurrent.futures import Future
 from contextlib import asynccontextmanager
+from dataclasses import replace
 
 import pytest
 
@@ -169,6 +171,30 @@ async def test_a_goal_that_is_refused_says_why(action: Room) -> None:
     await action.press("ctrl+s")
     told = "Not sent: nobody serves /drive_to_point"
     await action.wait(lambda: told in [one.message for one in action.app._notifications])
+
+
+async def test_a_goal_that_was_just_sent_is_chosen_as_soon_as_it_is_listed(
+    action: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await action.press("ctrl+s")
+    await action.wait_for("#1 ◌ sending")
+    pane = action.screen.ask_pane
+    assert pane is not None
+    number: Future[int] = Future()
+    number.set_result(2)
+    monkeypatch.setattr(action.graph, "send_goal", lambda *_goal: number)
+    await action.press("ctrl+s")
+    update = action.graph.update
+    assert update is not None
+    assert pane.asked_rows.chosen == "1"
+    await action.show(replace(update, goals=(*update.goals, replace(update.goals[0], number=2))))
+    await action.wait_for("#2 ◌ sending")
+    assert pane.asked_rows.chosen == "2"
+    # Once, and then whoever looks at another one is left alone.
+    pane.asked_rows.choose("1")
+    action.graph.change_goal(2, elapsed_s=1.5)
+    await action.wait_for("1.5 s")
+    assert pane.asked_rows.chosen == "1"
 
 
 async def test_what_is_asked_belongs_to_its_place(action: Room) -> None:

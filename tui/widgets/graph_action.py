@@ -39,6 +39,11 @@ class ActionPane(AskPane):
 
     submit_title: ClassVar[str] = N_("Send goal")
 
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._sent_newest: int | None = None
+        """To be chosen when an update of the graph has it."""
+
     @property
     def goals(self) -> Sequence[Goal]:
         """Those of the action that is shown, the newest first."""
@@ -118,8 +123,15 @@ class ActionPane(AskPane):
             reason = said(getattr(error, "words", str(error)))
             self.warn(_("Not sent: {reason}").format(reason=reason))
             return
+        self._sent_newest = number
         self.redraw()
-        self.asked_rows.choose(str(number))
+
+    def redraw(self) -> None:
+        """Show the goals, and choose the one that was just sent."""
+        super().redraw()
+        if self._sent_newest in [goal.number for goal in self.goals]:
+            self.asked_rows.choose(str(self._sent_newest))
+            self._sent_newest = None
 
     @property
     def can_cancel(self) -> bool:
