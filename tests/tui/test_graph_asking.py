@@ -197,6 +197,27 @@ async def test_a_goal_that_was_just_sent_is_chosen_as_soon_as_it_is_listed(
     assert pane.asked_rows.chosen == "1"
 
 
+async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: Room) -> None:
+    await action.press("ctrl+s")
+    await action.wait_for("#1")
+    await action.press("escape", "slash", *"x: 2")
+    await action.wait_for("nothing fits the filter")
+    assert "Send goal" not in action.seen()
+    await action.press("ctrl+s")
+    assert len(action.graph.sent_goals) == 1
+    # What is under way can be ended from anywhere.
+    assert "f7 Cancel" in action.seen()
+    await action.press("f7")
+    assert action.graph.canceled_goals == [1]
+    action.screen.names.focus()
+    await action.press("d")
+    assert action.graph.forgotten_goals == []
+    await action.press("escape")
+    await action.wait_for("Send goal")
+    await action.press("ctrl+s")
+    assert len(action.graph.sent_goals) == 2
+
+
 async def test_what_is_asked_belongs_to_its_place(action: Room) -> None:
     await action.press("ctrl+s")
     await action.wait_for("#1")

@@ -40,6 +40,20 @@ async def test_they_are_read_when_asked_and_not_before(room: Room) -> None:
     assert "5 parameters" not in room.seen()
 
 
+async def test_those_of_a_node_that_is_not_in_front_are_not_offered(room: Room) -> None:
+    await room.press("p")
+    await room.wait_for("5 parameters")
+    await room.press("slash", "q", "q")
+    await room.wait_for("nothing fits the filter")
+    assert "w Save" not in room.seen()
+    room.screen.names.focus()
+    await room.press("w", "o", "p")
+    assert room.app.screen is room.screen
+    assert room.graph.asked_parameters == [NODE]
+    await room.press("escape")
+    await room.wait_for("w Save")
+
+
 async def test_another_value_is_set_and_read_back(room: Room) -> None:
     await room.press("p", "down", "enter")
     assert "Allowed: 0.1…50, above 0" in room.seen()

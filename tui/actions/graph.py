@@ -96,7 +96,7 @@ class Parameters(GraphAction):
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
         """Only of a node."""
-        return target.node_pane is not None and not target.draws
+        return target.node_pane is not None and target.shows_pane
 
     @classmethod
     async def run(cls, target: GraphScreen) -> None:
@@ -155,8 +155,8 @@ class Ask(GraphAction):
 
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
-        """Only where there is a form."""
-        return target.ask_pane is not None and not target.draws
+        """Only where a form is seen: what it asks for may turn wheels."""
+        return target.ask_pane is not None and target.shows_pane
 
     @classmethod
     def label(cls, target: GraphScreen) -> str:
@@ -202,8 +202,9 @@ class ForgetGoal(GraphAction):
 
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
-        """Only of an action."""
-        return target.ask_pane is not None and target.ask_pane.can_forget
+        """Only of an action whose goals are seen."""
+        pane = target.ask_pane
+        return pane is not None and pane.can_forget and target.shows_pane
 
     @classmethod
     async def run(cls, target: GraphScreen) -> None:

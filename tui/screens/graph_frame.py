@@ -128,6 +128,11 @@ class GraphFrame(DeckScreen):
         return pane if pane is not None and pane.is_mounted else None
 
     @property
+    def shows_pane(self) -> bool:
+        """Whether the detail is seen: neither the map nor an empty list is in its place."""
+        return self.pane is not None and self.pane.display and not self.draws
+
+    @property
     def node_pane(self) -> NodePane | None:
         """The detail in front, if it is a node's."""
         pane = self.pane
@@ -142,7 +147,7 @@ class GraphFrame(DeckScreen):
     def shows_parameters(self) -> bool:
         """Whether parameters are in front."""
         pane = self.node_pane
-        return pane is not None and pane.shows_parameters and not self.draws
+        return pane is not None and pane.shows_parameters and self.shows_pane
 
     @property
     def ask_pane(self) -> AskPane | None:
@@ -188,7 +193,9 @@ class GraphFrame(DeckScreen):
         switcher = self.query_one("#graph-detail", ContentSwitcher)
         pane, here = self.pane, self.trail.here
         if pane is None or here is None or not self.names.chosen_name:
-            switcher.current = "graph-words"
+            if switcher.current != "graph-words":
+                switcher.current = "graph-words"
+                self.refresh_bindings()
             key = self.deck.keys_of(Housekeeping)[0]
             words = why_empty(
                 self.feed.update, self.trail.kind, self.listed.get(self.trail.kind, []),
