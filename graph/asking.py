@@ -85,6 +85,13 @@ class Asking:
         """Publish that one no more; updates do not tell of it any longer."""
         self._order(Do(lambda station: station.publications.stop(number)))
 
+    def stop_publishing_all(self) -> None:
+        """Publish nothing at a rate any more, not even what was asked for a moment ago."""
+        order = Do(lambda station: station.publications.close())
+        self._hurry(order, lambda _station: True)
+        # What has been asked for and has not begun does so before this one's turn.
+        self._order(order)
+
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         """Make a publisher for what may be held, and publish nothing.
 

@@ -45,6 +45,9 @@ class Refusals:
     def stop_publishing(self, number: int) -> None:
         """Do nothing: nothing is published."""
 
+    def stop_publishing_all(self) -> None:
+        """Do nothing: nothing is published."""
+
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         """Fail."""
         del topic, type_name

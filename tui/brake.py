@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SENT_WITHIN_S = 2.0
 WHY_S = 20.0
-"""How long it is told why nodes are being stopped."""
+"""How long it is told what else the stop has ended, and why."""
 
 
 class Brake:
@@ -32,6 +32,7 @@ class Brake:
         """Stop the wheels: said on the topic, or by stopping the nodes if nobody hears."""
         # On its way before anything is drawn, or waits for its turn.
         sent = self._publish(engaged=True)
+        self._end_publications()
         self._set(self.state.pressed(clock.now()))
         self._app.run_worker(self._stop(sent), group="brake")
 
@@ -79,6 +80,19 @@ class Brake:
             return None
         message = {"data": engaged}
         return graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, message, latched=True)
+
+    def _end_publications(self) -> None:
+        """Publish nothing at a rate any more: it would drive as soon as the stop is released."""
+        feed = self._app.feed
+        if feed.graph is None:
+            return
+        feed.graph.stop_publishing_all()
+        publications = () if feed.update is None else feed.update.publications
+        topics = dict.fromkeys(one.topic for one in publications if not one.error)
+        if topics:
+            words = _("Deck publishes no more to {topics}: the emergency stop has ended it.")
+            told = words.format(topics=", ".join(topics))
+            self._app.notify(told, severity="warning", timeout=WHY_S, markup=False)
 
     async def _reached(self, sent: Future[int] | None) -> bool:
         """Return whether ROS took it."""

@@ -103,6 +103,9 @@ class GraphLink(Protocol):
     def stop_publishing(self, number: int) -> None:
         """Publish that one no more; updates do not tell of it any longer."""
 
+    def stop_publishing_all(self) -> None:
+        """Publish nothing at a rate any more, not even what was asked for a moment ago."""
+
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         """Make a publisher for what may be held, and publish nothing."""
 

@@ -40,6 +40,9 @@ class App:
         assert group == "brake"
         self.workers.append(asyncio.ensure_future(work))
 
+    def notify(self, words: str, **_looks: Any) -> None:
+        """Nobody reads it here."""
+
     def emergency_changed(self) -> None:
         """Nothing is drawn here."""
 
@@ -102,6 +105,7 @@ async def test_it_is_heard_at_once_while_everything_else_hangs(
             await asyncio.to_thread(wait_until, lambda n=count: len(heard) >= n, "the stop")
             assert heard[-1][0] is True
             assert heard[-1][1] - pressed_s < AT_ONCE_S
+        wait_until(lambda: not watcher.update.publications, "what raced has ended")
         assert brake.state.fallback == ""
         assert not any(future.done() for future in waiting)
         running.close()

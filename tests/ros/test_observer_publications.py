@@ -58,6 +58,18 @@ def test_updates_tell_of_it_until_it_is_stopped(watcher: Watcher, peer: Peer) ->
     wait_until(lambda: not peer.node.count_publishers("/out"), "no publisher")
 
 
+def test_all_are_stopped_even_one_that_has_not_begun(watcher: Watcher, peer: Peer) -> None:
+    start(watcher, "/one", 50.0)
+    waiting = watcher.observer.start_publishing("/other", FLOAT, {"data": 1.0}, 50.0)
+    watcher.observer.stop_publishing_all()
+    waiting.result(30)
+    wait_until(lambda: not watcher.update.publications, "no row")
+    for topic in ("/one", "/other"):
+        wait_until(lambda topic=topic: not peer.node.count_publishers(topic), "no publisher")
+    number = start(watcher, "/one", 50.0)
+    wait_until(lambda: row(watcher, number), "a new one")
+
+
 def test_several_at_once_hold_each_their_own_rate(watcher: Watcher, peer: Peer) -> None:
     slow, quick = peer.hear("/slow", Float32, 500), peer.hear("/quick", Float32, 500)
     start(watcher, "/slow", 5.0)

@@ -55,6 +55,8 @@ class RecordedGraph:
     repeated: list[tuple[str, str, Mapping[str, Any], float]] = field(default_factory=list)
     """(topic, type, value, hz) that is published again and again."""
     stopped_publications: list[int] = field(default_factory=list)
+    stopped_all: int = 0
+    """How often all that is published again and again was stopped."""
     held: list[tuple[str, str, Holding]] = field(default_factory=list)
     """(topic, type, word) that is published while it is held."""
     let_go_of: list[str] = field(default_factory=list)
@@ -145,6 +147,10 @@ class RecordedGraph:
                 now, publications=tuple(one for one in now.publications if one.number != number)
             )
         )
+
+    def stop_publishing_all(self) -> None:
+        self.stopped_all += 1
+        self._change(lambda now: replace(now, publications=()))
 
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         self.prepared.append((topic, type_name, False))

@@ -263,6 +263,21 @@ async def test_the_emergency_stop_works_from_the_form_and_shows(desk: Desk) -> N
     assert (topic, value) == ("/emergency_stop", {"data": True})
 
 
+async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Desk) -> None:
+    await desk.open("/ai_command")
+    await desk.pilot.press("ctrl+g")
+    await desk.says("Publishing to /ai_command")
+    await desk.until(lambda: desk.dialog.is_publishing)
+    await desk.pilot.press("escape", "space")
+    await desk.pilot.pause()
+    assert desk.graph.stopped_all == 1
+    told = [notice.message for notice in desk.app._notifications]
+    assert told == ["Deck publishes no more to /ai_command: the emergency stop has ended it."]
+    # Nothing was left to be ended.
+    await desk.pilot.press("space")
+    assert len(desk.app._notifications) == 1
+
+
 async def test_a_click_on_a_tab_leaves_the_dialog_where_it_is(desk: Desk) -> None:
     await desk.open()
     for x in range(1, 60, 6):
