@@ -66,17 +66,14 @@ def find_profile(name: str | Path) -> Path:
         UsageError: if the beginning fits several.
     """
     text = str(name)
-    path = Path(text)
-    if os.sep in text or text.endswith(ENDINGS) or os.path.isfile(path):  # noqa: PTH113
-        return path
+    if is_path(text):
+        return Path(text)
     known = {
         file.stem: file for folder in (SHIPPED, Path("profiles")) for file in _files_of(folder)
     }
     if text in known:
         return known[text]
-    number = _number(text) if LESSON.fullmatch(text) else None
-    fits = [stem for stem in known if _number(stem) == number]
-    fits = fits or [stem for stem in known if text and stem.startswith(text)]
+    fits = fitting(text, known)
     if len(fits) == 1:
         return known[fits[0]]
     if fits:
@@ -84,6 +81,19 @@ def find_profile(name: str | Path) -> Path:
             say("{name!r} may be any of: {names}", name=text, names=", ".join(sorted(fits)))
         )
     raise ProfileNotFoundError(text, _near(text, known))
+
+
+def is_path(text: str) -> bool:
+    """Whether this is a file of a profile rather than a name of one."""
+    return os.sep in text or text.endswith(ENDINGS) or os.path.isfile(text)  # noqa: PTH113
+
+
+def fitting(text: str, known: Iterable[str]) -> list[str]:
+    """Return the names with this lesson number, else those that begin so."""
+    names = list(known)
+    number = _number(text) if LESSON.fullmatch(text) else None
+    fits = [name for name in names if _number(name) == number]
+    return fits or [name for name in names if text and name.startswith(text)]
 
 
 def _files_of(folder: Path) -> list[Path]:

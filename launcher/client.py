@@ -22,14 +22,9 @@ from launcher.control_protocol import (
     unpack_text,
 )
 from launcher.control_socket import connect
-from launcher.errors import (
-    ConnectionLostError,
-    NotRunningError,
-    ProtocolError,
-    SeveralRunningError,
-    UnknownNodeError,
-)
+from launcher.errors import ConnectionLostError, ProtocolError, UnknownNodeError
 from launcher.rundir import log_dir, run_dir
+from launcher.running import find_running
 from launcher.serial_ports import serial_ports
 from launcher.supervisor_plan import plan_of
 from launcher.supervisor_record import read_records
@@ -94,7 +89,7 @@ async def launch(
 
 
 async def attach(name: str | None = None) -> SupervisorClient:
-    """Connect to a session that runs: the only one, or the one of that profile or run id.
+    """Connect to a session that runs: the only one, or the one that `find_running` finds.
 
     Raises:
         NotRunningError: if there is none.
@@ -102,16 +97,7 @@ async def attach(name: str | None = None) -> SupervisorClient:
         ConnectionLostError: if it has ended just now, or does not answer.
         ProtocolError: if it is of another version.
     """
-    found = [record for record in read_records(run_dir()) if record.runs]
-    chosen = [one for one in found if name in (None, one.session.name, one.session.run_id)]
-    names = [record.session.name for record in found]
-    if not chosen:
-        raise NotRunningError(name, names)
-    if len(chosen) > 1:
-        raise SeveralRunningError(
-            names if len(set(names)) == len(names) else [one.session.run_id for one in chosen]
-        )
-    return await _connect(chosen[0].folder)
+    return await _connect(find_running(name).folder)
 
 
 def running() -> list[SessionInfo]:

@@ -103,3 +103,16 @@ def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -
     assert missing.errors == ["'three' does not run; running: one, two"]
     assert deck("down", "one").lines == ["one stopped, 2 nodes"]
     assert deck("down").lines == ["two stopped, 2 nodes"]
+
+
+def test_what_runs_is_named_as_it_was_to_start_it(tmp_path: Path) -> None:
+    path = str(written(tmp_path, ONE, "71-one.yaml"))
+    elsewhere = str(written(tmp_path, TWO, "72-two.yaml"))
+    for name in ("71", "71-one", path, "71-o"):
+        deck("up", path)
+        assert deck("logs", "quiet", "--profile", name, "-n", "0").process.returncode == 0
+        for other in ("72", elsewhere):
+            missing = deck("down", other)
+            assert missing.process.returncode == 1
+            assert missing.errors == [f"{other!r} does not run; running: 71-one"]
+        assert deck("down", name).lines == ["71-one stopped, 2 nodes"]

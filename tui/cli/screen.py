@@ -7,7 +7,6 @@ import sys
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile
-from launcher.errors import NotRunningError, SeveralRunningError
 from tui.cli.output import say_error, write
 from tui.i18n import _
 
@@ -41,24 +40,13 @@ def attach_command(options: Namespace) -> int:
     if not has_terminal():
         say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` do without"))
         return 2
-    name = options.name or _the_only_one()
+    from launcher.running import find_running
+
+    # What is wrong with the name is told before there is a screen.
+    session = find_running(options.name).session
     from tui.app import run_screen
 
-    return run_screen(None, lang=options.lang, attach=name)
-
-
-def _the_only_one() -> str:
-    """Return the run that there is to attach to; an error if there is a choice, or none."""
-    from launcher.client import running
-
-    sessions = running()
-    if not sessions:
-        raise NotRunningError
-    if len(sessions) > 1:
-        names = [session.name for session in sessions]
-        different = len(set(names)) == len(names)
-        raise SeveralRunningError(names if different else [each.run_id for each in sessions])
-    return sessions[0].name
+    return run_screen(None, lang=options.lang, attach=options.name or session.name)
 
 
 def has_terminal() -> bool:

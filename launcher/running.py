@@ -1,0 +1,49 @@
+"""Which of the sessions that run is meant by what somebody has typed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.catalog import fitting, is_path
+from launcher.errors import NotRunningError, SeveralRunningError
+from launcher.rundir import run_dir
+from launcher.supervisor_record import read_records
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from launcher.supervisor_record import RunRecord
+
+
+def find_running(name: str | None = None) -> RunRecord:
+    """Return the session that runs: the only one, or the one of that run id or profile.
+
+    A profile is given as to start it: by path, name, lesson number or beginning of a name.
+
+    Raises:
+        NotRunningError: if there is none.
+        SeveralRunningError: if there are several to choose from.
+    """
+    found = [record for record in read_records(run_dir()) if record.runs]
+    chosen = found if name is None else _meant(name, found)
+    names = [record.session.name for record in found]
+    if not chosen:
+        raise NotRunningError(name, names)
+    if len(chosen) > 1:
+        raise SeveralRunningError(
+            names if len(set(names)) == len(names) else [one.session.run_id for one in chosen]
+        )
+    return chosen[0]
+
+
+def _meant(name: str, found: Sequence[RunRecord]) -> list[RunRecord]:
+    exactly = [one for one in found if name in (one.session.name, one.session.run_id)]
+    if exactly:
+        return exactly
+    if is_path(name):
+        path = Path(name).resolve()
+        return [one for one in found if Path(one.session.profile).resolve() == path]
+    # Not by the catalogue: the file may be gone, or out of sight from here.
+    fits = fitting(name, {one.session.name for one in found})
+    return [one for one in found if one.session.name in fits]
