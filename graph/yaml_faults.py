@@ -12,7 +12,10 @@ _LIST = say("this list is not closed: a ',' or a ']' is missing")
 _BRACES = say("these braces are not closed: a ',' or a '}' is missing")
 _INDENT = say("the indentation does not fit the lines above")
 _NO_VALUE = say("a value is missing here, or a ']' or '}'")
-_NOT_CLOSED = {
+_BEGUN_BEFORE = {
+    "could not find expected ':'": say(
+        "a ':' is missing after the name of the field, or a blank after it"
+    ),
     "did not find expected ',' or ']'": _LIST,
     "expected ',' or ']'": _LIST,
     "did not find expected ',' or '}'": _BRACES,
@@ -21,7 +24,6 @@ _NOT_CLOSED = {
 }
 """How PyYAML's own words begin (of both its parsers), and what is meant; told of where it began."""
 _WORDS = {
-    "could not find expected ':'": say("a ':' is missing after the name of the field"),
     "found character that cannot start any token": say(
         "nothing can begin with this character: put the text into quotes"
     ),
@@ -65,7 +67,7 @@ def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
         tab = say("a tab indents this line: YAML wants blanks")
         raise YamlError(mark.line + 1, indent.index("\t") + 1, tab) from error
     words = getattr(error, "problem", None) or str(error)
-    meant = _meant(words, _NOT_CLOSED)
+    meant = _meant(words, _BEGUN_BEFORE)
     if meant and error.context_mark:
         mark = error.context_mark
     place = _within(mark.line, mark.column, lines)

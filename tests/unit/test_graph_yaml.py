@@ -126,6 +126,8 @@ def test_nan_is_a_number() -> None:
         ('a: "x\nb: 3', 1, 4, "the text in quotes is not closed"),
         ("a: b: c", 1, 5, "a second ':' in one line"),
         ("a\nb: 1", 2, 2, "does not fit the one above"),
+        ("x: 1.0\ny:2.0\nz: 0.0", 2, 1, "or a blank after it"),
+        ("x: 1.0\ny", 2, 1, "a ':' is missing after the name of the field"),
         ("a: @x", 1, 4, "put the text into quotes"),
         ("a:\n    b: 1\n  c: 2", 3, 3, "the indentation does not fit"),
         ("a: !!python/object:os.x 1", 1, 4, "the tag !!python/object:os.x is refused"),
