@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from nodes._pico_client import PicoClient
     from nodes._speech import Speech
+    from robot.wire_pico import Telemetry
 
 STARTED = Phrase("The chassis at {port} obeys {topic}", "Шасси на {port} исполняет команды {topic}")
 COMMAND_OLD = Phrase(
@@ -42,11 +43,30 @@ _FLAGS = {
     "H": Phrase("no handshake", "нет рукопожатия"),
     "A": Phrase("waiting for a stop", "ждёт команды стоп"),
 }
+_BAD = frozenset("LRUH")
+"""Flags of what is not in order."""
+_SAY_EVERY_S = 10.0
 
 
 def reasons(say: Speech, flags: Iterable[str]) -> str:
     """Why the wheels stand, in words."""
     return ", ".join(say.text(phrase) for flag, phrase in _FLAGS.items() if flag in flags)
+
+
+class Standing:
+    """Tells in the log why the wheels stand: at once, and again for who looks later."""
+
+    def __init__(self, say: Speech) -> None:
+        self._say = say
+        self._flags: frozenset[str] = frozenset()
+
+    def tell(self, telemetry: Telemetry | None) -> None:
+        """Take the newest of the Pico, as often as it pleases; None if there is none."""
+        flags = telemetry.flags & _BAD if telemetry is not None else frozenset()
+        if flags:
+            every_s = 0.0 if flags - self._flags else _SAY_EVERY_S
+            self._say.error(STANDS, every_s=every_s, reasons=reasons(self._say, flags))
+        self._flags = flags
 
 
 def diagnosis(
@@ -75,6 +95,6 @@ def diagnosis(
     why = reasons(say, telemetry.flags)
     status.message = say.text(STANDS, reasons=why) if why else say.text(_DRIVES)
     if why:
-        bad = telemetry.flags & frozenset("LRUH")
+        bad = telemetry.flags & _BAD
         status.level = DiagnosticStatus.ERROR if bad else DiagnosticStatus.WARN
     return status

@@ -28,10 +28,9 @@ from nodes._chassis_words import (
     EMERGENCY,
     NO_NUMBER,
     RELEASED,
-    STANDS,
     STARTED,
+    Standing,
     diagnosis,
-    reasons,
 )
 from nodes._diagnostics import tell_every_second
 from nodes._emergency import EmergencyStop
@@ -93,7 +92,7 @@ class Chassis(LessonNode):
         super().__init__()
         self._command = _STILL
         self._commanded_s = -math.inf
-        self._flags: frozenset[str] = frozenset()
+        self._standing = Standing(self.say)
         self._release_wanted = False
         self._nap = Nap()
         self._sending = threading.Lock()
@@ -187,7 +186,7 @@ class Chassis(LessonNode):
                 self.say.warn(COMMAND_OLD, seconds=self.number("max_age_s"))
                 self._stand()
             self._send()
-        self._tell(self._pico.telemetry)
+        self._standing.tell(self._pico.telemetry)
 
     def _send(self) -> None:
         telemetry = self._pico.telemetry
@@ -206,12 +205,6 @@ class Chassis(LessonNode):
     def _stand(self) -> None:
         """Forget the command; the steering stays as it is."""
         self._command = (0.0, 0.0, self._command[2])
-
-    def _tell(self, telemetry: Telemetry | None) -> None:
-        flags = telemetry.flags & frozenset("LRUH") if telemetry is not None else frozenset()
-        if flags - self._flags:
-            self.say.error(STANDS, reasons=reasons(self.say, flags))
-        self._flags = flags
 
     # ---------------------------------------------------------------- the reader's thread
 
