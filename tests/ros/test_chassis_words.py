@@ -1,0 +1,41 @@
+"""Why the wheels stand: told at once, and again for who looks later."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from nodes import _speech
+from nodes._chassis_words import Standing
+from nodes._speech import Speech
+from robot.wire_pico import Telemetry
+from tests.ros.test_serial_link import Log
+
+
+def telemetry(flags: str) -> Telemetry:
+    return Telemetry(1, 20, 0, 0.0, 0.0, 0.0, 7.4, 0.0, 0.0, 0, frozenset(flags))
+
+
+def test_why_the_wheels_stand_is_told_again_while_it_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
+    monkeypatch.setattr(_speech, "time", clock)
+    log = Log()
+    standing = Standing(Speech(log, "en"))  # type: ignore[arg-type]
+
+    def told(flags: str | None, seconds: float) -> list[str]:
+        """What is logged of these flags in so many seconds."""
+        log.lines.clear()
+        for _ in range(round(seconds / 0.5)):
+            standing.tell(None if flags is None else telemetry(flags))
+            clock.now_s += 0.5
+        return list(log.lines)
+
+    weak = "The wheels stand: the battery is weak"
+    left = "The wheels stand: fault of the left motor driver"
+    assert told("", 20) == told(None, 20) == told("WA", 20) == []
+    assert told("UA", 35) == [weak] * 4
+    assert told("LUA", 1) == [f"{left}, the battery is weak"]
+    assert told("L", 1) == []
+    assert told(None, 1) == []
+    assert told("L", 1) == [left]
