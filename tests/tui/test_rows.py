@@ -51,6 +51,15 @@ async def test_the_chosen_row_stays_in_sight_when_the_terminal_shrinks() -> None
         assert any("▶ n9" in line for line in app.lines())
 
 
+async def test_a_row_that_is_chosen_as_soon_as_the_rows_come_is_in_sight() -> None:
+    app = ListApp()
+    async with app.run_test(size=(30, 6)) as pilot:
+        app.fill()
+        app.rows.choose("n9")
+        await pilot.pause()
+        assert any("▶ n9" in line for line in app.lines())
+
+
 async def test_what_is_dim_is_between_text_and_background_in_every_theme() -> None:
     app = ListApp()
     async with app.run_test(size=(30, 20)) as pilot:

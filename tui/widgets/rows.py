@@ -232,7 +232,8 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         top, rows = self.scroll_offset.y, max(1, self.size.height - self._top)
         target = min(index, max(top, index - rows + 1))
         if target != top:
-            self.scroll_to(y=target, animate=False, immediate=True)
+            # Rows that have just come have no scroll bar yet, without which nothing would scroll.
+            self.scroll_to(y=target, animate=False, immediate=True, force=True)
 
     def _refresh_row(self, index: int | None) -> None:
         if index is not None and index >= self.scroll_offset.y:
