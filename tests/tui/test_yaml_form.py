@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -9,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.app import App, ComposeResult
 
+from graph.yaml_form import prefilled
 from tui.i18n import set_language
+from tui.widgets import yaml_form
 from tui.widgets.yaml_form import YamlForm
 from tui.widgets.yaml_tokens import tokens
 
@@ -155,6 +158,27 @@ async def test_another_type_takes_the_place_of_the_first() -> None:
         assert app.form.value == {}
         await app.form.load("std_msgs/msg/Bool", "data: true").wait()
         assert app.form.value == {"data": True}
+
+
+async def test_a_form_whose_type_is_not_chosen_here_says_that_it_is_loading(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    app = FormApp("")
+    app.form = YamlForm(type_is_given=True)
+    held = threading.Event()
+
+    def slow(type_name: str) -> str:
+        held.wait(10)
+        return prefilled(type_name)
+
+    monkeypatch.setattr(yaml_form, "prefilled", slow)
+    async with app.run_test(size=(80, 24)) as pilot:
+        assert app.form.verdict == "the form is being loaded…"
+        app.form.load("std_msgs/msg/Bool")
+        assert app.form.verdict == "the form is being loaded…"
+        held.set()
+        await checked(pilot)
+        assert app.form.verdict == "✓ fits std_msgs/msg/Bool"
 
 
 async def test_hostile_text_in_the_form_is_harmless() -> None:

@@ -64,7 +64,7 @@ class AskPane(GraphPane):
         with Container(classes="ask-body"):
             with Vertical(classes="ask-left"):
                 yield GraphLinks()
-                yield YamlForm(submit_title=self.submit_title)
+                yield YamlForm(submit_title=self.submit_title, type_is_given=True)
             with Vertical(classes="ask-right"):
                 yield Static(classes="ask-title", markup=False)
                 yield EchoTree()

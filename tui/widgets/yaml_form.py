@@ -76,16 +76,24 @@ class YamlForm(Vertical, Acting):
     """
 
     def __init__(
-        self, type_name: str = "", *, submit_title: str = "", submits: bool = True, id: str = ""
+        self,
+        type_name: str = "",
+        *,
+        submit_title: str = "",
+        submits: bool = True,
+        type_is_given: bool = False,
+        id: str = "",
     ) -> None:
         """Begin with a type's form; `submit_title` (an `N_`) is what the footer calls Ctrl+S.
 
-        `submits=False` leaves Ctrl+S to the screen around it.
+        `submits=False` leaves Ctrl+S to the screen around it. `type_is_given`: nobody can choose
+        it, it comes by itself.
         """
         super().__init__(id=id or None)
         self.type_name = type_name
         self.submit_title = submit_title
         self.submits = submits
+        self.type_is_given = type_is_given
         self.error: Wrong | None = None
         """What is wrong with the text as it was last checked."""
         self._value: Mapping[str, Value] | None = None
@@ -157,7 +165,9 @@ class YamlForm(Vertical, Acting):
     def relabel(self) -> None:
         """Say the verdict anew, after the language changed."""
         words = "✓ " + _("fits {type}").format(type=plain(self.type_name, 100))
-        if not self.type_name:
+        if self._loading or (self.type_is_given and not self.type_name):
+            words = _("the form is being loaded…")
+        elif not self.type_name:
             words = _("choose a type first")
         elif self._checked is None:
             words = "…"
