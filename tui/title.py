@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
 WELL = frozenset({"ready", "running"})
+COMING = frozenset({"waiting", "starting", "backoff"})
 
 
 def tabs(app: DeckApp, front: str) -> Sequence[tuple[str, str, bool]]:
@@ -42,6 +43,11 @@ def look(app: DeckApp) -> str:
     if app.brake.state.engaged:
         return "stop"
     return "alarm" if app.brake.state.blocked else "state"
+
+
+def starting(app: DeckApp) -> bool:
+    """Tell whether a node is still to come: it waits, starts, or will be started again."""
+    return any(node.state.value in COMING for node in app.feed.nodes.values())
 
 
 def states(app: DeckApp) -> Sequence[str]:
@@ -88,7 +94,8 @@ def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
         return _watched(app, session)
     nodes = app.feed.nodes.values()
     well = sum(node.state.value in WELL for node in nodes)
-    count = f"{'●' if well == len(nodes) else '◔'} {well}/{len(nodes)}"
+    sign = "◔" if starting(app) else "●" if well == len(nodes) else "○"
+    count = f"{sign} {well}/{len(nodes)}"
     title = f"{session.lesson} {pick(session.title)}".strip() or session.name
     domain = _("domain {domain}").format(domain=session.domain)
     return (

@@ -100,6 +100,29 @@ async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
         assert "◔ 7/8" in title.states(app)[0]
 
 
+@pytest.mark.parametrize(
+    ("state", "sign"),
+    [
+        (NodeState.WAITING, "◔"),
+        (NodeState.STARTING, "◔"),
+        (NodeState.BACKOFF, "◔"),
+        (NodeState.STOPPING, "○"),
+        (NodeState.EXITED, "○"),
+        (NodeState.FAILED, "○"),
+    ],
+)
+async def test_the_title_says_starting_only_while_a_node_is_to_come(
+    state: NodeState, sign: str
+) -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        assert "● 8/8" in title.states(app)[0]
+        pad.link.set_state("camera", state)
+        await pilot.pause()
+        await pilot.pause()
+        assert f"{sign} 7/8" in title.states(app)[0]
+
+
 async def test_hostile_log_lines_and_names_are_shown_harmlessly() -> None:
     bad = "\x1b]52;c;aGk=\x07[red]no markup[/red]\x00\u202egnp"
     pad = RecordedPad()

@@ -15,7 +15,16 @@ from textual.widgets import Static
 
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from graph.pictures import Picture, read_picture
-from tests.tui.recorded import NOW_S, TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from launcher.status import NodeState
+from tests.tui.recorded import (
+    NOW_S,
+    TOPICS,
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    lesson_update,
+    sample,
+)
 from tests.tui.recorded_image import colour_bars
 from tests.tui.snapshots import Look, settle
 from tui.screens import topics_pictures
@@ -198,6 +207,44 @@ async def test_the_chosen_topic_stays_when_everybody_has_left_it(room: Room) -> 
     await room.choose(CAMERA)
     await room.show(with_row(left))
     assert SONAR not in [row.name for row in room.screen.table.shown]
+
+
+ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
+
+
+@pytest.mark.parametrize(
+    ("state", "topics", "words"),
+    [
+        (NodeState.STARTING, (ROSOUT,), ["no topics yet", "Nodes are starting."]),
+        (NodeState.READY, (), ["no topics", "Nobody publishes anything, and nobody listens."]),
+        (
+            NodeState.READY,
+            (ROSOUT,),
+            ["no topics of the robot", "There are only those of ROS itself: a shows them."],
+        ),
+    ],
+)
+async def test_why_there_is_no_topic_is_told(
+    room: Room, state: NodeState, topics: tuple[TopicRow, ...], words: list[str]
+) -> None:
+    assert isinstance(room.app.feed.link, RecordedSession)
+    room.app.feed.link.set_state("camera", state)
+    await room.show(lesson_update(time_s=NOW_S + 1, topics=topics))
+    lines = [room.screen.table.render_line(y).text.strip() for y in (1, 2)]
+    assert lines == words
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [(0, "11 из 13 топиков"), (7, "11 из 20 топиков"), (8, "11 из 21 топика")],
+)
+async def test_of_how_many_topics_is_told_in_good_russian(
+    room: Room, more: int, words: str
+) -> None:
+    room.app.speak("ru")
+    hidden = tuple(replace(ROSOUT, name=f"/_hidden/{number}") for number in range(more))
+    await room.show(lesson_update(time_s=NOW_S + 1, topics=(*TOPICS, *hidden)))
+    assert room.count() == words
 
 
 async def test_a_qos_mismatch_names_who_and_what_to_change(room: Room) -> None:

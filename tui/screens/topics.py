@@ -9,10 +9,12 @@ from textual import on
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
+from graph.housekeeping import is_housekeeping
 from graph.yaml_text import is_cut, to_yaml
+from tui import title
 from tui.actions import bindings
 from tui.actions.publish import OpenPublish
-from tui.actions.topics import TOPICS_ACTIONS
+from tui.actions.topics import TOPICS_ACTIONS, Housekeeping
 from tui.i18n import N_, _, ngettext
 from tui.screens.topics_pictures import TopicsPictures
 from tui.screens.topics_plotting import PlotPlace
@@ -101,13 +103,13 @@ class TopicsScreen(TopicsPictures):
         self.plot.take(update)
         if self.feed.front is not self:
             return
-        if update.error:
-            self.table.show_words(_("ROS cannot be observed"), update.error)
         if self.is_time_for_rates(update.time_s):
             self._listed = tuple(row for row in update.topics if self._is_listed(row))
             self.table.show(self._listed)
             self.detail.show_topic(self.table.chosen_row)
             self._count()
+        if not self.table.shown:
+            self.table.show_words(*self._why_none())
         samples = update.samples.get(self.table.chosen or "", ())
         if samples:
             self.show_message(samples[-1])
@@ -203,17 +205,34 @@ class TopicsScreen(TopicsPictures):
 
     def _label(self) -> None:
         self.filter.placeholder = _("filter: words of a name or a type")
-        running = self.feed.link is not None
-        headline = _("no topics yet") if running else _("no lesson is running")
-        self.table.show_words(headline, _("Nodes are starting.") if running else "")
+        self.table.show_words(*self._why_none())
         self._count()
+
+    def _why_none(self) -> tuple[str, str]:
+        """Return headline and detail for a table without topics."""
+        update = self.feed.update
+        if self.feed.link is None:
+            return _("no lesson is running"), ""
+        if update is not None and update.error:
+            return _("ROS cannot be observed"), update.error
+        if title.starting(self.deck):
+            return _("no topics yet"), _("Nodes are starting.")
+        listed = () if update is None else tuple(filter(self._is_listed, update.topics))
+        if update is None or not all(is_housekeeping(row.name) for row in listed):
+            return _("no topics yet"), ""
+        if not listed:
+            return _("no topics"), _("Nobody publishes anything, and nobody listens.")
+        key = self.deck.keys_of(Housekeeping)[0]
+        words = _("There are only those of ROS itself: {key} shows them.").format(key=key)
+        return _("no topics of the robot"), words
 
     def _count(self) -> None:
         everything = len(self._listed)
         shown = len(self.table.shown)
-        words = ngettext("{n} topic", "{n} topics", everything).format(n=everything)
+        words = ngettext("{n} topic", "{n} topics", everything)
         if shown != everything:
-            words = _("{shown} of {topics}").format(shown=shown, topics=words)
+            words = ngettext("{shown} of {n} topic", "{shown} of {n} topics", everything)
+        words = words.format(shown=shown, n=everything)
         count = self.query_one("#topics-count", Static)
         if words != getattr(count, "content", None):
             count.update(words)
