@@ -87,3 +87,13 @@ def test_silence_a_pulled_cable_and_another_program(folder: Path, peer: Peer) ->
     assert "there is no such port" in found["tof_front"]
     assert "DECK_TOF_FRONT_PORT=" in found["tof_front"]
     assert "has it" in found["tof_rear"]
+
+
+def test_a_noisy_pico_is_told_as_that(peer: Peer) -> None:
+    set_parameter(peer, "mock_robot", "pico", "noise")
+    try:
+        _code, found = preflight()
+    finally:
+        set_parameter(peer, "mock_robot", "pico", "fine")
+    assert not found["pico"].startswith("ok")
+    assert "some lines come garbled" in found["pico"]

@@ -31,17 +31,23 @@ class Device:
     answers: dict[bytes, bytes] = field(default_factory=dict)
     baud: int = 115_200
     said: list[bytes] = field(default_factory=list)
+    begins: bytes = b""
+    """Comes once, before all else."""
+    deaf_to: int = 0
+    """So many words do not get there."""
     _answer: bytes = b""
 
     def hear(self, _seconds: float, enough: Callable[[bytes], bool]) -> bytes:
-        heard, self._answer = self.chatter + self._answer, b""
+        heard, self._answer = self.begins + self.chatter + self._answer, b""
+        self.begins = b""
         if heard:
             enough(heard)
         return heard
 
     def say(self, data: bytes) -> None:
         self.said.append(data)
-        self._answer += self.answers.get(data, b"")
+        if len(self.said) > self.deaf_to:
+            self._answer += self.answers.get(data, b"")
 
 
 def asked(kind: str, device: Device) -> Answer:
@@ -72,6 +78,33 @@ def test_devices_that_are_what_they_should_be() -> None:
     assert asked("tf_luna", Device(encode_tof(TofFrame(0, 50, 25.0)) * 20)).text.startswith(
         "nothing in range"
     )
+    assert asked("tf_luna", Device(encode_tof(TofFrame(10, 900, 25.0)) * 20)).text.startswith(
+        "too close to measure"
+    )
+
+
+def test_a_pico_is_greeted_again_where_a_greeting_was_lost() -> None:
+    lossy = pico()
+    lossy.deaf_to = 2
+    assert asked("pico", lossy) == (Level.OK, "firmware 1.0.0, battery 7.4 V", "")
+    assert lossy.said == [HELLO] * 3
+
+
+def test_a_pico_whose_lines_come_garbled_is_told() -> None:
+    noisy = pico("WHAU")
+    noisy.chatter += telemetry().replace(b"7400", b"74~0")
+    answer = asked("pico", noisy)
+    assert answer.level is Level.WARN
+    assert answer.text.endswith("7.4 V, the battery is low, some lines come garbled")
+    assert "keep it short" in answer.mend
+    dumb = Device(answers={HELLO: b"$T,4" * 99 + b"\n" + b"\xff\n" * 3 + pico().answers[HELLO]})
+    assert asked("pico", dumb).text == "firmware 1.0.0, some lines come garbled"
+
+
+def test_a_line_that_was_cut_by_the_opening_of_the_port_is_no_noise() -> None:
+    running = pico()
+    running.begins = telemetry()[7:]
+    assert asked("pico", running).level is Level.OK
 
 
 def test_a_device_without_a_protocol_of_ours_is_opened_and_no_more() -> None:
@@ -104,6 +137,7 @@ def test_a_pico_in_trouble_is_told(flags: str, words: str, mend: str) -> None:
         ("pico", Device(answers={HELLO: b"$V\r\nTraceback\r\n>>> "}), "not with Deck's", "flash"),
         ("pico", Device(b"MicroPython v1.27\r\n>>> "), "not with Deck's firmware", "flash"),
         ("pico", Device(telemetry()), "nothing that is said gets there", "cable"),
+        ("pico", Device(telemetry() + b"$T,4\n"), "some lines come garbled", "keep it short"),
         ("pico", pico(protocol=2), "protocol 2, this program 1", "flash"),
         ("tf_luna", Device(), "silent: no TF-Luna", "not I2C"),
         ("tf_luna", Device(telemetry() * 3), "Pico talks here, not the TF-Luna", "by-id"),

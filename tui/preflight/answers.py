@@ -6,6 +6,7 @@ servo board is asked for its battery. No drive line and no move is ever sent.
 
 from __future__ import annotations
 
+import math
 import time
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,11 +19,15 @@ from tui.doctor.finding import Level
 from tui.i18n import _
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from tui.preflight.line import Line
 
 NAMES = {"pico": "Pico", "tf_luna": "TF-Luna", "tfmini_s": "TFmini-S", "lsc16": "LSC-16"}
 """Kind of device to what it is called."""
 LISTEN_S, ANSWER_S = 0.4, 1.0
+GREETINGS = 10
+"""In that time, for one may be lost: on a noisy line every other one is."""
 MEASURE_S = 0.5
 ENOUGH_FRAMES = 3
 """Of a sonar that is looked for elsewhere: fewer may be chance."""
@@ -69,12 +74,15 @@ def _pico(line: Line) -> Answer:
     heard = line.hear(LISTEN_S, lambda data: take(data) or bool(told))
     if not told and recognised(heard):
         return _python_prompt(heard) or _another("pico", heard)
-    line.say(encode_pico(Hello(0)))
-    heard += line.hear(ANSWER_S, take)
+    heard += _greet(line, take)
     welcome = next((one for one in told if isinstance(one, Welcome)), None)
     telemetry = next((one for one in reversed(told) if isinstance(one, Telemetry)), None)
     if welcome is None and telemetry is None:
         return _python_prompt(heard) or _nothing("pico", heard, line.baud)
+    # One may have been cut by the opening of the port.
+    garbled = decoder.errors > 1
+    if welcome is None and garbled:
+        return Answer(Level.FAIL, _("some lines come garbled"), _better_cable())
     if welcome is None:
         text = _("telemetry comes, but no answer: nothing that is said gets there")
         return Answer(
@@ -84,14 +92,23 @@ def _pico(line: Line) -> Answer:
         text = _("the firmware speaks protocol {theirs}, this program {ours}")
         text = text.format(theirs=welcome.protocol, ours=PROTOCOL)
         return Answer(Level.FAIL, text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
-    return _well_pico(welcome, telemetry)
+    return _well_pico(welcome, telemetry, garbled=garbled)
 
 
-def _well_pico(welcome: Welcome, telemetry: Telemetry | None) -> Answer:
+def _greet(line: Line, answered: Callable[[bytes], bool]) -> bytes:
+    """Say hello until that is answered, then hear for a while how well lines come."""
+    heard = b""
+    for _greeting in range(GREETINGS):
+        line.say(encode_pico(Hello(0)))
+        heard += line.hear(ANSWER_S / GREETINGS, answered)
+        if answered(b""):
+            return heard + line.hear(MEASURE_S, lambda data: answered(data) and False)
+    return heard
+
+
+def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) -> Answer:
     text = _("firmware {firmware}").format(firmware=welcome.firmware)
-    if telemetry is None:
-        return Answer(Level.OK, text)
-    if telemetry.battery_v is not None:
+    if telemetry is not None and telemetry.battery_v is not None:
         text += ", " + _("battery {volts:.1f} V").format(volts=telemetry.battery_v)
     troubles = {
         "E": (
@@ -102,7 +119,10 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None) -> Answer:
         "R": (_("the right motor driver reports a fault"), _("look at its wires and its supply")),
         "U": (_("the battery is low"), _("charge it, and switch the motors' supply on")),
     }
-    found = [trouble for flag, trouble in troubles.items() if flag in telemetry.flags]
+    flags = telemetry.flags if telemetry is not None else frozenset()
+    found = [trouble for flag, trouble in troubles.items() if flag in flags]
+    if garbled:
+        found.append((_("some lines come garbled"), _better_cable()))
     if not found:
         return Answer(Level.OK, text)
     text = ", ".join([text, *(words for words, _mend in found)])
@@ -134,14 +154,23 @@ def _sonar(kind: str, line: Line) -> Answer:
     if not last:
         return _nothing(kind, heard, line.baud)
     metres = last[0].distance_m(model)
-    far = _("{metres:.2f} m") if 0.0 <= metres < float("inf") else _("nothing in range")
-    text = _("{distance}, {rate:.0f} readings a second").format(
-        distance=far.format(metres=metres), rate=rate
-    )
+    text = _("{distance}, {rate:.0f} readings a second").format(distance=_far(metres), rate=rate)
     if decoder.errors > before:
-        mend = _("look at the cable: keep it short, away from the motors', with a common ground")
-        return Answer(Level.WARN, _("{text}, many of them garbled").format(text=text), mend)
+        garbled = _("{text}, many of them garbled").format(text=text)
+        return Answer(Level.WARN, garbled, _better_cable())
     return Answer(Level.OK, text)
+
+
+def _far(metres: float) -> str:
+    if math.isnan(metres):
+        return _("no valid reading")
+    if math.isinf(metres):
+        return _("nothing in range") if metres > 0 else _("too close to measure")
+    return _("{metres:.2f} m").format(metres=metres)
+
+
+def _better_cable() -> str:
+    return _("look at the cable: keep it short, away from the motors', with a common ground")
 
 
 def _servos(line: Line) -> Answer:
