@@ -100,6 +100,8 @@ class TopicRow:
     published_by: tuple[EndpointInfo, ...] = ()
     subscribed_by: tuple[EndpointInfo, ...] = ()
     """Both without Deck's own endpoints."""
+    own_publishers: int = 0
+    """Deck's own."""
 
 
 @dataclass(frozen=True)

@@ -162,6 +162,7 @@ class Taps:
             facts=finding.facts,
             published_by=ends.publishers,
             subscribed_by=ends.subscribers,
+            own_publishers=len(ends.own_publishers),
         )
 
 

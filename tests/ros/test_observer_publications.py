@@ -52,6 +52,8 @@ def test_updates_tell_of_it_until_it_is_stopped(watcher: Watcher, peer: Peer) ->
     assert found == Publication(number, "/out", FLOAT, 50.0, found.sent, 1)
     wait_until(lambda: heard, "a message")
     assert heard[0].data == 2.5
+    topic = watcher.wait_for("/out", lambda topic: topic.own_publishers, "shows Deck")
+    assert topic.publishers == 0
     watcher.observer.stop_publishing(number)
     wait_until(lambda: not watcher.update.publications, "no row")
     # Deck's publisher has left the graph, so nothing more can come.

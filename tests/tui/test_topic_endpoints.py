@@ -14,6 +14,7 @@ from tests.tui.snapshots import Look, settle
 from tui.screens.topics import TopicsScreen
 from tui.widgets.topic_endpoint_lines import endpoint_lines
 from tui.widgets.topic_figures import count_text, seconds_text
+from tui.widgets.topic_words import ends
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,6 +89,15 @@ def test_nobody_is_said_to_be_nobody() -> None:
     assert "nobody listens" in shown
 
 
+def test_deck_is_not_nobody() -> None:
+    ours = replace(a_row([], [BRAIN]), own_publishers=1)
+    assert "Publishers (0)" in text(ours)
+    assert "Deck itself publishes here" in text(ours)
+    assert "nobody publishes" not in text(ours)
+    assert ends(ours) == "Deck → brain"
+    assert ends(replace(ours, published_by=(LIDAR,))) == "lidar, Deck → brain"
+
+
 def test_a_crowd_that_does_not_fit_is_cut() -> None:
     crowd = [replace(BRAIN, node=f"/brain_{number}") for number in range(40)]
     assert "… and 28 more pairs" in text(a_row([LIDAR], crowd))
@@ -149,5 +159,9 @@ async def test_a_key_brings_the_endpoints_to_the_front_and_back() -> None:
         app.feed.graph.show(lesson_update(topics=tuple(rows)))  # type: ignore[union-attr]
         await pilot.pause()
         assert "nobody publishes" in screen.detail.endpoints.text
+        rows = [replace(row, own_publishers=1) for row in rows]
+        app.feed.graph.show(lesson_update(topics=tuple(rows)))  # type: ignore[union-attr]
+        await pilot.pause()
+        assert "Deck itself publishes here" in screen.detail.endpoints.text
         await pilot.press("e")
         assert screen.detail.echo.has_focus

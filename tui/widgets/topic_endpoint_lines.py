@@ -65,7 +65,9 @@ def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
             ]
             bad = frozenset(_column(pair.mismatch.policy) for pair in at)
             lines += _end_lines(end, columns, bad, width, with_type=disagree)
-        if not ends:
+        if is_publisher and row.own_publishers:
+            lines.append([Ink(" " * MARK), Ink(_("Deck itself publishes here"))])
+        elif not ends:
             nobody = _("nobody publishes") if is_publisher else _("nobody listens")
             lines.append([Ink(" " * MARK), Ink(nobody, "muted")])
     return [*lines, [], *_notes(row, width)]

@@ -46,14 +46,18 @@ class TopicEndpoints(ScrollView, can_focus=True):
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._row: TopicRow | None = None
-        self._shown: tuple[str, Sequence[EndpointInfo], Sequence[EndpointInfo]] | None = None
+        self._shown: tuple[str, Sequence[EndpointInfo], Sequence[EndpointInfo], int] | None = None
         self._lines: list[Line] = []
 
     def show(self, row: TopicRow | None) -> None:
         """Show who is on this topic; folded anew only if that has changed."""
         other = row is None or self._row is None or row.name != self._row.name
         self._row = row
-        shown = None if row is None else (row.name, row.published_by, row.subscribed_by)
+        shown = (
+            None
+            if row is None
+            else (row.name, row.published_by, row.subscribed_by, row.own_publishers)
+        )
         if shown != self._shown:
             self._shown = shown
             self._fold()

@@ -23,6 +23,7 @@ LONGEST = 400
 KILO = 1000
 SHOWN_NODES = 4
 BETWEEN = " · "
+OURSELVES = "Deck"
 
 
 def advice(row: TopicRow) -> tuple[str, str]:
@@ -118,9 +119,13 @@ def size_text(size_bytes: int) -> str:
 
 def ends(row: TopicRow) -> str:
     """Who publishes and who listens, by their names where they are known."""
-    publishers = names(row.published_by) or ngettext(
-        "{n} publisher", "{n} publishers", row.publishers
-    ).format(n=row.publishers)
+    publishers = names(row.published_by)
+    if not publishers and (row.publishers or not row.own_publishers):
+        publishers = ngettext("{n} publisher", "{n} publishers", row.publishers).format(
+            n=row.publishers
+        )
+    if row.own_publishers:
+        publishers = f"{publishers}, {OURSELVES}" if publishers else OURSELVES
     subscribers = names(row.subscribed_by) or ngettext(
         "{n} subscriber", "{n} subscribers", row.subscribers
     ).format(n=row.subscribers)
