@@ -51,6 +51,8 @@ class Feed:
         self._rosout = RosoutReader()
         self.ended = ""
         """Why the session before has ended."""
+        self._remains: Mapping[str, NodeStatus] = {}
+        """Its nodes."""
 
     @property
     def replay(self) -> Replay | None:
@@ -69,8 +71,8 @@ class Feed:
 
     @property
     def nodes(self) -> Mapping[str, NodeStatus]:
-        """Every node of the session, in the profile's order."""
-        return {} if self.link is None else self.link.nodes
+        """Every node of the session, in the profile's order; of one that has ended, too."""
+        return self._remains if self.link is None else self.link.nodes
 
     @property
     def opened(self) -> bool:
@@ -86,7 +88,7 @@ class Feed:
     def connect(self, link: SessionLink, graph: GraphLink) -> None:
         """Show this session from now on."""
         self.link, self.graph = link, graph
-        self.update, self.ended = None, ""
+        self.update, self.ended, self._remains = None, "", {}
         self.history.clear()
         self._rosout = RosoutReader()
         self.tell(SessionChanged)
@@ -101,15 +103,27 @@ class Feed:
         link, graph = self.link, self.graph
         self.link = self.graph = None
         self.ended = ended
+        if ended and link is not None:
+            self._show_remains(link.nodes)
         if graph is not None:
             await asyncio.to_thread(graph.stop)
         if link is not None:
             await link.aclose()
         self.tell(lambda: SessionChanged(ended))
 
+    def _show_remains(self, nodes: Mapping[str, NodeStatus]) -> None:
+        # The first frame does without.
+        from tui.remains import ended_nodes, silent_graph
+
+        self._remains = ended_nodes(nodes, self.ended)
+        self._tell_status(frozenset(nodes))
+        if self.update is not None:
+            silent = self.update = silent_graph(self.update)
+            self.tell(lambda: GraphChanged(silent))
+
     def close(self) -> None:
         """Forget the session that has ended, and the screens that showed it."""
-        self.ended = ""
+        self.ended, self._remains = "", {}
         self._screens.clear()
         self.history.clear()
 

@@ -10,7 +10,7 @@ import pytest
 from graph.data import GraphUpdate, Sample
 from launcher.errors import ProfileError, ProfileProblem, SessionError
 from launcher.events import ClosedEvent, LogEvent, StraysEvent
-from launcher.status import Severity, Stray
+from launcher.status import NodeState, Severity, Stray
 from launcher.words import say
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
@@ -25,6 +25,7 @@ from tests.tui.recorded import (
 )
 from tests.tui.snapshots import settle
 from tui import title
+from tui.actions.deck import StartAll, WriteCommand
 from tui.app import DeckApp
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
@@ -34,6 +35,9 @@ from tui.screens.picker import PickerScreen
 from tui.screens.stopping import StoppingScreen
 from tui.screens.strays import StraysScreen
 from tui.screens.topics import TopicsScreen
+from tui.widgets.head import HeadPanel
+from tui.widgets.nodes_table import NodesTable
+from tui.widgets.wheels import WheelsPanel
 
 ATTACHED = replace(SESSION, foreground=False)
 STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")
@@ -192,6 +196,28 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
         await pilot.press("f8")
         await settle(pilot)
         assert isinstance(app.screen, PickerScreen)
+
+
+async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_alive() -> None:
+    pad = RecordedPad()
+    async with opened(pad, size=(200, 60)) as (app, pilot):
+        pad.graph.show(lesson_update())
+        pad.link.set_state("camera", NodeState.FAILED, signal="SIGSEGV", pid=None)
+        await settle(pilot)
+        drawings = list(app.screen.query(WheelsPanel)) + list(app.screen.query(HeadPanel))
+        assert [drawing.stale for drawing in drawings] == [False, False]
+        pad.link.say(ClosedEvent(say("the supervisor is gone")))
+        await settle(pilot)
+        table = app.screen.query_one(NodesTable)
+        rows = [table.render_line(y).text for y in range(1, 9)]
+        well = ["camera" not in row for row in rows]
+        assert ["○ exited" in row and "the supervisor is gone" in row for row in rows] == well
+        assert "ended by SIGSEGV" in rows[1]
+        assert [drawing.stale_words for drawing in drawings] == ["nobody publishes this topic"] * 2
+        assert not any(action.possible(app.screen) for action in (StartAll, WriteCommand))
+        await pilot.press("f9", "f9")
+        await settle(pilot)
+        assert [table.render_line(y).text for y in range(1, 9)] == rows
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,7 @@ class _AskAll(DeckAction):
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:
         """Only where there are nodes that Deck has started."""
-        return bool(target.feed.nodes)
+        return target.feed.link is not None and bool(target.feed.nodes)
 
     @classmethod
     async def run(cls, target: LessonDeck) -> None:

@@ -145,6 +145,8 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         if self.feed.watching:
             row = None if self.feed.update is None else row_of(self.feed.update, COMMANDS)
             return row is not None and row.subscribers > 0
+        if self.feed.link is None:
+            return False
         return any(node.command == DRIVER for node in self.feed.nodes.values())
 
     def write_command(self) -> None:
