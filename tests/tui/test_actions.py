@@ -16,6 +16,7 @@ from tui.actions import REGISTRY, Action, bindings
 from tui.app import DeckApp, every_action
 from tui.i18n import N_
 from tui.screens.help import HelpScreen
+from tui.screens.stopping import StoppingScreen
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.page import Page
 
@@ -150,6 +151,18 @@ async def test_help_changes_its_language_while_it_is_open() -> None:
         await pilot.pause()
         await pilot.pause()
         assert "Остановить выбранный узел и запустить его снова." in help_text(app)
+
+
+async def test_help_does_not_cover_the_dialog_that_goes_by_itself() -> None:
+    pad = RecordedPad()
+    pad.link.hold_shutdown = True
+    async with opened(pad) as (app, pilot):
+        await pilot.press("q")
+        await pilot.pause()
+        await pilot.press("f1")
+        await pilot.pause()
+        assert isinstance(app.screen, StoppingScreen)
+        await pilot.press("q")
 
 
 async def test_the_palette_finds_an_action_by_name_and_does_it() -> None:

@@ -14,9 +14,12 @@ from graph.outbox import PublishError
 from graph.yaml_form import check
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
+from tui.actions.publish import PublishAtRate
+from tui.screens.help import HelpScreen
 from tui.screens.publish import PublishDialog
 from tui.screens.topics import TopicsScreen
 from tui.widgets import yaml_form
+from tui.widgets.page import Page
 from tui.widgets.publications import Publications
 from tui.widgets.title_bar import TitleBar
 
@@ -317,3 +320,16 @@ async def test_without_a_session_nothing_is_sent(desk: Desk) -> None:
     await desk.pilot.press("ctrl+s")
     await desk.says("no lesson is running")
     assert desk.graph.published == []
+
+
+async def test_help_lists_the_keys_of_the_dialog_and_closes_again(desk: Desk) -> None:
+    await desk.open()
+    dialog = desk.dialog
+    await desk.pilot.press("f1")
+    await desk.pilot.pause()
+    assert isinstance(desk.app.screen, HelpScreen)
+    page = " ".join(desk.app.screen.query_one(Page).text.split())
+    assert PublishAtRate.tooltip in page
+    await desk.pilot.press("escape")
+    await desk.pilot.pause()
+    assert desk.app.screen is dialog

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, ClassVar, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 from textual.containers import Vertical, VerticalScroll
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from tui.actions import Acting
+from tui.actions import Acting, Action, bindings
+from tui.i18n import N_
 from tui.widgets.key_bar import KeyBar
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
+    from textual.binding import BindingType
     from textual.content import Content
 
     from tui.app import DeckApp
@@ -22,9 +24,32 @@ if TYPE_CHECKING:
 Answer = TypeVar("Answer")
 
 
+class ExplainDialog(Action["Dialog[Any]"]):
+    """The help page: the app's own key does not get past a dialog."""
+
+    id = "help.dialog"
+    key = "f1"
+    title = N_("Help")
+    tooltip = N_("Every key of this screen, and what it shows.")
+    palette = False
+
+    @classmethod
+    def possible(cls, target: Dialog[Any]) -> bool | None:
+        """Not where the dialog may have to go at any moment."""
+        return target.can_be_covered
+
+    @classmethod
+    async def run(cls, target: Dialog[Any]) -> None:
+        """Open the help page of the dialog."""
+        target.deck.show_help()
+
+
 class Dialog(ModalScreen[Answer], Acting):
     """A title and a text; a subclass says which, and binds what can be answered."""
 
+    BINDINGS: ClassVar[list[BindingType]] = bindings(ExplainDialog)
+    can_be_covered: ClassVar[bool] = True
+    """Whether another screen may be opened above it."""
     DEFAULT_CSS: ClassVar[str] = """
     Dialog {
         align: center middle;

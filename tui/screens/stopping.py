@@ -37,6 +37,7 @@ class StoppingScreen(Dialog[None]):
     """A list of the nodes that still run, looked at a few times a second."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StopNow)
+    can_be_covered = False
 
     def on_mount(self) -> None:
         """Look again until it is over."""
