@@ -44,6 +44,8 @@ class _Repeated:
     qos: Qos
     publisher: Publisher
     due_s: float
+    onlookers: int = 0
+    """Deck's own subscribers; told by the look at the graph that the new publisher brings on."""
     sent: int = 0
     error: str = ""
 
@@ -64,7 +66,7 @@ class _Repeated:
 
     def row(self) -> Publication:
         """Return it as the screen is to see it."""
-        listeners = self.publisher.get_subscription_count()
+        listeners = max(0, self.publisher.get_subscription_count() - self.onlookers)
         return Publication(
             self.number, self.topic, self.type_name, self.hz, self.sent, listeners, self.error
         )
@@ -124,6 +126,7 @@ class Publications:
         """Offer what those who have come to listen ask for."""
         for repeated in self._repeated.values():
             ends = topics.get(repeated.topic)
+            repeated.onlookers = ends.onlookers if ends else 0
             qos = to_be_heard(ends.subscribers if ends else ())
             if qos == repeated.qos:
                 continue

@@ -36,6 +36,8 @@ class TopicEnds:
     publishers: tuple[EndpointInfo, ...] = ()
     subscribers: tuple[EndpointInfo, ...] = ()
     own_publishers: tuple[EndpointInfo, ...] = ()
+    onlookers: int = field(default=0, compare=False)
+    """Subscriptions that only show or record; a graph with others of them is the same graph."""
 
     @property
     def everyone_publishing(self) -> tuple[EndpointInfo, ...]:
@@ -103,11 +105,14 @@ def scan(node: Node, own_name: str, breathe: Callable[[], object]) -> Scan:
 
 def _topic(node: Node, own_name: str, name: str, types: tuple[str, ...]) -> TopicEnds:
     publishing = publishers(node, name)
+    subscribed = subscriptions(node, name)
+    # A recorder that hears the emergency stop must not pass for somebody who obeys it.
+    listening = tuple(end for end in subscribed if not end.node.startswith(ONLY_LISTENING))
     return TopicEnds(
         name,
         types,
         tuple(end for end in publishing if end.node != own_name),
-        # A recorder that hears the emergency stop must not pass for somebody who obeys it.
-        tuple(end for end in subscriptions(node, name) if not end.node.startswith(ONLY_LISTENING)),
+        listening,
         tuple(end for end in publishing if end.node == own_name),
+        len(subscribed) - len(listening),
     )

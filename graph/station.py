@@ -125,9 +125,10 @@ class Station:
             return
         self._signature, self._scanned_s = found, now_s
         seen = scan(self._ros.node, self._ros.name, self.breathe)
+        # Also if only the onlookers are others.
+        self.publications.tune(seen.topics)
         if seen != self._scan:
             self._scan = seen
-            self.publications.tune(seen.topics)
             self.held.tune(seen.topics)
 
     def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:

@@ -60,6 +60,14 @@ def test_updates_tell_of_it_until_it_is_stopped(watcher: Watcher, peer: Peer) ->
     wait_until(lambda: not peer.node.count_publishers("/out"), "no publisher")
 
 
+def test_decks_own_echo_is_no_listener(watcher: Watcher, peer: Peer) -> None:
+    peer.hear("/out", Float32)
+    number = start(watcher, "/out", 50.0)
+    watcher.observer.watch(["/out"])
+    wait_until(lambda: watcher.of("/out"), "the echo")
+    wait_until(lambda: (found := row(watcher, number)) and found.subscribers == 1, "the peer", 5.0)
+
+
 def test_all_are_stopped_even_one_that_has_not_begun(watcher: Watcher, peer: Peer) -> None:
     start(watcher, "/one", 50.0)
     waiting = watcher.observer.start_publishing("/other", FLOAT, {"data": 1.0}, 50.0)
