@@ -150,7 +150,8 @@ class RecordedGraph:
 
     def stop_publishing_all(self) -> None:
         self.stopped_all += 1
-        self._change(lambda now: replace(now, publications=()))
+        if self.update is not None and self.update.publications:
+            self._change(lambda now: replace(now, publications=()))
 
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         self.prepared.append((topic, type_name, False))
