@@ -60,8 +60,12 @@ def test_updates_tell_of_it_until_it_is_stopped(watcher: Watcher, peer: Peer) ->
     wait_until(lambda: not peer.node.count_publishers("/out"), "no publisher")
 
 
-def test_decks_own_echo_is_no_listener(watcher: Watcher, peer: Peer) -> None:
+@pytest.mark.parametrize("echo_first", [False, True])
+def test_decks_own_echo_is_no_listener(watcher: Watcher, peer: Peer, echo_first: bool) -> None:
     peer.hear("/out", Float32)
+    if echo_first:
+        watcher.observer.watch(["/out"])
+        watcher.wait_for("/out", lambda topic: topic.measured, "is subscribed to")
     number = start(watcher, "/out", 50.0)
     watcher.observer.watch(["/out"])
     wait_until(lambda: watcher.of("/out"), "the echo")
