@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import os
 from typing import TYPE_CHECKING
 
 from launcher.catalog import fitting, is_path
@@ -42,8 +42,8 @@ def _meant(name: str, found: Sequence[RunRecord]) -> list[RunRecord]:
     if exactly:
         return exactly
     if is_path(name):
-        path = Path(name).resolve()
-        return [one for one in found if Path(one.session.profile).resolve() == path]
+        path = os.path.realpath(name)
+        return [one for one in found if os.path.realpath(one.session.profile) == path]
     # Not by the catalogue: the file may be gone, or out of sight from here.
     fits = fitting(name, {one.session.name for one in found})
     return [one for one in found if one.session.name in fits]
