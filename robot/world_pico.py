@@ -77,8 +77,9 @@ class SimulatedPico:
             self.flags |= set("WA")
         self._look_for_faults()
         self._obey()
-        listening = self._heard_ms is not None and self._now_ms - self._heard_ms < _QUIET_MS
-        if listening and self._now_ms - self._told_ms >= _TELEMETRY_MS:
+        if self._heard_ms is None or self._now_ms - self._heard_ms >= _QUIET_MS:
+            self._told_ms = self._now_ms
+        elif self._now_ms - self._told_ms >= _TELEMETRY_MS:
             self._told_ms = self._now_ms
             self._say(self._telemetry())
         out, self._out = self._out, b""
