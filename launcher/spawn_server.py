@@ -24,7 +24,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from launcher.process_table import RUN_MARK
-from launcher.spawn_server_node import Birth, become
+from launcher.spawn_server_node import ENDING, Birth, become
 from launcher.spawn_server_undertaker import undertake
 from launcher.spawn_server_warm import Preload
 
@@ -142,6 +142,8 @@ def serve(link: socket.socket, supervisor: int, *, cold: bool) -> None:
     # Whoever started the supervisor may have had these ignored, and a terminal is none of ours.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
+    # A node inherits this: one that is asked to end at once must not take that for ignored.
+    signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     server = SpawnServer(link, supervisor, Preload(cold=cold))
     task = server.serve()
     if task is not None:
