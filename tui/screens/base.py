@@ -14,6 +14,7 @@ from tui.messages import EmergencyChanged, LanguageChanged, SessionChanged, Stat
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.replay_bar import ReplayBar
 from tui.widgets.title_bar import TitleBar
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -30,7 +31,7 @@ HEIGHTS = [(0, "-flat"), (20, "-low"), (34, "-tall"), (50, "-high")]
 """Heights: 80x24 is -low, 120x40 -tall, 200x60 -high."""
 
 
-class DeckScreen(Screen[None], Acting):
+class DeckScreen(Screen[None], Acting, Working):
     """Base of the screens that show a session.
 
     A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and

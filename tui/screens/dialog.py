@@ -12,6 +12,7 @@ from textual.widgets import Static
 from tui.actions import Acting, Action, bindings
 from tui.i18n import N_
 from tui.widgets.key_bar import KeyBar
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -44,7 +45,7 @@ class ExplainDialog(Action["Dialog[Any]"]):
         target.deck.show_help()
 
 
-class Dialog(ModalScreen[Answer], Acting):
+class Dialog(ModalScreen[Answer], Acting, Working):
     """A title and a text; a subclass says which, and binds what can be answered."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(ExplainDialog)

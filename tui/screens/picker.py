@@ -20,6 +20,7 @@ from tui.widgets.key_bar import KeyBar
 from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.title_bar import TitleBar
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -68,7 +69,7 @@ class StartLesson(Action["PickerScreen"]):
         target.open_chosen()
 
 
-class PickerScreen(Screen[None], Acting):
+class PickerScreen(Screen[None], Acting, Working):
     """A list of lessons, and beside or below it all about the chosen one."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StartLesson)

@@ -9,6 +9,7 @@ from textual.content import Content
 from textual.widgets import Static
 
 from tui.widgets.plain import plain
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.widget import Widget
@@ -60,7 +61,7 @@ class Words(Static):
             self.update(Content("\n").join(parts))
 
 
-class GraphPane(Vertical):
+class GraphPane(Vertical, Working):
     """Shows one thing of the graph by its name."""
 
     DEFAULT_CSS = """

@@ -14,6 +14,7 @@ from tui.widgets.graph_pane import LONGEST, Words
 from tui.widgets.graph_parameter_words import allowed_words, value_text
 from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -28,7 +29,7 @@ ROOMY = 70
 TICK_S = 0.5
 
 
-class GraphParameters(Vertical):
+class GraphParameters(Vertical, Working):
     """A table of parameters, or why there is none."""
 
     DEFAULT_CSS: ClassVar[str] = """

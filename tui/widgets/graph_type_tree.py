@@ -15,6 +15,7 @@ from graph.types import UnknownTypeError
 from tui.i18n import N_, _, said
 from tui.widgets.graph_parameter_words import typed
 from tui.widgets.plain import plain
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.widgets.tree import TreeNode
@@ -31,7 +32,7 @@ PARTS = {
 }
 
 
-class GraphTypeTree(Tree["str | None"]):
+class GraphTypeTree(Tree["str | None"], Working):
     """Fields with their types, defaults and bounds; each that holds a message has its type."""
 
     class Wanted(Message):

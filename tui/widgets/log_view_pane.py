@@ -21,6 +21,7 @@ from tui.widgets.log_view_bar import LogBar, grouped
 from tui.widgets.log_view_prompt import LogPrompt
 from tui.widgets.log_view_save import default_path, home_path, reason, save_lines
 from tui.widgets.plain import plain
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -29,7 +30,7 @@ CLIPBOARD_LIMIT = 100_000
 """Bytes; many terminals drop a longer OSC 52 sequence without a word."""
 
 
-class LogPane(Vertical):
+class LogPane(Vertical, Working):
     """A `LogView` with all that can be done to it."""
 
     DEFAULT_CSS = "LogPane { height: 1fr; width: 1fr; }"

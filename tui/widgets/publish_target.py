@@ -14,6 +14,7 @@ from textual.widgets import Input, Static
 from graph.browse import interfaces
 from tui.i18n import _
 from tui.widgets.type_field import TypeField
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 TOPIC = re.compile(r"/[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
 
 
-class PublishTarget(Vertical):
+class PublishTarget(Vertical, Working):
     """Two lines; the types that are installed complete the second."""
 
     class TopicChanged(Message):

@@ -18,6 +18,7 @@ from tui.actions import Acting, bindings
 from tui.actions.yaml_form import FORM_ACTIONS
 from tui.i18n import _
 from tui.widgets.plain import plain
+from tui.widgets.working import Working
 from tui.widgets.yaml_editor import YamlEditor
 from tui.widgets.yaml_words import place_of, wrong_words
 
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 CHECKED_AFTER_S = 0.15
 
 
-class YamlForm(Vertical, Acting):
+class YamlForm(Vertical, Acting, Working):
     """An editor with a verdict below it that names line, field and what was expected."""
 
     class Submitted(Message):
