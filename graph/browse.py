@@ -136,7 +136,7 @@ def _field(name: str, text: str, default: Value) -> Field:
         name,
         ros_name(text),
         default,
-        message=kind.element.replace("/", "/msg/") if kind.is_message else None,
+        message=kind.message_type if kind.is_message else None,
         least=least,
         greatest=greatest,
         size=kind.size,

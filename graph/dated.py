@@ -102,5 +102,5 @@ def _without_word(kind: FieldType, value: Value, path: Path, stamps: list[Path])
 
 
 def _class_of(kind: FieldType) -> type[Any]:
-    found: type[Any] = load_message(kind.element.replace("/", "/msg/"))
+    found: type[Any] = load_message(kind.message_type)
     return found

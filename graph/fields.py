@@ -51,6 +51,12 @@ class FieldType:
         return "/" in self.element
 
     @property
+    def message_type(self) -> str:
+        """Full name of the type of the messages it holds: `std_msgs/msg/Header`."""
+        package, _, name = self.element.partition("/")
+        return f"{package}/msg/{name}"
+
+    @property
     def is_number(self) -> bool:
         """Whether it holds integers or floats."""
         return self.element in INTEGERS or self.element in FLOATS

@@ -77,8 +77,7 @@ def _made(kind: FieldType, value: Value, path: str) -> object:
 
 def _one(kind: FieldType, value: Value, path: str) -> object:
     if kind.is_message:
-        package, _, name = kind.element.partition("/")
-        return to_message(load_message(f"{package}/msg/{name}"), value, path)  # type: ignore[arg-type]
+        return to_message(load_message(kind.message_type), value, path)  # type: ignore[arg-type]
     if kind.element in STRINGS:
         return _text(kind, value, path)
     if kind.element == "boolean":

@@ -100,7 +100,7 @@ def _remarks(
         if kind.is_message and isinstance(value, str):
             yield path, ros_name(text)
         elif kind.is_message and len(value):
-            nested = load_message(_element(text))
+            nested = load_message(kind.message_type)
             parts = [("", value)]
             if kind.is_many:
                 parts = [(f"[{index}]", each) for index, each in enumerate(value[:most])]
@@ -108,13 +108,9 @@ def _remarks(
             for index, each in parts:
                 yield from _remarks(nested, each, f"{path}{index}.", most)
         elif kind.is_message:
-            yield path, _many(text, load_message(_element(text)))
+            yield path, _many(text, load_message(kind.message_type))
         else:
             yield path, ros_name(text)
-
-
-def _element(text: str) -> str:
-    return parse(text).element.replace("/", "/msg/")
 
 
 def _many(text: str, element: type[Any]) -> str:
