@@ -71,8 +71,6 @@ class Birth:
 
 def become(birth: Birth) -> None:
     """Be the node, to its end; an exception of the node's ends this process as it ought to."""
-    # Whoever is asked to end already does so when he knows how.
-    signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     os.setsid()
     if not die_with_parent(birth.supervisor):
         os._exit(1)
