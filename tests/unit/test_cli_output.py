@@ -14,7 +14,7 @@ from launcher.words import say
 from tests.waiting import wait_until
 from tui.cli.line_writer import MOST_WAITING, LineWriter
 from tui.cli.output import Paint, table
-from tui.cli.report import JsonReport, TextReport
+from tui.cli.report import JsonReport, Summary, TextReport
 from tui.i18n import set_language
 
 
@@ -146,7 +146,7 @@ STATUS = NodeStatus("sonar", "nodes.x", NodeState.FAILED, "exit code 3", restart
 
 def test_the_summary_names_who_is_not_well() -> None:
     lines, report = text_report(["sonar"])
-    report.summary([STATUS], {"sonar": False}, 4.25, 1, "")
+    report.summary(Summary([STATUS], {"sonar": False}, 4.25, ""))
     assert lines == [
         "",
         "NODE   RESULT  STATE   RESTARTS  DETAIL",
@@ -158,9 +158,9 @@ def test_the_summary_names_who_is_not_well() -> None:
 def test_the_summary_ends_with_what_ended_the_run() -> None:
     lines, report = text_report(["sonar"])
     gone = say("the supervisor is gone")
-    report.summary([STATUS], {"sonar": True}, 4.25, 1, gone)
+    report.summary(Summary([STATUS], {"sonar": True}, 4.25, gone))
     assert lines[-1] == "ended from elsewhere: the supervisor is gone; 4.2 s"
-    report.summary([STATUS], {"sonar": False}, 4.25, 1, gone)
+    report.summary(Summary([STATUS], {"sonar": False}, 4.25, gone))
     assert lines[-1] == "not healthy: sonar; ended from elsewhere: the supervisor is gone; 4.2 s"
 
 
@@ -172,7 +172,7 @@ def test_json_is_one_object_a_line_and_ends_with_the_summary() -> None:
     report.log(line("Дистанция\u2028", Severity.WARN))
     report.skipped("sonar", 5)
     report.note("nothing for programs")
-    report.summary([STATUS], {"sonar": False}, 4.25, 1, "")
+    report.summary(Summary([STATUS], {"sonar": False}, 4.25, ""))
     events = [json.loads(each) for each in lines]
     assert [event["event"] for event in events] == [
         *("session", "status", "log", "skipped", "summary")

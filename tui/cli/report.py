@@ -13,6 +13,7 @@ JSON is one object a line, told apart by `event`:
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from launcher.status import NodeState, Severity
@@ -28,6 +29,29 @@ if TYPE_CHECKING:
 
 COLOURS = {Severity.WARN: YELLOW, Severity.ERROR: RED, Severity.FATAL: RED, Severity.DEBUG: DIM}
 DECK = "deck"
+
+
+@dataclass(frozen=True)
+class Summary:
+    """How a run went."""
+
+    nodes: Sequence[NodeStatus]
+    """As they were before they were stopped."""
+    healthy: Mapping[str, bool]
+    """By the node's name."""
+    seconds: float
+    reason: str
+    """What ended the run, empty if it was stopped from here."""
+
+    @property
+    def well(self) -> bool:
+        """Whether every node was, and nothing else ended the run."""
+        return all(self.healthy.values()) and not self.reason
+
+    @property
+    def exit_code(self) -> int:
+        """Of `deck run`."""
+        return 0 if self.well else 1
 
 
 class Report(Protocol):
@@ -48,18 +72,8 @@ class Report(Protocol):
     def note(self, text: str) -> None:
         """Tell something about the run itself."""
 
-    def summary(
-        self,
-        nodes: Sequence[NodeStatus],
-        healthy: Mapping[str, bool],
-        seconds: float,
-        code: int,
-        reason: str,
-    ) -> None:
-        """Tell how it went: the nodes before they were stopped, and whether each was well.
-
-        `reason`: what ended the run, empty if it was stopped from here.
-        """
+    def summary(self, summary: Summary) -> None:
+        """Tell how it went."""
 
 
 class TextReport:
@@ -108,16 +122,9 @@ class TextReport:
         """Tell something about the run itself."""
         self._line(DECK, text)
 
-    def summary(
-        self,
-        nodes: Sequence[NodeStatus],
-        healthy: Mapping[str, bool],
-        seconds: float,
-        code: int,
-        reason: str,
-    ) -> None:
+    def summary(self, summary: Summary) -> None:
         """Tell how it went, as a table."""
-        del code
+        nodes, healthy = summary.nodes, summary.healthy
         head = (_("NODE"), _("RESULT"), _("STATE"), _("RESTARTS"), _("DETAIL"))
         rows = [
             (
@@ -138,10 +145,10 @@ class TextReport:
         parts = []
         if bad:
             parts.append(_("not healthy: {names}").format(names=", ".join(bad)))
-        if reason:
-            parts.append(_("ended from elsewhere: {reason}").format(reason=said(reason)))
+        if summary.reason:
+            parts.append(_("ended from elsewhere: {reason}").format(reason=said(summary.reason)))
         words = "; ".join(parts) or _("every node stayed healthy")
-        self._write(_("{words}; {seconds:.1f} s").format(words=words, seconds=seconds))
+        self._write(_("{words}; {seconds:.1f} s").format(words=words, seconds=summary.seconds))
 
     def _line(self, node: str, text: str) -> None:
         prefix = f"[{node}]".ljust(self._width)
@@ -195,22 +202,18 @@ class JsonReport:
     def note(self, text: str) -> None:
         """Say nothing: what a program must know has an event of its own."""
 
-    def summary(
-        self,
-        nodes: Sequence[NodeStatus],
-        healthy: Mapping[str, bool],
-        seconds: float,
-        code: int,
-        reason: str,
-    ) -> None:
+    def summary(self, summary: Summary) -> None:
         """Tell how it went."""
         self._object(
             "summary",
-            healthy=all(healthy.values()) and not reason,
-            exit_code=code,
-            reason=reason,
-            seconds=round(seconds, 3),
-            nodes=[{**status_fields(node), "healthy": healthy[node.name]} for node in nodes],
+            healthy=summary.well,
+            exit_code=summary.exit_code,
+            reason=summary.reason,
+            seconds=round(summary.seconds, 3),
+            nodes=[
+                {**status_fields(node), "healthy": summary.healthy[node.name]}
+                for node in summary.nodes
+            ],
         )
 
     def _object(self, event: str, **fields: object) -> None:

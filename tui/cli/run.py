@@ -16,7 +16,7 @@ from launcher.status import NodeState
 from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
 from tui.cli.output import Paint, drop_output
-from tui.cli.report import JsonReport, TextReport
+from tui.cli.report import JsonReport, Summary, TextReport
 from tui.i18n import _, language, ngettext
 
 if TYPE_CHECKING:
@@ -202,6 +202,6 @@ class Run:
             for name, node in nodes.items()
         }
         cut_short = "" if self._asked_to_stop else reason
-        code = 0 if all(healthy.values()) and not cut_short else 1
-        self.report.summary(list(nodes.values()), healthy, seconds, code, cut_short)
-        return code
+        summary = Summary(list(nodes.values()), healthy, seconds, cut_short)
+        self.report.summary(summary)
+        return summary.exit_code
