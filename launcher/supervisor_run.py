@@ -47,7 +47,7 @@ async def run(run_id: str, spawn_server: SpawnServerHandle) -> None:
     plan = Plan.from_json(line)
     record = _record(plan, run_id)
     try:
-        if _claim(record, plan) and _keep_last_words(Path(record.session.log_dir)):
+        if _claim(record, plan):
             await Supervisor(plan, record, spawn_server).run(stdin)
     finally:
         record.remove()
@@ -81,24 +81,21 @@ def _record(plan: Plan, run_id: str) -> RunRecord:
 
 
 def _claim(record: RunRecord, plan: Plan) -> bool:
-    """Write the record of this run, unless another has these nodes in this domain."""
-    run_dir = record.folder.parent
+    """Make room for this run, unless another has these nodes in this domain."""
+    folder = record.folder.parent
     try:
-        with exclusively(run_dir):
-            other = rival(read_records(run_dir), record.nodes, plan.domain)
+        with exclusively(folder):
+            other = rival(read_records(folder), record.nodes, plan.domain)
             if other is not None:
                 _answer({"running": pack_session(other.session)})
                 return False
             record.write()
+        folder = Path(record.session.log_dir)
+        _keep_last_words(folder)
     except OSError as problem:
-        return _refuse(run_dir, problem)
+        _answer({"no_room": pack_text(_no_room(folder, problem))})
+        return False
     return True
-
-
-def _refuse(folder: Path, problem: OSError) -> bool:
-    """Answer that this run has no room in `folder`."""
-    _answer({"no_room": pack_text(_no_room(folder, problem))})
-    return False
 
 
 def _no_room(folder: Path, problem: OSError) -> Words:
@@ -119,15 +116,11 @@ def _say_nothing(*_: object) -> None:
     pass
 
 
-def _keep_last_words(folder: Path) -> bool:
+def _keep_last_words(folder: Path) -> None:
     """Send stderr to a file: the client that started this process may be gone long before."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with (folder / "supervisor.log").open("ab") as words:
-            os.dup2(words.fileno(), 2)
-    except OSError as problem:
-        return _refuse(folder, problem)
-    return True
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "supervisor.log").open("ab") as words:
+        os.dup2(words.fileno(), 2)
 
 
 class Supervisor:
