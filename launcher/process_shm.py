@@ -38,7 +38,7 @@ def held_segments(pid: int) -> set[str]:
 
 
 def port_numbers(names: Iterable[str]) -> list[int]:
-    """Return the numbers of those that are ports; a participant has UDP ports of these numbers."""
+    """Return the numbers of those that are ports."""
     return sorted(int(name.removeprefix(_PORT)) for name in names if name.startswith(_PORT))
 
 

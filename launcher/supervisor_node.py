@@ -210,7 +210,7 @@ class Node:
     async def _see_through(self, process: RunningProcess) -> tuple[Exit, float]:
         clock = self._around.clock
         self._now = now = _Now(process, clock.now())
-        self._last = None
+        self._last = self.usage = None
         self._around.say(self.plan.name, Severity.INFO, say("started, pid {pid}", pid=process.pid))
         process.ended.add_done_callback(lambda _ended: self._nudge.set())
         ready = asyncio.create_task(self._become_ready())

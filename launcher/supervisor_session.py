@@ -159,6 +159,9 @@ class Session:
 
     def changed(self, node: Node) -> None:
         """Tell the clients, and those nodes that need this one."""
+        if node.state is NodeState.READY:
+            name = node.plan.name
+            self._launcher.note_segments({name: self._launcher.scan.look().get(name, ())})
         self._on_change(node.plan.name)
         for other in self.nodes.values():
             if node.plan.name in other.plan.needs:
