@@ -11,6 +11,7 @@ import pytest
 from launcher.process_exit import Exit
 from launcher.process_spawner import SpawnError
 from launcher.process_table import Process
+from launcher.process_usage import Usage
 from launcher.readiness import Condition, UnwatchableError
 from launcher.status import NodeState, Severity
 from launcher.supervisor_node import LATE_S, Node
@@ -119,6 +120,16 @@ async def test_a_node_without_a_condition_runs_at_once(session: FakeSession) -> 
     status = node.status()
     assert (status.state, status.pid, status.restarts) == (NodeState.RUNNING, 100, 0)
     assert node.serves
+
+
+async def test_what_the_process_before_cost_is_not_told_of_the_next(session: FakeSession) -> None:
+    node = await started(session)
+    node.usage = Usage(cpu_percent=99.0, memory_bytes=10**9)
+    assert node.status().cpu_percent == 99.0
+    node.restart()
+    await settle()
+    status = node.status()
+    assert (status.pid, status.cpu_percent, status.memory_bytes) == (110, None, None)
 
 
 async def test_a_node_is_ready_when_its_condition_holds(session: FakeSession) -> None:
