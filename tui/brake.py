@@ -37,13 +37,17 @@ class Brake:
         self._app.run_worker(self._stop(sent), group="brake")
 
     def release(self) -> None:
-        """Let the wheels turn again."""
+        """Let the wheels turn again, and nothing turn them by itself."""
+        self._end_publications()
         self._set(self.state.released(clock.now()))
         self._app.run_worker(self._reached(self._publish(engaged=False)), group="brake")
 
     def see(self, update: GraphUpdate) -> None:
         """Take in what others have done."""
-        self._set(self.state.seen(update))
+        state = self.state.seen(update)
+        if state.engaged != self.state.engaged:
+            self._end_publications()
+        self._set(state)
 
     def forget(self) -> None:
         """Start anew with another session."""
@@ -82,7 +86,10 @@ class Brake:
         return graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, message, latched=True)
 
     def _end_publications(self) -> None:
-        """Publish nothing at a rate any more: it would drive as soon as the stop is released."""
+        """Publish nothing at a rate any more: it would drive as soon as the stop is released.
+
+        That is why what was begun during the stop ends, too, whoever releases it.
+        """
         feed = self._app.feed
         if feed.graph is None:
             return

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from graph.data import Publication
+from graph.data import Publication, Sample
 from graph.outbox import PublishError
 from graph.yaml_form import check
 from tests.tui.app_runs import opened
-from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
 from tui.actions.publish import PublishAtRate
+from tui.emergency import TOPIC, TOPIC_TYPE
 from tui.screens.help import HelpScreen
 from tui.screens.publish import PublishDialog
 from tui.screens.topics import TopicsScreen
@@ -279,6 +280,34 @@ async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Des
     # Nothing was left to be ended.
     await desk.pilot.press("space")
     assert len(desk.app._notifications) == 1
+
+
+async def test_the_emergency_stop_of_another_ends_it_too(desk: Desk) -> None:
+    await desk.open("/ai_command")
+    await desk.pilot.press("ctrl+g")
+    await desk.until(lambda: desk.dialog.is_publishing)
+    stop = Sample(TOPIC, TOPIC_TYPE, NOW_S + 1, 0.0, 4, {"data": True})
+    assert desk.graph.update is not None
+    desk.graph.show(replace(desk.graph.update, samples={TOPIC: (stop,)}))
+    await desk.until(lambda: desk.graph.stopped_all == 1)
+    await desk.until(lambda: not desk.dialog.is_publishing)
+    # It is told once, however long the stop is there.
+    desk.graph.show(replace(desk.graph.update, samples={TOPIC: (stop,)}))
+    await desk.pilot.pause()
+    assert desk.graph.stopped_all == 1
+
+
+async def test_what_is_published_in_spite_of_a_stop_ends_with_its_release(desk: Desk) -> None:
+    """Or the robot would drive off at that moment."""
+    await desk.pilot.press("space")
+    await desk.open("/ai_command")
+    await desk.pilot.press("ctrl+g")
+    await desk.until(lambda: desk.dialog.is_publishing)
+    before = desk.graph.stopped_all
+    await desk.pilot.press("ctrl+r")
+    await desk.until(lambda: desk.graph.stopped_all == before + 1)
+    assert desk.graph.published[-1][:3] == (TOPIC, TOPIC_TYPE, {"data": False})
+    await desk.until(lambda: not desk.dialog.is_publishing)
 
 
 async def test_a_click_on_a_tab_leaves_the_dialog_where_it_is(desk: Desk) -> None:
