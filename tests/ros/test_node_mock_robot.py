@@ -73,17 +73,21 @@ def test_the_pico_answers_drives_and_stops_by_itself(folder: Path, peer: Peer) -
             now = hear(next(sequence), 0 if now.flags else 5) or now
             return now.left_rad_s > 4.5
 
+        # It is commanded until all of it was seen: 0.25 s later it stands.
         wait_until(turns, "turning")
-        wait_until(lambda: poses and poses[-1].pose.position.x > 0.01, "a robot that moves")
-        wait_until(lambda: motors and motors[-1].velocity[0] > 4.5, "motors that turn")
-        assert motors[-1].effort[1] == 5.0
-        assert motors[-1].position[0] == pytest.approx(poses[-1].pose.position.x / 0.0325, abs=1.0)
-    decoder = PicoDecoder()
+        wait_until(
+            lambda: turns() and poses and poses[-1].pose.position.x > 0.01, "a robot that moves"
+        )
+        wait_until(
+            lambda: turns() and motors[-1].velocity[0] > 4.5 and motors[-1].effort[1] == 5.0,
+            "motors that turn",
+        )
     wait_until(
         lambda: len(poses) > 3 and poses[-1].pose.position.x == poses[-3].pose.position.x,
         "standing after the silence",
     )
     wait_until(lambda: not any(motors[-1].velocity) and not any(motors[-1].effort), "motors off")
+    assert motors[-1].position[0] == pytest.approx(poses[-1].pose.position.x / 0.0325, abs=0.2)
     assert decoder.errors == 0
 
 
