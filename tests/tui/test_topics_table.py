@@ -212,6 +212,15 @@ async def test_the_first_topic_is_chosen_and_keys_choose_another() -> None:
         assert any(line.startswith("▶ /wheel_commands") for line in app.lines())
 
 
+async def test_a_topic_that_is_chosen_as_soon_as_the_rows_come_is_in_sight() -> None:
+    app = TableApp()
+    async with app.run_test(size=(80, 6)) as pilot:
+        app.table.show([topic(f"/n{n}", FLOAT, 1.0) for n in range(10)])
+        app.table.choose("/n9")
+        await pilot.pause()
+        assert any("/n9" in line for line in app.lines())
+
+
 async def test_the_chosen_topic_stays_chosen_when_rows_come_and_the_order_changes() -> None:
     app = TableApp()
     async with app.run_test(size=(80, 12)) as pilot:

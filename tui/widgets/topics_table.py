@@ -176,7 +176,8 @@ class TopicsTable(TopicsRows):
         top, rows = self.scroll_offset.y, max(1, self.size.height - HEADER)
         target = min(index, max(top, index - rows + 1))
         if target != top:
-            self.scroll_to(y=target, animate=False, immediate=True)
+            # Rows that have just come have no scroll bar yet, without which nothing would scroll.
+            self.scroll_to(y=target, animate=False, immediate=True, force=True)
 
     def _empty_words(self) -> tuple[str, str]:
         if self._rows and self._order.words:
