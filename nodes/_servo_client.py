@@ -153,7 +153,7 @@ class ServoClient:
             if isinstance(frame, Battery):
                 self._heard_s, self._skipped = time.monotonic(), self._decoder.skipped
                 if self._battery is None:
-                    self._say.info(_ANSWERS, every_s=1.0, volts=frame.millivolts / 1000)
+                    self._say.info(_ANSWERS, volts=frame.millivolts / 1000)
                 self._battery = frame
                 if frame.millivolts < 1000 * self._node.number("battery_low"):
                     self._say.warn(_LOW, every_s=_LOW_EVERY_S, volts=frame.millivolts / 1000)

@@ -12,14 +12,20 @@ T = TypeVar("T")
 
 
 def wait_until(
-    condition: Callable[[], T], what: str, within_s: float = 30.0, every_s: float = 0.02
+    condition: Callable[[], T],
+    what: str | Callable[[], str],
+    within_s: float = 30.0,
+    every_s: float = 0.02,
 ) -> T:
-    """Return the first truthy result of `condition`; fail naming `what` after `within_s`."""
+    """Return the first truthy result of `condition`; fail naming `what` after `within_s`.
+
+    `what` can be asked for when it comes to that, to tell how things stand then.
+    """
     deadline = time.monotonic() + within_s
     while True:
         result = condition()
         if result:
             return result
         if time.monotonic() > deadline:
-            pytest.fail(f"not within {within_s:g} s: {what}")
+            pytest.fail(f"not within {within_s:g} s: {what if isinstance(what, str) else what()}")
         time.sleep(every_s)

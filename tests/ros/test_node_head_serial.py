@@ -59,7 +59,7 @@ class Head:
         """Wait for words in its log that were not waited for before."""
         wait_until(
             lambda: all(word in self.process.output[self._read :] for word in words),
-            f"{words} in:\n{self.process.output}",
+            lambda: f"{words} in:\n{self.process.output}",
         )
         self._read = len(self.process.output)
 
@@ -166,6 +166,15 @@ def test_servos_go_where_the_head_is_asked_to_look_and_no_faster(
         assert head.process.wait() == 0
         assert "Traceback" not in head.process.output
     assert len(moves_of(bench)) == 3
+
+
+def test_each_connection_is_told_however_soon_it_follows(head: tuple[Head, ServoBench]) -> None:
+    node, bench = head
+    for _ in range(2):
+        bench.fail(UNPLUGGED)
+        node.wait_says("Lost")
+        bench.fail(FINE)
+        node.wait_answering()
 
 
 def test_a_cable_pulled_while_the_head_moves_is_no_arrival(head: tuple[Head, ServoBench]) -> None:
