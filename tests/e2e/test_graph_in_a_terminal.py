@@ -64,7 +64,8 @@ def test_a_map_is_drawn_a_parameter_refused_and_a_node_that_hangs_is_told(deck: 
         at_the_node(terminal, "safety")
         terminal.wait_for("no answer for")
         terminal.press("1")
-        terminal.wait_for("Sonar", within_s=3.0)
+        # The question waits for 5 s: meanwhile keys are obeyed.
+        terminal.wait_for("Sonar", within_s=4.0)
         terminal.press("5")
         terminal.wait_for("could not be read")
     finally:

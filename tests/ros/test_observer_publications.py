@@ -69,7 +69,7 @@ def test_decks_own_echo_is_no_listener(watcher: Watcher, peer: Peer, echo_first:
     number = start(watcher, "/out", 50.0)
     watcher.observer.watch(["/out"])
     wait_until(lambda: watcher.of("/out"), "the echo")
-    wait_until(lambda: (found := row(watcher, number)) and found.subscribers == 1, "the peer", 5.0)
+    wait_until(lambda: (found := row(watcher, number)) and found.subscribers == 1, "the peer")
 
 
 def test_all_are_stopped_even_one_that_has_not_begun(watcher: Watcher, peer: Peer) -> None:
@@ -97,7 +97,7 @@ def test_several_at_once_hold_each_their_own_rate(watcher: Watcher, peer: Peer) 
 
 def test_the_first_message_of_a_slow_one_goes_out_at_once(watcher: Watcher) -> None:
     number = start(watcher, "/out", 0.1)
-    wait_until(lambda: (found := row(watcher, number)) and found.sent == 1, "one sent", 5.0)
+    wait_until(lambda: (found := row(watcher, number)) and found.sent == 1, "one sent", 9.0)
 
 
 def test_it_ends_with_the_observer(ros_domain: int, peer: Peer) -> None:

@@ -19,7 +19,7 @@ import tui.screens
 import tui.widgets
 from tui.widgets.working import Working
 
-TIMEOUT_S = 5.0
+TIMEOUT_S = 20.0
 
 
 class Lingering(Static):
