@@ -17,7 +17,7 @@ from launcher.process_table import read_process
 if TYPE_CHECKING:
     import asyncio
     import signal
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from launcher.logs_book import LogBook
     from launcher.process_exit import Exit, Reaper
@@ -101,12 +101,9 @@ class ProcessLauncher:
         self._segments: dict[str, set[str]] = {}
         self._burnt = BurntPorts()
 
-    def note_segments(self, members: Mapping[str, Sequence[Process]]) -> None:
-        """Note which shared memory the nodes hold: of a killed one nobody could tell."""
-        for name, processes in members.items():
-            held = self._segments.setdefault(name, set())
-            for process in processes:
-                held |= held_segments(process.pid)
+    def note_segments(self, name: str, pids: Iterable[int]) -> None:
+        """Note which shared memory a node's processes hold: of a killed one nobody could tell."""
+        self._segments.setdefault(name, set()).update(*map(held_segments, pids))
 
     def sweep_segments(self, name: str) -> None:
         """Remove the shared memory that a node has left behind, and let nobody take its place."""

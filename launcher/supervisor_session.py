@@ -120,7 +120,8 @@ class Session:
             if not any(node.state.alive for node in self.nodes.values()):
                 continue
             members = self._launcher.scan.look(0.0)
-            self._launcher.note_segments(members)
+            for name, processes in members.items():
+                self._launcher.note_segments(name, (process.pid for process in processes))
             usages = self._meter.measure(members, self.clock.now())
             for name, node in self.nodes.items():
                 if node.state.alive:
@@ -160,8 +161,9 @@ class Session:
     def changed(self, node: Node) -> None:
         """Tell the clients, and those nodes that need this one."""
         if node.state is NodeState.READY:
-            name = node.plan.name
-            self._launcher.note_segments({name: self._launcher.scan.look().get(name, ())})
+            # It may be killed before it is measured.
+            pid, _started = self.processes[node.plan.name]
+            self._launcher.note_segments(node.plan.name, (pid,))
         self._on_change(node.plan.name)
         for other in self.nodes.values():
             if node.plan.name in other.plan.needs:
