@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from array import array
+from operator import sub
+from statistics import median
 
 import numpy as np
 import pytest
@@ -44,9 +46,9 @@ def test_the_camera_keeps_its_ten_pictures_a_second(peer: Peer, ros_domain: int)
     with NodeProcess("nodes.mock_camera", ros_domain):
         pictures = peer.hear(CAMERA, Image)
         wait_until(lambda: len(pictures) >= 31, "31 pictures")
-    first, last = pictures[0].header.stamp, pictures[30].header.stamp
-    seconds = last.sec - first.sec + (last.nanosec - first.nanosec) / 1e9
-    assert seconds == pytest.approx(3.0, rel=0.1)
+    stamps = [one.header.stamp.sec + one.header.stamp.nanosec / 1e9 for one in pictures[:31]]
+    # The usual gap: one may be long, where the machine was held up.
+    assert median(map(sub, stamps[1:], stamps)) == pytest.approx(0.1, rel=0.1)
 
 
 def picture(encoding: str = "bgr8", **changes: int) -> Image:
