@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from collections.abc import Callable
-from typing import TypeVar
+from typing import NoReturn, TypeVar
 
 import pytest
 
@@ -27,5 +28,26 @@ def wait_until(
         if result:
             return result
         if time.monotonic() > deadline:
-            pytest.fail(f"not within {within_s:g} s: {what if isinstance(what, str) else what()}")
+            _overdue(what, within_s)
         time.sleep(every_s)
+
+
+async def until(
+    condition: Callable[[], T],
+    what: str | Callable[[], str],
+    within_s: float = 30.0,
+    every_s: float = 0.02,
+) -> T:
+    """As `wait_until`, while other tasks go on."""
+    deadline = time.monotonic() + within_s
+    while True:
+        result = condition()
+        if result:
+            return result
+        if time.monotonic() > deadline:
+            _overdue(what, within_s)
+        await asyncio.sleep(every_s)
+
+
+def _overdue(what: str | Callable[[], str], within_s: float) -> NoReturn:
+    pytest.fail(f"not within {within_s:g} s: {what if isinstance(what, str) else what()}")

@@ -17,6 +17,7 @@ import pytest
 from launcher.client import SupervisorClient, launch
 from launcher.process_table import read_process
 from launcher.status import NodeState, NodeStatus
+from tests.waiting import until
 
 Launch = Callable[..., Awaitable[SupervisorClient]]
 
@@ -53,18 +54,6 @@ async def start(tmp_path: Path, ros_domain: int) -> AsyncIterator[Launch]:
     yield begin
     for client in clients:
         await client.shutdown(now=True)
-
-
-async def until(condition: Callable[[], Any], what: str, within_s: float = NODE_DEADLINE_S) -> Any:
-    """Return the first truthy result of `condition`."""
-    deadline = time.monotonic() + within_s
-    while True:
-        result = condition()
-        if result:
-            return result
-        if time.monotonic() > deadline:
-            pytest.fail(f"not within {within_s:g} s: {what}")
-        await asyncio.sleep(0.02)
 
 
 async def until_state(

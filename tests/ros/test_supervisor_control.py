@@ -29,10 +29,10 @@ from tests.ros.supervised import (
     SLEEPER,
     Launch,
     running_pid,
-    until,
     until_state,
     write_profile,
 )
+from tests.waiting import until
 
 if TYPE_CHECKING:
     from pathlib import Path

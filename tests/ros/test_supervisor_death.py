@@ -26,10 +26,10 @@ from tests.ros.supervised import (
     running_pid,
     said,
     script,
-    until,
     until_state,
     write_profile,
 )
+from tests.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

@@ -10,7 +10,14 @@ from launcher.events import LogEvent
 from launcher.logs_lines import MAX_LINE_BYTES
 from launcher.process_usage import proportional_memory
 from launcher.status import NodeState, Severity
-from tests.ros.supervised import Launch, running_pid, said, script, until, until_state
+from tests.ros.supervised import (
+    Launch,
+    running_pid,
+    said,
+    script,
+    until_state,
+)
+from tests.waiting import until
 
 if TYPE_CHECKING:
     from launcher.client import SupervisorClient

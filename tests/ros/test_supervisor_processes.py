@@ -22,9 +22,9 @@ from tests.ros.supervised import (
     running_pid,
     said,
     script,
-    until,
     until_state,
 )
+from tests.waiting import until
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -30,9 +30,9 @@ from tests.ros.supervised import (
     kill,
     running_pid,
     said,
-    until,
     until_state,
 )
+from tests.waiting import until
 
 if TYPE_CHECKING:
     from launcher.client import SupervisorClient

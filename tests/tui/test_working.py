@@ -7,7 +7,6 @@ import importlib
 import inspect
 import pkgutil
 import threading
-from collections.abc import Callable
 from types import FunctionType
 
 from textual.app import App, ComposeResult
@@ -17,6 +16,7 @@ from textual.widgets import Static
 
 import tui.screens
 import tui.widgets
+from tests.waiting import until
 from tui.widgets.working import Working
 
 TIMEOUT_S = 20.0
@@ -64,26 +64,17 @@ class OneLoader(App[None]):
         yield Loader(self.goes_on)
 
 
-async def until(condition: Callable[[], object]) -> None:
-    """Wait for it."""
-    for _ in range(int(TIMEOUT_S / 0.01)):
-        if condition():
-            return
-        await asyncio.sleep(0.01)
-    raise AssertionError("not within the time")
-
-
 async def test_what_is_loaded_while_its_widget_goes_ends_nothing() -> None:
     app = OneLoader()
     async with app.run_test():
         loader = app.query_one(Loader)
         worker = next(iter(app.workers))
         loader.remove()
-        await until(lambda: not loader.query("#words"))
+        await until(lambda: not loader.query("#words"), "the child gone")
         loader.loaded.set()
-        await until(lambda: worker.is_finished)
+        await until(lambda: worker.is_finished, "the end of its work")
         app.goes_on.set()
-        await until(lambda: not loader.is_attached)
+        await until(lambda: not loader.is_attached, "the widget gone")
         assert worker.error is None or worker.is_cancelled
 
 
