@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 
 from tests.e2e import marked
 from tests.e2e.conftest import Deck
+from tests.e2e.terminal import Terminal
 from tests.waiting import wait_until
 
 SCREENS = {
@@ -25,10 +27,7 @@ def test_enter_starts_lesson_nine_space_holds_it_and_q_leaves_nothing_running(de
     terminal.press("enter")
     terminal.wait_for("8/8")
     assert len(marked.nodes(deck.mark)) == 8
-    # Pressed before anybody is known to listen, it stops the nodes as well.
-    terminal.press("f3", "/")
-    terminal.type("/emergency_stop\r")
-    terminal.wait_for("1 of ")
+    wait_for_the_gate(terminal)
     terminal.press("f2", "space")
     terminal.wait_for("EMERGENCY STOP: nothing moves")
     terminal.wait_until(lambda text: "EMERGENCY STOP" in title(text), "the stop in the title")
@@ -43,9 +42,7 @@ def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -
     assert deck.open("up", "02-sonar-safety", "--lang", "en").wait_exit() == 0
     first = deck.open("attach", "--lang", "en")
     first.wait_for("2/2")
-    first.press("f3", "/")
-    first.type("/emergency_stop\r")
-    first.wait_for("1 of ")
+    wait_for_the_gate(first)
     first.press("ctrl+x", "f2")
     first.wait_for("EMERGENCY STOP: nothing moves")
     first.press("q")
@@ -58,6 +55,14 @@ def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -
     second.press("q")
     assert second.wait_exit() == 0
     assert deck.open("down").wait_exit() == 0
+
+
+def wait_for_the_gate(terminal: Terminal) -> None:
+    """Wait in Topics until somebody is known to listen: before that a stop ends the nodes, too."""
+    terminal.press("f3", "/")
+    terminal.type("/emergency_stop\r")
+    row = re.compile(r"▶ /emergency_stop +std_msgs/Bool +\d+ +[1-9]")
+    terminal.wait_until(lambda text: row.search(text) is not None, "a subscriber of the stop")
 
 
 def title(screen: str) -> str:
