@@ -19,6 +19,9 @@ settings.register_profile(
 )
 settings.load_profile("deck")
 
+# As `deck` has it: what numpy's idle threads spin away at each start is some other test's time.
+os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
+
 # Whoever runs this by `&` in a script ignores it, and so would all that is started here.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 

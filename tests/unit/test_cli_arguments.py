@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import subprocess
 import sys
@@ -117,6 +118,20 @@ def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
         tmp_path,
     )
     assert not modules & {"textual", "rclpy", "pydantic", "yaml", "numpy", "asyncio"}
+
+
+@pytest.mark.parametrize(("chosen", "found"), [(None, "4"), ("20", "20")])
+def test_threads_that_idle_take_no_core_from_what_starts_unless_somebody_wants_them_to(
+    chosen: str | None, found: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = "OPENBLAS_THREAD_TIMEOUT"
+    monkeypatch.setenv(name, "")
+    if chosen is None:
+        monkeypatch.delenv(name)
+    else:
+        monkeypatch.setenv(name, chosen)
+    assert main(["--version"]) == 0
+    assert os.environ[name] == found
 
 
 @pytest.mark.parametrize(
