@@ -1,17 +1,20 @@
 """`python -m bench.graph_watch NAME...`: says when all these nodes are in the ROS graph.
 
-Prints `ready`, then the monotonic time at which it has seen them all, and ends with its stdin.
+Prints `ready`, then the monotonic time at which it has seen them all, and ends with its stdin. It
+ends with a word on who is missing if they do not come.
 """
 
 from __future__ import annotations
 
 import os
+import select
 import sys
 import time
 
 import rclpy
 
 PERIOD_S = 0.005
+WITHIN_S = 60.0
 
 
 def main() -> None:
@@ -20,8 +23,12 @@ def main() -> None:
     rclpy.init()
     node = rclpy.create_node(f"_watch_{os.getpid()}", enable_rosout=False)
     print("ready", flush=True)
-    while not wanted <= {name for name, _namespace in node.get_node_names_and_namespaces()}:
-        time.sleep(PERIOD_S)
+    deadline_s = time.monotonic() + WITHIN_S
+    while missing := wanted - {name for name, _ in node.get_node_names_and_namespaces()}:
+        if select.select([sys.stdin], [], [], PERIOD_S)[0]:
+            return  # Nobody waits for it any more.
+        if time.monotonic() > deadline_s:
+            sys.exit(f"not in the graph within {WITHIN_S:g} s: {', '.join(sorted(missing))}")
     print(time.monotonic(), flush=True)
     sys.stdin.read()
     node.destroy_node()

@@ -169,7 +169,10 @@ def measure(kind: str, profile: Profile) -> Figures:
     with watch(list(profile.nodes)) as watcher:
         assert watcher.stdout is not None
         with STARTERS[kind](profile) as started:
-            ready_s = float(watcher.stdout.readline()) - started.began_s
+            seen = watcher.stdout.readline()
+            if not seen:
+                sys.exit(f"{kind}: not all nodes came")
+            ready_s = float(seen) - started.began_s
             used_s = cpu_s(descendants(started.pid)) - started.used_s
             time.sleep(SETTLE_S)
             everything = descendants(started.pid)
