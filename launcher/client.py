@@ -9,6 +9,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from launcher.client_inbox import Inbox
+from launcher.client_past import newer
 from launcher.client_start import StartingSupervisor
 from launcher.control_protocol import (
     MAX_MESSAGE_BYTES,
@@ -23,6 +24,7 @@ from launcher.control_protocol import (
 )
 from launcher.control_socket import connect
 from launcher.errors import ConnectionLostError, ProtocolError, UnknownNodeError
+from launcher.events import LogEvent
 from launcher.rundir import log_dir, run_dir
 from launcher.running import find_running
 from launcher.serial_ports import serial_ports
@@ -166,13 +168,25 @@ class SupervisorClient:
         self._hear({"event": "strays", "strays": hello["strays"]})
         self._listening = asyncio.create_task(self._listen())
 
-    def events(self) -> AsyncIterator[Event]:
+    async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
         """Yield what happens, `ClosedEvent` last; for one listener.
 
-        It begins with the statuses as they were when the connection was made. News that nobody
-        takes are merged: there is never more than one event of a kind to catch up with.
+        It begins with the log of before, its newest `past` lines, and the statuses as they were
+        when the connection was made. News that nobody takes are merged: there is never more than
+        one event of a kind to catch up with.
         """
-        return self._inbox.events()
+        known: dict[str, int] = {}
+        if past:
+            with contextlib.suppress(ConnectionLostError):
+                lines = await self.history(None, past)
+                known = {line.node: line.seq for line in lines}
+                yield LogEvent(tuple(lines))
+        async for event in self._inbox.events():
+            if isinstance(event, LogEvent):
+                event = newer(event, known)  # noqa: PLW2901
+                if not event.lines and not event.skipped:
+                    continue
+            yield event
 
     async def start(self, *names: str) -> None:
         """Start these nodes with all that they need, all if none is named.

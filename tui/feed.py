@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from textual.message import Message
 
 from tui.emergency import FOLLOWED
-from tui.history import LogHistory
+from tui.history import KEPT_LINES, LogHistory
 from tui.inbox import GraphInbox
 from tui.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
 from tui.rosout import TOPIC as ROSOUT
@@ -137,7 +137,7 @@ class Feed:
         link = self.link
         if link is None:
             return
-        async for event in link.events():
+        async for event in link.events(past=KEPT_LINES):
             if link is not self.link:
                 return
             await self._on_event(event)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
     from graph.held import Holding
     from launcher.events import Event
-    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from launcher.status import NodeStatus, SessionInfo, Stray
     from tui.orders import Lesson, Order
 
 
@@ -34,8 +34,8 @@ class SessionLink(Protocol):
     def strays(self) -> tuple[Stray, ...]:
         """Processes that an earlier run left behind."""
 
-    def events(self) -> AsyncIterator[Event]:
-        """Yield what happens until the session has ended."""
+    def events(self, *, past: int = 0) -> AsyncIterator[Event]:
+        """Yield the newest `past` lines of before, then what happens until the session ends."""
 
     async def start(self, *names: str) -> None:
         """Start these nodes, all if none is named."""
@@ -45,9 +45,6 @@ class SessionLink(Protocol):
 
     async def restart(self, *names: str) -> None:
         """Stop and start these nodes, all if none is named."""
-
-    async def history(self, node: str | None, limit: int) -> list[LogLine]:
-        """Return the newest lines, oldest first, of one node or of all."""
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End what an earlier run left behind."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from launcher.events import Event
-    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from launcher.status import NodeStatus, SessionInfo, Stray
 
 WATCH = "watch"
 """The name of the session, where a profile's would stand."""
@@ -23,8 +23,9 @@ class WatchLink:
         self.strays: tuple[Stray, ...] = ()
         self._closed = asyncio.Event()
 
-    async def events(self) -> AsyncIterator[Event]:
-        """Tell of nothing until it is let go of."""
+    async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
+        """Tell of nothing until it is let go of; nothing was written down before."""
+        del past
         nothing: tuple[Event, ...] = ()
         for event in nothing:
             yield event
@@ -38,11 +39,6 @@ class WatchLink:
 
     async def restart(self, *names: str) -> None:
         """Nothing to restart."""
-
-    async def history(self, node: str | None, limit: int) -> list[LogLine]:
-        """Nothing was written down before."""
-        del node, limit
-        return []
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """Nothing was left behind."""

@@ -49,6 +49,8 @@ def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -
     assert first.wait_exit() == 0
     second = deck.open("attach", "--lang", "en")
     second.wait_for("EMERGENCY STOP · ^r releases")
+    # What was said before it came.
+    second.wait_for("EMERGENCY STOP: nothing moves")
     second.press("ctrl+r")
     second.wait_for("The emergency stop is released")
     second.wait_until(lambda text: "STOP ·" not in title(text), "the title without the stop")

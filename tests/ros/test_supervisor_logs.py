@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from launcher.client import attach
 from launcher.events import LogEvent
 from launcher.logs_lines import MAX_LINE_BYTES
 from launcher.process_usage import proportional_memory
@@ -43,6 +44,13 @@ for i in range(25):
     time.sleep(0.1)
 print("steady end", flush=True)
 time.sleep(1000)
+"""
+
+COUNTING = """
+import itertools, time
+for number in itertools.count():
+    print(number)
+    time.sleep(0.01)
 """
 
 
@@ -116,6 +124,23 @@ async def test_a_client_that_comes_later_reads_what_was(start: Launch) -> None:
     assert len(await client.history("node", 2)) == 2
     everything = await client.history(None, 100)
     assert [line.time_s for line in everything] == sorted(line.time_s for line in everything)
+
+
+async def test_who_attaches_hears_the_log_from_its_past_on_each_line_once(start: Launch) -> None:
+    client = await start({"node": {"exec": script(COUNTING)}})
+    await said(client, "node", "20")
+    late = await attach()
+    await said(client, "node", "60")
+    lines = []
+    async for event in late.events(past=1000):
+        if isinstance(event, LogEvent):
+            assert not event.skipped
+            lines += [line for line in event.lines if line.node == "node"]
+            if lines[-1].seq > 150:
+                break
+    await late.aclose()
+    assert [line.seq for line in lines] == list(range(1, len(lines) + 1))
+    assert {line.text for line in lines} >= {"0", "20", "60"}
 
 
 async def test_hostile_text_is_text(start: Launch) -> None:

@@ -70,10 +70,9 @@ class RecordedSession:
         self.hold_shutdown = False
         """Set: the nodes do not stop until they are made to."""
         self._killed = asyncio.Event()
-        self._lines = list(lines)
         self._queue: asyncio.Queue[Event] = asyncio.Queue()
-        if self._lines:
-            self._queue.put_nowait(LogEvent(tuple(self._lines)))
+        if before := tuple(lines):
+            self._queue.put_nowait(LogEvent(before))
 
     def say(self, event: Event) -> None:
         """Let the session say this."""
@@ -81,16 +80,15 @@ class RecordedSession:
             self.nodes.update({node.name: node for node in event.nodes})
         if isinstance(event, StraysEvent):
             self.strays = event.strays
-        if isinstance(event, LogEvent):
-            self._lines += event.lines
         self._queue.put_nowait(event)
 
     def set_state(self, name: str, state: NodeState, **more: Any) -> None:
         """Change one node."""
         self.say(StatusEvent((replace(self.nodes[name], state=state, **more),)))
 
-    async def events(self) -> AsyncIterator[Event]:
-        """Yield what was said until it is closed."""
+    async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
+        """Yield what was said until it is closed; `LINES` are what was said before."""
+        del past
         while True:
             event = await self._queue.get()
             yield event
@@ -105,9 +103,6 @@ class RecordedSession:
 
     async def restart(self, *names: str) -> None:
         self.asked.append(("restart", *names))
-
-    async def history(self, node: str | None, limit: int) -> list[LogLine]:
-        return [one for one in self._lines if node in {None, one.node}][-limit:]
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         self.asked.append(("stop_strays", *(stray.node for stray in strays)))

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 INTERRUPTED = 130
+PAST_LINES = 1000
+"""Of what the nodes have said by the time that they can be heard."""
 
 
 def run_command(options: Namespace) -> int:
@@ -113,7 +115,7 @@ class Run:
             return INTERRUPTED
         self.report.session(client.session)
         reason = ""
-        async for event in client.events():
+        async for event in client.events(past=PAST_LINES):
             if isinstance(event, ClosedEvent):
                 reason = event.reason
             else:
