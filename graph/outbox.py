@@ -49,8 +49,10 @@ class _Line:
     cls: type[Any]
     qos: Qos
     expected: int
-    """Subscribers that the graph knew when it was made."""
+    """Subscribers that the graph knew when it was made, Deck's own among them."""
     patience_ends_s: float
+    onlookers: int = 0
+    """Deck's own subscribers, who do not count as somebody who heard it."""
     waiting: deque[tuple[Draft | None, Future[int]]] = field(default_factory=deque)
     """A message, None if it has gone out, and who wants to know how many it went to."""
     matched_since_s: float | None = None
@@ -67,7 +69,7 @@ class _Line:
         while self.waiting and (self.is_settled or (all_matched and self.waiting[0][0] is None)):
             message, future = self.waiting.popleft()
             if message is None or self.publish(message, future):
-                future.set_result(matched)
+                future.set_result(max(0, matched - self.onlookers))
 
     def publish(self, message: Draft, future: Future[int]) -> bool:
         """Publish; tell whether that went well, and the future if it did not."""
@@ -149,17 +151,17 @@ class Outbox:
     def _line(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> _Line:
         refuse_other_type(topic, type_name, ends)
         subscribers = ends.subscribers if ends else ()
+        onlookers = ends.onlookers if ends else 0
         qos = Qos(RELIABLE, TRANSIENT_LOCAL) if latched else to_be_heard(subscribers)
         key = (topic, type_name, latched)
         line = self._lines.get(key)
-        if line and line.qos == qos:
-            return line
-        if line and line.waiting:
-            return line
-        if line:
-            self._node.destroy_publisher(line.publisher)
-        self._lines[key] = self._open(topic, type_name, qos, len(subscribers))
-        return self._lines[key]
+        if line is None or (line.qos != qos and not line.waiting):
+            if line is not None:
+                self._node.destroy_publisher(line.publisher)
+            line = self._open(topic, type_name, qos, len(subscribers) + onlookers)
+            self._lines[key] = line
+        line.onlookers = onlookers
+        return line
 
     def _open(self, topic: str, type_name: str, qos: Qos, expected: int) -> _Line:
         cls = load_message(type_name)

@@ -45,6 +45,27 @@ def test_the_very_first_message_reaches_its_subscriber(peer: Peer, watcher: Watc
     wait_until(lambda: peer.heard.get("/first") == ["вперед"], "the message")
 
 
+def test_who_hears_it_is_counted_without_the_echo(peer: Peer, watcher: Watcher) -> None:
+    peer.listen("/echoed", type_name=STRING)
+    peer.advertise("/echoed/unheard", type_name=STRING)
+    watcher.observer.watch({"/echoed", "/echoed/unheard"})
+    try:
+        known(watcher, "/echoed")
+        watcher.wait_for("/echoed/unheard", lambda row: row.publishers, "has a publisher")
+        counts = {"/echoed": -1, "/echoed/unheard": -1}
+
+        def counted() -> bool:
+            for topic in counts:
+                future = watcher.observer.publish(topic, STRING, {"data": "x"})
+                counts[topic] = future.result(10)
+            return counts == {"/echoed": 1, "/echoed/unheard": 0}
+
+        # Until the look at the graph after the echo was opened.
+        wait_until(counted, lambda: f"counts {counts}")
+    finally:
+        watcher.observer.watch(())
+
+
 def test_messages_keep_their_order(peer: Peer, watcher: Watcher) -> None:
     peer.listen("/order", type_name=STRING, depth=100)
     known(watcher, "/order")
