@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,10 +10,11 @@ from textual.widgets import Input, Static
 
 from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.snapshots import Look, settle
+from tests.waiting import until
 from tui import typed
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable
+    from collections.abc import AsyncIterator
 
     from textual.events import Event
 
@@ -40,33 +40,28 @@ def type_at_once(app: DeckApp, *keys: str, then: Event | None = None) -> None:
         app.post_message(then)
 
 
-async def until(condition: Callable[[], bool]) -> None:
-    for _round in range(2000):
-        if condition():
-            return
-        await asyncio.sleep(0.01)
-    pytest.fail("not within 20 s")
+async def until_filter_is(app: DeckApp, words: str) -> None:
+    def found() -> list[str]:
+        return [filter_.value for filter_ in app.screen.query(Input)]
 
-
-def filter_is(app: DeckApp, words: str) -> Callable[[], bool]:
-    return lambda: [found.value for found in app.screen.query(Input)] == [words]
+    await until(lambda: found() == [words], lambda: f"{words!r} in the filter, but {found()}")
 
 
 async def test_what_is_typed_after_a_key_that_moves_the_cursor_is_not_lost(app: DeckApp) -> None:
     type_at_once(app, "f3", "slash", *"drive")
-    await until(filter_is(app, "drive"))
+    await until_filter_is(app, "drive")
     type_at_once(app, "enter", "slash", *"_s")
-    await until(filter_is(app, "drive_s"))
+    await until_filter_is(app, "drive_s")
     type_at_once(app, "escape", "slash", then=Paste("sonar"))
-    await until(filter_is(app, "sonar"))
+    await until_filter_is(app, "sonar")
     type_at_once(app, "escape", "5", "slash", *"brain")
-    await until(filter_is(app, "brain"))
+    await until_filter_is(app, "brain")
 
 
 async def test_the_stop_waits_for_no_key(app: DeckApp) -> None:
     type_at_once(app, "f3", "slash", "a", "space", "b")
-    await until(lambda: app.brake.state.engaged)
-    await until(filter_is(app, "ab"))
+    await until(lambda: app.brake.state.engaged, "the stop")
+    await until_filter_is(app, "ab")
 
 
 async def test_a_key_that_never_arrives_holds_up_the_others_for_a_moment_only(
@@ -76,4 +71,4 @@ async def test_a_key_that_never_arrives_holds_up_the_others_for_a_moment_only(
         patched.setattr(typed, "PATIENCE_S", 0.05)
         app._typed.follow(Static())
     type_at_once(app, "f3", "slash", *"drive")
-    await until(filter_is(app, "drive"))
+    await until_filter_is(app, "drive")
