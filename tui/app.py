@@ -145,6 +145,8 @@ class DeckApp(App[int], Acting):
                 self.uninstall_screen(old)
                 if old.is_running:
                     await old.remove()
+        # Who watches the theme, as each TextArea does, is held until it changes, gone or not.
+        self.mutate_reactive(DeckApp.theme)
 
     def show_help(self) -> None:
         """Explain the screen in front."""

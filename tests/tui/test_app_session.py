@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 from dataclasses import replace
+from weakref import ref
 
 import pytest
 
@@ -60,6 +62,21 @@ def test_updates_that_wait_are_merged_and_no_sample_is_lost() -> None:
     assert [sample.value["data"] for sample in taken.samples["/a"]] == [0, 1, 2, 3, 4]
     assert wakes == [1]
     assert inbox.take() is None
+
+
+async def test_the_screens_of_a_session_that_is_closed_are_not_kept_in_memory() -> None:
+    async with opened() as (app, pilot):
+        kept = []
+        for key in ("f3", "f4", "f5", "5", "6", "7", "f2"):
+            await pilot.press(key)
+            await settle(pilot)
+            kept += [ref(app.screen), *map(ref, app.screen.walk_children())]
+        app.sessions.close()
+        await app.workers.wait_for_complete([w for w in app.workers if w.group == "leaving"])
+        await settle(pilot)
+        assert isinstance(app.screen, PickerScreen)
+        gc.collect()
+        assert [repr(widget()) for widget in kept if widget() is not None] == []
 
 
 async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> None:
