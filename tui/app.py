@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.events import Key, Paste
+from textual.widget import Widget
 
 from tui.actions import REGISTRY, Acting, Action, bindings, bound
 from tui.actions.app import APP_ACTIONS, EmergencyStop
@@ -144,6 +145,9 @@ class DeckApp(App[int], Acting):
                 old = self.get_screen(name)
                 self.uninstall_screen(old)
                 if old.is_running:
+                    # What they have drawn would be held, by a cache of Textual's own.
+                    for widget in (old, *old.walk_children(Widget)):
+                        widget.refresh()
                     await old.remove()
         # Who watches the theme, as each TextArea does, is held until it changes, gone or not.
         self.mutate_reactive(DeckApp.theme)
