@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from launcher import client
 from launcher.catalog import find_profile
+from launcher.client_past import newer
 from launcher.errors import (
     AlreadyRunningError,
     ConnectionLostError,
@@ -156,10 +157,11 @@ async def _logs(options: Namespace) -> int:
             return 0
         async for event in link.events():
             if isinstance(event, LogEvent):
-                for line in event.lines:
-                    if options.node in (None, line.node) and line.seq > last.get(line.node, 0):
+                news = newer(event, last)
+                for line in news.lines:
+                    if options.node in (None, line.node):
                         report.log(line)
-                for node, count in event.skipped.items():
+                for node, count in news.skipped.items():
                     if options.node in (None, node):
                         report.skipped(node, count)
         return 0
