@@ -7,6 +7,7 @@ share their start.
 from __future__ import annotations
 
 import os
+import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,9 @@ RUN_MARK = "DECK_RUN_ID"
 """Environment variable that says which run of Deck a process belongs to."""
 NODE_MARK = "DECK_NODE"
 """Environment variable that says which node of that run it is, or descends from."""
+
+_EXEC_WITHIN_S = 0.1
+_EXEC_LOOK_EVERY_S = 0.0005
 
 
 @dataclass(frozen=True)
@@ -48,13 +52,11 @@ class Process:
 def read_process(pid: int) -> Process | None:
     """Return the process with this number, None if there is none."""
     try:
-        with open(f"/proc/{pid}/stat", "rb") as file:  # noqa: PTH123 - read for every process
-            stat = file.read()
+        stat = _read(pid, "stat")
     except (FileNotFoundError, ProcessLookupError):
         return None
-    # The name stands in brackets and may itself hold blanks and brackets.
     name = stat[stat.index(b"(") + 1 : stat.rindex(b")")]
-    fields = stat[stat.rindex(b")") + 2 :].split(None, 20)
+    fields = _stat_fields(stat)
     return Process(
         pid=pid,
         name=name.decode(errors="replace"),
@@ -67,6 +69,17 @@ def read_process(pid: int) -> Process | None:
     )
 
 
+def _read(pid: int, file_name: str) -> bytes:
+    with open(f"/proc/{pid}/{file_name}", "rb") as file:  # noqa: PTH123 - for every process
+        return file.read()
+
+
+def _stat_fields(stat: bytes) -> list[bytes]:
+    """Return the fields of /proc/PID/stat, proc(5), from the third on."""
+    # The name stands in brackets and may itself hold blanks and brackets.
+    return stat[stat.rindex(b")") + 2 :].split(None, 24)
+
+
 def processes() -> Iterator[Process]:
     """Yield every process that this user can see."""
     for entry in os.listdir("/proc"):  # noqa: PTH208 - Path objects cost more than the rest
@@ -77,11 +90,9 @@ def processes() -> Iterator[Process]:
 
 
 def read_marks(pid: int) -> Mapping[str, str] | None:
-    """Return Deck's variables in a process's environment; None if that may not be read."""
-    try:
-        with open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123
-            environ = file.read()
-    except OSError:
+    """Return Deck's variables in a process's environment; None if that cannot be read."""
+    environ = _environ(pid)
+    if environ is None:
         return None
     if b"DECK_" not in environ:
         return {}
@@ -91,6 +102,34 @@ def read_marks(pid: int) -> Mapping[str, str] | None:
         if name in _MARKS:
             found[name.decode()] = value.decode(errors="replace")
     return found
+
+
+def _environ(pid: int) -> bytes | None:
+    """Return a process's environment; None if it may not be read, or is not there yet.
+
+    In the midst of execve(2) there is none for a moment, which must not be taken for that of
+    somebody else: it is waited for.
+    """
+    deadline = time.monotonic() + _EXEC_WITHIN_S
+    try:
+        environ = _read(pid, "environ")
+        while not environ:
+            was_executed = _is_executed(pid)
+            environ = _read(pid, "environ")
+            if not was_executed:
+                break
+            if time.monotonic() > deadline:
+                return None
+            time.sleep(_EXEC_LOOK_EVERY_S)
+    except OSError:
+        return None
+    return environ
+
+
+def _is_executed(pid: int) -> bool:
+    """Whether a process is in the midst of execve(2): it has memory, and no code in it yet."""
+    fields = _stat_fields(_read(pid, "stat"))
+    return bool(int(fields[20])) and not int(fields[23])
 
 
 _MARKS = frozenset((RUN_MARK.encode(), NODE_MARK.encode(), OWN_RUN_DIR.encode()))
