@@ -12,6 +12,7 @@ import contextlib
 import fcntl
 import os
 import re
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 SHARED_MEMORY = Path("/dev/shm")
 _LOCK = re.compile(r"(fastrtps_(?:[0-9a-f]{16}|port\d+))_el")
 _PORT = "fastrtps_port"
+_ABANDONED_S = 10.0
+"""Age at which a lock that nobody holds is not just being taken."""
 
 
 def held_segments(pid: int) -> set[str]:
@@ -62,3 +65,29 @@ def _remove(segment: Path) -> bool:
     finally:
         os.close(descriptor)
     return True
+
+
+def sweep_abandoned(folder: Path = SHARED_MEMORY) -> list[str]:
+    """Remove the segments of all nodes that have been killed; return their names.
+
+    Ports stay: whoever still talks to a dead node must see none other at its port.
+    """
+    locks = (match for name in names(folder) if (match := _LOCK.fullmatch(name)))
+    segments = (match[1] for match in locks if not match[1].startswith(_PORT))
+    return sweep((name for name in segments if age_s(folder / f"{name}_el") > _ABANDONED_S), folder)
+
+
+def names(folder: Path) -> list[str]:
+    """Return the names of all that is in a folder, none if there is no such folder."""
+    try:
+        return [path.name for path in folder.iterdir()]
+    except OSError:
+        return []
+
+
+def age_s(path: Path) -> float:
+    """Return the time since something was written to a file, s; 0 if there is none."""
+    try:
+        return time.time() - path.lstat().st_mtime
+    except OSError:
+        return 0.0

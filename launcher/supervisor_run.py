@@ -17,6 +17,7 @@ from launcher.logs_book import DECK, LogBook
 from launcher.logs_files import LogFiles, prune_runs
 from launcher.process_exit import Reaper
 from launcher.process_members import Members, Orphans
+from launcher.process_shm import sweep_abandoned
 from launcher.process_spawner import Spawner
 from launcher.process_stop import QUICK, Stop
 from launcher.status import SessionInfo, Severity, Stray
@@ -275,6 +276,7 @@ class Supervisor:
     async def _look_for_strays(self) -> None:
         self._find_strays()
         await asyncio.to_thread(self._prune_logs)
+        await asyncio.to_thread(sweep_abandoned)
         if self.strays:
             await asyncio.sleep(STRAYS_AGAIN_S)
             self._find_strays()

@@ -214,6 +214,12 @@ def test_shared_memory() -> None:
     stale = judge_shared_memory(SharedMemoryFacts(stale=3, stale_bytes=1_500_000))
     assert bad(stale) == [("shm.stale", "warn")]
     assert "3 segments" in text(stale, "shm.stale")
+    half = judge_shared_memory(SharedMemoryFacts(unfinished=("/dev/shm/fastrtps_port7001",)))
+    assert bad(half) == [("shm.unfinished", "warn")]
+    assert "/dev/shm/fastrtps_port7001: half made" in text(half, "shm.unfinished")
+    foreign = judge_shared_memory(SharedMemoryFacts(foreign=("/dev/shm/fastrtps_port7001",)))
+    assert bad(foreign) == [("shm.foreign", "fail")]
+    assert foreign[-1].mend == "sudo rm /dev/shm/fastrtps_port7001"
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tui.doctor.finding import ok, warn
+from launcher.process_shm_unfinished import unfinished
+from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _, ngettext
 
 if TYPE_CHECKING:
@@ -28,6 +29,10 @@ class SharedMemoryFacts:
     stale: int = 0
     """Segments of Fast DDS that are this user's and that no process has mapped."""
     stale_bytes: int = 0
+    unfinished: tuple[str, ...] = ()
+    """Paths of files that hold up every node, see `launcher.process_shm_unfinished`."""
+    foreign: tuple[str, ...] = ()
+    """Those of them that are another user's."""
 
 
 def look() -> SharedMemoryFacts:
@@ -41,7 +46,11 @@ def look() -> SharedMemoryFacts:
         for path in FOLDER.glob("fastrtps_*")
         if not path.name.endswith(("_el", "_sl")) and str(path) not in held and _is_mine(path)
     ]
-    return SharedMemoryFacts(True, status.f_bavail * status.f_frsize, len(stale), sum(stale))
+    free = status.f_bavail * status.f_frsize
+    halves = list(unfinished(FOLDER))
+    mine = tuple(str(path) for path in halves if _is_mine(path) or os.geteuid() == 0)
+    foreign = tuple(str(path) for path in halves if str(path) not in mine)
+    return SharedMemoryFacts(True, free, len(stale), sum(stale), mine, foreign)
 
 
 def judge(facts: SharedMemoryFacts) -> list[Finding]:
@@ -50,6 +59,14 @@ def judge(facts: SharedMemoryFacts) -> list[Finding]:
         text = _("there is no /dev/shm: nodes talk through the network stack, which is slower")
         return [warn("shm", text, _("mount it; in a container: --ipc=host"))]
     found = [_room(facts)]
+    if facts.unfinished:
+        text = _half_made(facts.unfinished)
+        mend = _("Deck removes it with the next start; or: rm {paths}")
+        paths = " ".join(facts.unfinished)
+        found.append(warn("shm.unfinished", text, mend.format(paths=paths)))
+    if facts.foreign:
+        paths = " ".join(facts.foreign)
+        found.append(fail("shm.foreign", _half_made(facts.foreign), f"sudo rm {paths}"))
     if facts.stale:
         words = ngettext(
             "{count} segment in /dev/shm that nobody holds ({size:.0f} MB)",
@@ -60,6 +77,11 @@ def judge(facts: SharedMemoryFacts) -> list[Finding]:
         mend = _("with no ROS node running: rm /dev/shm/fastrtps_*")
         found.append(warn("shm.stale", text, mend))
     return found
+
+
+def _half_made(paths: tuple[str, ...]) -> str:
+    text = _("{paths}: half made by a process that was killed, holds up every node that meets it")
+    return text.format(paths=", ".join(paths))
 
 
 def _room(facts: SharedMemoryFacts) -> Finding:
