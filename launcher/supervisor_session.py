@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from launcher.errors import UnknownNodeError
 from launcher.logs_book import DECK
-from launcher.process_shm_unfinished import discard_unfinished
 from launcher.process_usage import UsageMeter
 from launcher.readiness import Readiness
 from launcher.status import NodeState, Severity
 from launcher.supervisor_clock import MonotonicClock
 from launcher.supervisor_node import Node
 from launcher.supervisor_order import needed_by, stop_waves
+from launcher.supervisor_shm import SharedMemory
 from launcher.words import say
 
 if TYPE_CHECKING:
@@ -58,15 +58,14 @@ class Session:
         """Nodes that are being stopped only to be started again."""
         self._restarting: asyncio.Task[None] | None = None
         self._hurry = asyncio.Event()
-        self._in_the_way: set[str] = set()
-        """Files that only another user may remove, and that were told of."""
+        self._shared_memory = SharedMemory(lambda *words: book.say(DECK, *words))
 
     # What is asked of it.
 
     def start(self, names: Iterable[str] = ()) -> None:
         """Start these nodes with all that they need; all if none is named."""
         chosen = self._chosen(names)
-        self._clear_the_way()
+        self._shared_memory.clear()
         # The probe goes first: what it sees coming it need not look for.
         self._readiness.expect()
         for name in needed_by(chosen, self.plan.needs):
@@ -122,7 +121,7 @@ class Session:
         """Measure what the nodes cost, again and again."""
         while True:
             await asyncio.sleep(USAGE_EVERY_S)
-            self._clear_the_way()
+            self._shared_memory.clear()
             if not any(node.state.alive for node in self.nodes.values()):
                 continue
             members = self._launcher.scan.look(0.0)
@@ -133,25 +132,6 @@ class Session:
                 if node.state.alive:
                     node.usage = usages.get(name)
                     self._on_change(name)
-
-    def _clear_the_way(self) -> None:
-        """Remove what would hold up every node, and say so."""
-        found = discard_unfinished()
-        if found.removed:
-            words = say(
-                "removed {files} from /dev/shm: half made by a process that was killed, it holds"
-                " up every node that comes across it",
-                files=", ".join(found.removed),
-            )
-            self.book.say(DECK, Severity.WARN, words)
-        for name in set(found.kept) - self._in_the_way:
-            self._in_the_way.add(name)
-            words = say(
-                "/dev/shm/{file} was half made by another user's process that was killed, and"
-                " holds up every node that comes across it: sudo rm /dev/shm/{file}",
-                file=name,
-            )
-            self.book.say(DECK, Severity.ERROR, words)
 
     # What the nodes ask of it.
 

@@ -9,6 +9,7 @@ import pytest
 from std_msgs.msg import Float32
 
 from tests.deck_process import DeckProcess, deck
+from tests.ros.conftest import make_old
 from tests.ros.peer import Peer
 from tests.ros.recorded import read_by_mcap
 from tests.waiting import wait_until
@@ -54,6 +55,15 @@ def test_json_tells_the_same_to_programs(ros_domain: int, tmp_path: Path) -> Non
     assert last["event"] == "summary"
     assert last["messages"] == len(read_by_mcap(tmp_path / "b")["/numbers"])
     assert last["complaints"] == ["nobody has published /never"]
+
+
+def test_it_begins_where_a_process_was_killed_as_it_joined(
+    half_made: list[Path], tmp_path: Path
+) -> None:
+    make_old(half_made)
+    run = DeckProcess("record", "-o", str(tmp_path / "bag"), "--for", "0.5")
+    assert run.finish() == 1
+    assert any("nothing was recorded" in line for line in run.lines)
 
 
 def test_when_nothing_came_it_says_so_and_fails(tmp_path: Path) -> None:

@@ -13,6 +13,8 @@ from launcher.process_shm_unfinished import (
     discard_unfinished,
     unfinished,
 )
+from launcher.status import Severity
+from launcher.supervisor_shm import SharedMemory
 from tests.unit.test_process_shm import DEAD, made
 
 if TYPE_CHECKING:
@@ -42,22 +44,47 @@ def test_what_is_finished_or_just_being_made_stays(tmp_path: Path) -> None:
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_what_belongs_to_another_user_is_told_of(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = made(tmp_path / "fastrtps_port7001", b"")
-
-    def refuse(_file: object, mode: int) -> bool:
-        if mode & os.O_RDWR:
-            raise PermissionError
-        return really(_file, mode)
-
+@pytest.fixture
+def of_another_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A file that may be read, and no more."""
     really = os.open
+
+    def refuse(file: str, flags: int) -> int:
+        if flags & os.O_RDWR:
+            raise PermissionError
+        return really(file, flags)
+
     monkeypatch.setattr(os, "open", refuse)
-    assert list(unfinished(tmp_path)) == [path]
-    assert discard_unfinished(tmp_path) == Discarded((), ("fastrtps_port7001",))
-    assert path.exists()
+    return made(tmp_path / "fastrtps_port7002", b"")
+
+
+def test_what_belongs_to_another_user_stays(tmp_path: Path, of_another_user: Path) -> None:
+    assert list(unfinished(tmp_path)) == [of_another_user]
+    assert discard_unfinished(tmp_path) == Discarded((), ("fastrtps_port7002",))
+    assert of_another_user.exists()
 
 
 def test_where_there_is_no_shared_memory_nothing_is_unfinished(tmp_path: Path) -> None:
     assert discard_unfinished(tmp_path / "none") == Discarded((), ())
+
+
+def test_what_is_removed_is_told_of(tmp_path: Path) -> None:
+    told: list[tuple[Severity, str]] = []
+    memory = SharedMemory(lambda *line: told.append(line), tmp_path)
+    memory.clear()
+    assert told == []
+    made(tmp_path / "fastrtps_port7001", b"")
+    memory.clear()
+    memory.clear()
+    assert [severity for severity, _words in told] == [Severity.WARN]
+    assert told[0][1].startswith("removed fastrtps_port7001 from /dev/shm")
+
+
+@pytest.mark.usefixtures("of_another_user")
+def test_what_cannot_be_removed_is_told_of_once(tmp_path: Path) -> None:
+    told: list[tuple[Severity, str]] = []
+    memory = SharedMemory(lambda *line: told.append(line), tmp_path)
+    memory.clear()
+    memory.clear()
+    assert [severity for severity, _words in told] == [Severity.ERROR]
+    assert told[0][1].endswith("sudo rm /dev/shm/fastrtps_port7002")

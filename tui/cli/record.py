@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 from graph.bag_errors import BagError
 from launcher.domain import choose_domain
 from launcher.errors import UsageError
+from launcher.process_shm_unfinished import discard_unfinished
 from launcher.words import say
 from tui.cli.output import BOLD, Paint, table, write
 from tui.i18n import _
@@ -50,6 +51,8 @@ def record_command(options: Namespace) -> int:
     stop = threading.Event()
     for number in SIGNALS:
         signal.signal(number, lambda *_: stop.set())
+    # There may be no supervisor here that does it.
+    discard_unfinished()
     try:
         recorder.start()
     except BagError as error:

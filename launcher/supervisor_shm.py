@@ -1,0 +1,48 @@
+"""Nothing in shared memory holds up the nodes, and what was in their way is told of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.process_shm import SHARED_MEMORY
+from launcher.process_shm_unfinished import discard_unfinished
+from launcher.status import Severity
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from launcher.words import Words
+
+
+class SharedMemory:
+    """To be cleared before nodes start and again and again: others are killed at any time."""
+
+    def __init__(
+        self, tell: Callable[[Severity, Words], None], folder: Path = SHARED_MEMORY
+    ) -> None:
+        """`tell` adds a line to the log."""
+        self._tell = tell
+        self._folder = folder
+        self._kept: set[str] = set()
+
+    def clear(self) -> None:
+        """Remove what is in the way; tell once of what only another user can remove."""
+        found = discard_unfinished(self._folder)
+        if found.removed:
+            words = say(
+                "removed {files} from /dev/shm: half made by a process that was killed, it holds"
+                " up every node that comes across it",
+                files=", ".join(found.removed),
+            )
+            self._tell(Severity.WARN, words)
+        for name in found.kept:
+            if name not in self._kept:
+                self._kept.add(name)
+                words = say(
+                    "/dev/shm/{file} was half made by another user's process that was killed, and"
+                    " holds up every node that comes across it: sudo rm /dev/shm/{file}",
+                    file=name,
+                )
+                self._tell(Severity.ERROR, words)
