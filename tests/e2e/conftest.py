@@ -14,6 +14,9 @@ import pytest
 
 from tests.e2e import marked
 from tests.e2e.terminal import Terminal
+from tests.half_made import half_made
+
+__all__ = ["half_made"]
 
 ROOT = Path(__file__).resolve().parents[2]
 

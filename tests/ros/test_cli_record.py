@@ -9,7 +9,7 @@ import pytest
 from std_msgs.msg import Float32
 
 from tests.deck_process import DeckProcess, deck
-from tests.ros.conftest import make_old
+from tests.half_made import make_old
 from tests.ros.peer import Peer
 from tests.ros.recorded import read_by_mcap
 from tests.waiting import wait_until

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from launcher.status import NodeState
-from tests.ros.conftest import make_old
+from tests.half_made import make_old
 from tests.ros.supervised import Launch, until_state
 
 if TYPE_CHECKING:

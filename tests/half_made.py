@@ -1,0 +1,47 @@
+"""What Fast DDS leaves in shared memory if its process is killed at the wrong moment."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+from launcher.process_shm import SHARED_MEMORY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+HALF_MADE = b"\1".ljust(52_400, b"\0")
+"""As large as Fast DDS makes it; the first word is boost.interprocess's `initializing`."""
+PARTICIPANTS = 4
+
+
+@pytest.fixture
+def half_made(ros_domain: int) -> Iterator[list[Path]]:
+    """The ports of the test's own domain, as they are while Fast DDS makes them.
+
+    The numbers are those of RTPS 2.5, section 9.6.2.3, for the unicast of users.
+    """
+    first = 7411 + 250 * ros_domain
+    paths = [SHARED_MEMORY / f"fastrtps_port{first + 2 * at}" for at in range(PARTICIPANTS)]
+    for path in paths:
+        path.write_bytes(HALF_MADE)
+    yield paths
+    for path in paths:
+        path.unlink(missing_ok=True)
+        path.with_name(f"{path.name}_el").unlink(missing_ok=True)
+
+
+def make_old(paths: Iterable[Path]) -> None:
+    """Let files seem to have been written a minute ago."""
+    then_s = time.time() - 60.0
+    for path in paths:
+        os.utime(path, (then_s, then_s))
+
+
+def is_half_made(path: Path) -> bool:
+    """Whether it still is as it was."""
+    return path.exists() and path.read_bytes() == HALF_MADE
