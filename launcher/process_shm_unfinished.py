@@ -41,9 +41,9 @@ class Discarded:
 
 def unfinished(folder: Path = SHARED_MEMORY) -> Iterator[Path]:
     """Yield the files whose makers were killed while they made them."""
-    for name in names(folder):
+    for name in filter(_FILE.fullmatch, names(folder)):
         path = folder / name
-        if _FILE.fullmatch(name) and _begins(path) in _BEING_MADE and age_s(path) > UNFINISHED_S:
+        if _begins(path) in _BEING_MADE and age_s(path) > UNFINISHED_S:
             yield path
 
 
