@@ -39,7 +39,7 @@ class Head:
     def __init__(
         self, peer: Peer, domain: int, port: object, *, mortal: bool = False, **params: object
     ) -> None:
-        given = {"port": port, "battery_every_s": 0.1, "rest_rate": 10, "speed": 360, **params}
+        given = {"port": port, "battery_every_s": 0.4, "rest_rate": 10, "speed": 360, **params}
         self.process = NodeProcess("nodes.head_controller", domain, params=given, mortal=mortal)
         self.peer = peer
         self.states = peer.hear("/head_state", JointState)

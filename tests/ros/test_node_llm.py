@@ -145,7 +145,7 @@ def test_a_missing_head_is_told_and_does_not_keep_the_chassis_waiting(parser: Pa
 
 
 @pytest.mark.parametrize(
-    "parser", [{"head": False, "params": {"head_timeout": 1.0}}], indirect=True
+    "parser", [{"head": False, "params": {"head_timeout": 3.0}}], indirect=True
 )
 def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(
     parser: Parser, ros_domain: int
@@ -158,4 +158,4 @@ def test_a_head_that_never_answers_is_given_up_and_newer_commands_win(
         heads = [result for result in parser.results(5) if result["event"] == "head"]
     assert [head["pan"] for head in heads] == [5, -45, 7]
     assert "dropped for newer commands" in heads[0]["error"]
-    assert "no answer from set_head_position for 1 s" in heads[1]["error"]
+    assert "no answer from set_head_position for 3 s" in heads[1]["error"]
