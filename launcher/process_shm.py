@@ -58,6 +58,8 @@ def _remove(segment: Path) -> bool:
         return False
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if not os.path.samestat(os.fstat(descriptor), lock.lstat()):
+            return False  # Somebody has made it anew meanwhile.
         segment.unlink(missing_ok=True)
         lock.unlink(missing_ok=True)
     except OSError:

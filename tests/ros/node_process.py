@@ -10,6 +10,7 @@ import tempfile
 from typing import TYPE_CHECKING
 
 from tests import ports
+from tests.middleware_words import own_words
 from tests.ros.peer import DISCOVERY, ROOT
 from tests.waiting import wait_until
 
@@ -76,9 +77,9 @@ class NodeProcess:
 
     @property
     def output(self) -> str:
-        """All that it has written so far."""
+        """All that it has written so far in its own words."""
         size = os.fstat(self._log.fileno()).st_size
-        return os.pread(self._log.fileno(), size, 0).decode("utf-8", "replace")
+        return own_words(os.pread(self._log.fileno(), size, 0).decode("utf-8", "replace"))
 
     def wait_for_words(self, *words: str) -> None:
         """Wait until it has written these words, in any order."""

@@ -16,6 +16,7 @@ from graph.interest import Interest
 from graph.observer import Observer
 from graph.orders import ObserverError
 from graph.station import Station
+from tests.middleware_words import own_words
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 
@@ -75,7 +76,7 @@ def test_it_writes_nothing_and_ends_cleanly(ros_domain: int, end: str, tmp_path:
     done = run(WORKING.format(domain=ros_domain, end=end), ros_domain, ROS_LOG_DIR=str(logs))
     peer.close()
     assert done.stderr == ""
-    assert done.stdout.strip() == "the observer has been stopped"
+    assert own_words(done.stdout).strip() == "the observer has been stopped"
     assert done.returncode == 0
     assert not logs.exists()
 

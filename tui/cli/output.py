@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from io import TextIOWrapper
@@ -38,6 +39,18 @@ def make_streams_safe() -> None:
             setattr(sys, name, nowhere)
         elif isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")
+
+
+def keep_stdout_to_ourselves() -> None:
+    """Lead what libraries print, Fast DDS its complaints above all, to standard error.
+
+    A program that reads Deck's JSON would trip over it.
+    """
+    ours = os.dup(sys.stdout.fileno())
+    with contextlib.suppress(OSError):  # There may be no standard error.
+        os.dup2(2, sys.stdout.fileno())
+    encoding = sys.stdout.encoding
+    sys.stdout = open(ours, "w", encoding=encoding, errors="replace")  # noqa: PTH123, SIM115
 
 
 def say_error(text: str) -> None:

@@ -25,7 +25,7 @@ from launcher.domain import choose_domain
 from launcher.errors import UsageError
 from launcher.process_shm_unfinished import discard_unfinished
 from launcher.words import say
-from tui.cli.output import BOLD, Paint, table, write
+from tui.cli.output import BOLD, Paint, keep_stdout_to_ourselves, table, write
 from tui.i18n import _
 from tui.recording_words import complaints, progress, size_words
 from tui.widgets.plain import plain
@@ -51,6 +51,7 @@ def record_command(options: Namespace) -> int:
     stop = threading.Event()
     for number in SIGNALS:
         signal.signal(number, lambda *_: stop.set())
+    keep_stdout_to_ourselves()
     # There may be no supervisor here that does it.
     discard_unfinished()
     try:
