@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from launcher.process_shm_unfinished import discard_unfinished
+
 # A loaded machine is no failure of the code. Each run takes other examples: half as many as usual
 # are enough of them.
 settings.register_profile(
@@ -78,7 +80,12 @@ class DomainPool:
         self._held: dict[int, int] = {}
 
     def take(self) -> int:
-        """Return a domain that is nobody else's until it is let go of."""
+        """Return a domain that is nobody else's until it is let go of.
+
+        Tests kill processes at any moment, and a node that a test starts by itself has no Deck
+        that clears its way.
+        """
+        discard_unfinished()
         for _ in DOMAINS:
             domain = self._next()
             path = self._folder / str(domain)
