@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 SHARED_MEMORY = Path("/dev/shm")
-_LOCK = re.compile(r"(fastrtps_(?:[0-9a-f]{16}|port\d+))_el")
+NAME = r"fastrtps_(?:[0-9a-f]{16}|port\d+)"
+"""What the files of segments and ports are called, as a regular expression."""
+_LOCK = re.compile(f"({NAME})_el")
 _PORT = "fastrtps_port"
 _ABANDONED_S = 10.0
 """Age at which a lock that nobody holds is not just being taken."""

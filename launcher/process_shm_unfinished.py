@@ -15,12 +15,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.process_shm import SHARED_MEMORY, age_s, names
+from launcher.process_shm import NAME, SHARED_MEMORY, age_s, names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_FILE = re.compile(r"fastrtps_(?:[0-9a-f]{16}|port\d+)")
+_FILE = re.compile(NAME)
 UNFINISHED_S = 3.0
 """Age at which a file that is still being made has no maker any more: it takes milliseconds."""
 _BEING_MADE = (b"", b"\0\0\0\0", b"\1\0\0\0")

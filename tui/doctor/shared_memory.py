@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from launcher.process_shm import SHARED_MEMORY
 from launcher.process_shm_unfinished import unfinished
 from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _, ngettext
@@ -14,7 +15,6 @@ from tui.i18n import _, ngettext
 if TYPE_CHECKING:
     from tui.doctor.finding import Finding
 
-FOLDER = Path("/dev/shm")
 LEAST_FREE = 64 * 2**20
 """Bytes; Fast DDS takes half a megabyte for each node and more for pictures."""
 
@@ -37,17 +37,17 @@ class SharedMemoryFacts:
 
 def look() -> SharedMemoryFacts:
     """Find out."""
-    if not FOLDER.is_dir():
+    if not SHARED_MEMORY.is_dir():
         return SharedMemoryFacts(exists=False, free=0)
-    status = os.statvfs(FOLDER)
+    status = os.statvfs(SHARED_MEMORY)
     held = _mapped()
     stale = [
         path.stat().st_size
-        for path in FOLDER.glob("fastrtps_*")
+        for path in SHARED_MEMORY.glob("fastrtps_*")
         if not path.name.endswith(("_el", "_sl")) and str(path) not in held and _is_mine(path)
     ]
     free = status.f_bavail * status.f_frsize
-    halves = list(unfinished(FOLDER))
+    halves = list(unfinished(SHARED_MEMORY))
     mine = tuple(str(path) for path in halves if _is_mine(path) or os.geteuid() == 0)
     foreign = tuple(str(path) for path in halves if str(path) not in mine)
     return SharedMemoryFacts(True, free, len(stale), sum(stale), mine, foreign)
@@ -100,7 +100,9 @@ def _mapped() -> set[str]:
             lines = maps.read_text(errors="replace").splitlines()
         except OSError:
             continue
-        held.update(line[line.index(str(FOLDER)) :] for line in lines if "/fastrtps_" in line)
+        held.update(
+            line[line.index(str(SHARED_MEMORY)) :] for line in lines if "/fastrtps_" in line
+        )
     return held
 
 
