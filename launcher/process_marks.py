@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ctypes
 
-from launcher.process_table import NODE_MARK, RUN_MARK
+from launcher.process_table import NODE_MARK, RUN_MARK, stat_fields
 from launcher.process_ties import set_short_name
 
 ROOM_ARGUMENT = "-" * 160
@@ -52,7 +52,7 @@ def show_mark(mark: str, text: str) -> bool:
 def _areas() -> dict[int, int]:
     with open("/proc/self/stat", "rb") as file:  # noqa: PTH123 - once per start of a node
         stat = file.read()
-    fields = stat[stat.rindex(b")") + 2 :].split()
+    fields = stat_fields(stat)
     return {number: int(fields[number - 3]) for number in range(_ARG_START, _ENV_END + 1)}
 
 

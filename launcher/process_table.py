@@ -56,7 +56,7 @@ def read_process(pid: int) -> Process | None:
     except (FileNotFoundError, ProcessLookupError):
         return None
     name = stat[stat.index(b"(") + 1 : stat.rindex(b")")]
-    fields = _stat_fields(stat)
+    fields = stat_fields(stat)
     return Process(
         pid=pid,
         name=name.decode(errors="replace"),
@@ -74,10 +74,10 @@ def _read(pid: int, file_name: str) -> bytes:
         return file.read()
 
 
-def _stat_fields(stat: bytes) -> list[bytes]:
+def stat_fields(stat: bytes) -> list[bytes]:
     """Return the fields of /proc/PID/stat, proc(5), from the third on."""
     # The name stands in brackets and may itself hold blanks and brackets.
-    return stat[stat.rindex(b")") + 2 :].split(None, 24)
+    return stat[stat.rindex(b")") + 2 :].split()
 
 
 def processes() -> Iterator[Process]:
@@ -114,9 +114,9 @@ def _environ(pid: int) -> bytes | None:
     try:
         environ = _read(pid, "environ")
         while not environ:
-            was_executed = _is_executed(pid)
+            was_being_executed = _is_being_executed(pid)
             environ = _read(pid, "environ")
-            if not was_executed:
+            if not was_being_executed:
                 break
             if time.monotonic() > deadline:
                 return None
@@ -126,9 +126,9 @@ def _environ(pid: int) -> bytes | None:
     return environ
 
 
-def _is_executed(pid: int) -> bool:
+def _is_being_executed(pid: int) -> bool:
     """Whether a process is in the midst of execve(2): it has memory, and no code in it yet."""
-    fields = _stat_fields(_read(pid, "stat"))
+    fields = stat_fields(_read(pid, "stat"))
     return bool(int(fields[20])) and not int(fields[23])
 
 
