@@ -113,10 +113,7 @@ class LivePad:
             return self._replay
         from graph.observer import Observer
         from launcher.discovery import hurry_discovery
-        from launcher.process_shm_unfinished import discard_unfinished
 
-        # Whom this watches may be none of Deck's, and no supervisor there that does it.
-        discard_unfinished()
         hurry_discovery(os.environ, session.discovery)
         return Observer(session.domain, session.discovery)
 

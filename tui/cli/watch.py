@@ -22,6 +22,9 @@ def watch_command(options: Namespace) -> int:
     if not has_terminal():
         say_error(_("watch needs a terminal; `deck record` does without"))
         return 2
+    from launcher.process_shm_unfinished import discard_unfinished
     from tui.live import run_live
 
+    # There may be no supervisor here that does it.
+    discard_unfinished()
     return run_live(Order(watch=WatchOrder(domain, options.discovery)), options.lang)
