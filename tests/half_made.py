@@ -35,9 +35,9 @@ def half_made(ros_domain: int) -> Iterator[list[Path]]:
         path.with_name(f"{path.name}_el").unlink(missing_ok=True)
 
 
-def make_old(paths: Iterable[Path]) -> None:
-    """Let files seem to have been written a minute ago."""
-    then_s = time.time() - 60.0
+def make_old(paths: Iterable[Path], age_s: float = 60.0) -> None:
+    """Let files seem to have been written so long ago."""
+    then_s = time.time() - age_s
     for path in paths:
         os.utime(path, (then_s, then_s))
 

@@ -3,15 +3,10 @@
 from __future__ import annotations
 
 import fcntl
-import os
-import time
 from typing import TYPE_CHECKING
 
-from launcher.process_shm import (
-    port_numbers,
-    sweep,
-    sweep_abandoned,
-)
+from launcher.process_shm import port_numbers, sweep, sweep_abandoned
+from tests.half_made import make_old
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,8 +39,7 @@ def test_ports_are_told_from_segments() -> None:
 def made(path: Path, content: bytes, age_s: float = 60.0) -> Path:
     """A file that was written so long ago."""
     path.write_bytes(content)
-    then = time.time() - age_s
-    os.utime(path, (then, then))
+    make_old([path], age_s)
     return path
 
 
