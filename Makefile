@@ -49,4 +49,4 @@ lint: .venv/.ready
 
 clean:
 	rm -rf .venv build .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
-	find bench graph launcher nodes robot scripts tests tui -name __pycache__ -exec rm -rf {} +
+	find bench graph launcher nodes robot scripts tests text tui -name __pycache__ -exec rm -rf {} +

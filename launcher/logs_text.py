@@ -11,32 +11,23 @@ from __future__ import annotations
 import re
 
 from launcher.status import Severity
+from text.plain import plain
 
 _COLOUR = re.compile(r"\x1b\[([0-9;:]*)m")
 _ERASE = re.compile(r"\x1b\[[012]?K")
 _COLOURS = {"31": Severity.ERROR, "91": Severity.ERROR, "33": Severity.WARN, "93": Severity.WARN}
 
-_PICTURES: dict[int, int | str] = {code: 0x2400 + code for code in range(0x20)}
-_PICTURES[0x7F] = 0x2421
-# The second set of control characters has no pictures; a terminal may still obey them.
-_PICTURES.update(dict.fromkeys(range(0x80, 0xA0), 0xFFFD))
-# They reorder or break what stands around them: a line could be made to say its opposite.
-_PICTURES.update(dict.fromkeys((0x2028, 0x2029, 0x061C, 0x200E, 0x200F), 0xFFFD))
-_PICTURES.update(dict.fromkeys((*range(0x202A, 0x202F), *range(0x2066, 0x206A)), 0xFFFD))
-
 
 def plain_text(data: bytes) -> tuple[str, Severity | None]:
     """Return a line's text, and the severity that its colour suggests, if any."""
     text = data.decode(errors="replace")
-    if text.isprintable():
-        return text, None
     severity = None
     if "\x1b" in text:
         severity = _suggested(text)
         text = _ERASE.sub("", _COLOUR.sub("", text))
     if "\t" in text:
         text = text.expandtabs(8)
-    return text.translate(_PICTURES), severity
+    return plain(text), severity
 
 
 def _suggested(text: str) -> Severity | None:

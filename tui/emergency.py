@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from text.plain import plain
 from tui.i18n import N_, _
 from tui.teleop_gate import STOPPED, Gate, gate_in, held_words
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from text.plain import plain
 from tui.flow import Kind, Lane, Step
 from tui.widgets import outcome_words
-from tui.widgets.plain import plain
 from tui.widgets.voice_reading import LEVELS, heard
 
 if TYPE_CHECKING:

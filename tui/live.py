@@ -14,6 +14,7 @@ from textual.theme import BUILTIN_THEMES
 
 from launcher.errors import LauncherError
 from launcher.rundir import log_dir
+from text.plain import plain
 from tui import clock
 from tui.app import DeckApp, every_action
 from tui.i18n import _, detect, set_language
@@ -22,7 +23,6 @@ from tui.settings import Settings, SettingsError, load, save, settings_path
 from tui.stray_output import StrayOutput
 from tui.terminal import DeckDriver
 from tui.themes import HIGH_CONTRAST
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,9 +10,9 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from text.plain import plain
 from tui.i18n import _, said
 from tui.recording_words import complaints, length_words, progress, size_words
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from textual.timer import Timer

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from tui.widgets.plain import plain
+from text.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.errors import LauncherError
+from text.plain import plain
 from tui.i18n import said
 from tui.watching import WATCH
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from launcher.status import SessionInfo, Stray

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from text.plain import plain
 from tui.i18n import N_, _
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import Sample

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from text.plain import plain
 from tui.actions.app import (
     EmergencyRelease,
     ShowComposer,
@@ -17,7 +18,6 @@ from tui.actions.app import (
 )
 from tui.emergency import held_reason, stop_words
 from tui.i18n import _, ngettext, pick, said
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from launcher.status import SessionInfo

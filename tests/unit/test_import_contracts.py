@@ -11,19 +11,27 @@ import pytest
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 LINTER = "from importlinter.cli import lint_imports_command; lint_imports_command()"
-ROOMS = ("graph", "launcher", "nodes", "robot", "tui")
+ROOMS = ("graph", "launcher", "nodes", "robot", "text", "tui")
 
 ALLOWED = {
-    "tui.app": ["graph", "launcher", "robot", "textual", "rich"],
-    "graph.observer": ["rclpy", "std_msgs.msg", "numpy", "yaml"],
-    "nodes.hello": ["rclpy", "robot", "cv2", "example_interfaces.srv"],
-    "launcher.profile": ["asyncio", "psutil", "pydantic", "yaml", "launcher.spawn_server_start"],
+    "tui.app": ["graph", "launcher", "robot", "text", "textual", "rich"],
+    "graph.observer": ["rclpy", "std_msgs.msg", "numpy", "text", "yaml"],
+    "nodes.hello": ["rclpy", "robot", "text", "cv2", "example_interfaces.srv"],
+    "launcher.profile": [
+        "asyncio",
+        "psutil",
+        "pydantic",
+        "text",
+        "yaml",
+        "launcher.spawn_server_start",
+    ],
     "launcher.spawn_server": ["launcher.spawn_server_node", "launcher.spawn_server_warm"],
     "launcher.spawn_server_node": ["launcher.spawn_server_probe"],
     "launcher.spawn_server_probe": ["rclpy"],
     "launcher.spawn_server_start": ["launcher.spawn_server", "socket"],
     "launcher.spawn_server_warm": ["ctypes"],
-    "robot.commands": ["math", "numpy", "pydantic"],
+    "robot.commands": ["math", "numpy", "pydantic", "text"],
+    "text.plain": ["re", "yaml"],
 }
 
 FORBIDDEN = {
@@ -35,6 +43,7 @@ FORBIDDEN = {
         *("launcher.spawn_server", "launcher.spawn_server_probe", "launcher.spawn_server_warm"),
     ],
     "robot.commands": ["asyncio", "graph", "launcher", "nodes", "rclpy", "subprocess", "tui"],
+    "text.plain": ["graph", "launcher", "nodes", "rclpy", "robot", "textual", "tui"],
 }
 
 

@@ -10,7 +10,7 @@ import pytest
 from hatchling.builders.wheel import WheelBuilder
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("graph", "launcher", "nodes", "profiles", "robot", "tui")
+ROOMS = ("graph", "launcher", "nodes", "profiles", "robot", "text", "tui")
 
 
 @pytest.fixture(scope="module")

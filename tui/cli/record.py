@@ -25,10 +25,10 @@ from launcher.domain import choose_domain
 from launcher.errors import UsageError
 from launcher.process_shm_unfinished import discard_unfinished
 from launcher.words import say
+from text.plain import plain
 from tui.cli.output import BOLD, Paint, keep_stdout_to_ourselves, table, write
 from tui.i18n import _
 from tui.recording_words import complaints, progress, size_words
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from argparse import Namespace

@@ -11,6 +11,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Static, TextArea
 
 from robot.commands import MAX_BYTES, CommandError, parse_llm
+from text.plain import plain
 from tui import clock
 from tui.actions import bindings
 from tui.actions.composer import COMPOSER_ACTIONS, Send, SendAnyway
@@ -22,7 +23,6 @@ from tui.widgets.json_editor import JsonEditor, Place
 from tui.widgets.json_verdict import JsonVerdict
 from tui.widgets.outcome import Outcome
 from tui.widgets.outcome_story import FOLLOWED, SENT_TO, Story
-from tui.widgets.plain import plain
 from tui.widgets.templates import TEMPLATES
 from tui.widgets.topic_words import names
 

@@ -12,6 +12,7 @@ from textual.widgets import Static
 
 from launcher.errors import LauncherError
 from launcher.status import Severity
+from text.plain import plain
 from tui.actions import bindings
 from tui.actions.deck import DECK_ACTIONS
 from tui.actions.teleop import OpenTeleop
@@ -23,7 +24,6 @@ from tui.screens.deck_teleop import DrivenScreen
 from tui.widgets.command_line import CommandLine
 from tui.widgets.log_view_pane import LogPane
 from tui.widgets.nodes_table import NodesTable
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from concurrent.futures import Future

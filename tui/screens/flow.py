@@ -10,6 +10,7 @@ from textual.content import Content
 from textual.style import Style
 from textual.widgets import Static
 
+from text.plain import plain
 from tui.actions import bindings
 from tui.actions.deck import WriteCommand
 from tui.actions.flow import FLOW_ACTIONS
@@ -21,7 +22,6 @@ from tui.screens.base import DeckScreen
 from tui.widgets import flow_words as words
 from tui.widgets.flow_lines import Line, lines
 from tui.widgets.flow_view import FlowView
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

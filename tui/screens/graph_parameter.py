@@ -11,10 +11,10 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from text.plain import plain
 from tui.i18n import _
 from tui.screens.dialog import Dialog
 from tui.widgets.graph_parameter_words import allowed_words, typed
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult

@@ -7,10 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from text.plain import plain
 from tui.i18n import _, ngettext, said
 from tui.screens.graph_parameter import ParameterDialog
 from tui.screens.graph_path import PathDialog
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

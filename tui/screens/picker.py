@@ -12,12 +12,12 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from launcher.errors import LauncherError
+from text.plain import plain
 from tui.actions import Acting, Action, bindings
 from tui.i18n import N_, _, ngettext, pick, said
 from tui.orders import WatchOrder
 from tui.screens.base import BREAKPOINTS, HEIGHTS
 from tui.widgets.key_bar import KeyBar
-from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.title_bar import TitleBar
 from tui.widgets.working import Working

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual.content import Content
 
+from text.plain import plain
 from tui.actions import Action, bindings
 from tui.i18n import N_, _
 from tui.screens.dialog import Dialog
 from tui.widgets.nodes_table import STATES, why
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from textual.binding import BindingType

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from graph.images import COLOURS, DEPTHS, ImageError
 from graph.pictures import COMPRESSED, IMAGE, Picture, ramp_colours, read_picture
+from text.plain import plain
 from tui.i18n import _
 from tui.screens.topics_plotting import PlotPlace, TopicsPlotting
 from tui.widgets.image_view import Scale
-from tui.widgets.plain import plain
 from tui.widgets.topic_words import BETWEEN
 from tui.widgets.topics_table_columns import hz_text
 

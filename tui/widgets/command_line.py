@@ -12,8 +12,8 @@ from textual.suggester import Suggester
 from textual.widgets import Input, Static
 
 from robot.words import WORDS, parse_word
+from text.plain import plain
 from tui.i18n import _, language
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from text.plain import plain
 from tui.device_reading import STALE_S, Device, Level
 from tui.i18n import N_, _
-from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
+from text.plain import plain
 from tui.device_reading import STALE_S, TOPIC, Device
 from tui.i18n import _
 from tui.widgets.devices_table import grouped, state
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from text.plain import plain
 from tui.i18n import _, ngettext
 from tui.widgets import echo_values
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import Value

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, TypeGuard
 
 import numpy as np
 
+from text.plain import plain
 from tui.i18n import ngettext
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import Value

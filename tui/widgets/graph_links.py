@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from text.plain import plain
 from tui.widgets.graph_place import Kind, Place
-from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:

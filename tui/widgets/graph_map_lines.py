@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rich.cells import cell_len
 
+from text.plain import plain
 from tui.i18n import _
 from tui.widgets.graph_links import short
 from tui.widgets.graph_list import ended
 from tui.widgets.graph_place import Kind, Place
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

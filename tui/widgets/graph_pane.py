@@ -8,7 +8,7 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Static
 
-from tui.widgets.plain import plain
+from text.plain import plain
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from text.plain import plain
 from tui.i18n import _
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import ParameterRow, Value

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 from textual.containers import Vertical
 from textual.widgets import Static
 
+from text.plain import plain
 from tui import clock
 from tui.i18n import _, ngettext, said
 from tui.widgets.graph_pane import LONGEST, Words
 from tui.widgets.graph_parameter_words import allowed_words, value_text
-from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from graph.data import CallResult
+from text.plain import plain
 from tui.i18n import N_, _, said
 from tui.widgets.graph_ask import AskPane, now_s
 from tui.widgets.graph_links import heading, link, node_links
 from tui.widgets.graph_pane import LONGEST
 from tui.widgets.graph_parameter_words import typed
 from tui.widgets.graph_place import Kind, Place
-from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from textual.widgets import Tree
 
 from graph.browse import Constant, Definition, Field, definition
 from graph.types import UnknownTypeError
+from text.plain import plain
 from tui.i18n import N_, _, said
 from tui.widgets.graph_parameter_words import typed
-from tui.widgets.plain import plain
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:

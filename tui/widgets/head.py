@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from text.plain import plain
 from tui.i18n import _
 from tui.widgets.dots import Dots, Point
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 from tui.widgets.head_reading import LIMIT_DEG, Pose
-from tui.widgets.plain import plain
 
 CAPTION_FROM = 10
 DRAWN_FROM = (22, 6)

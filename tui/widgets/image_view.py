@@ -13,8 +13,8 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from graph.images import shrink
+from text.plain import plain
 from tui.widgets.one_style import OneStyle
-from tui.widgets.plain import plain
 from tui.widgets.words import cut, in_row, word_strips
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from robot.problems import Problem
+from text.plain import plain
 from tui.i18n import _, language
-from tui.widgets.plain import plain
 
 LONGEST = 300
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from launcher.status import Severity
+from text.plain import plain
 from tui.i18n import _
-from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:

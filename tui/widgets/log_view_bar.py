@@ -9,8 +9,8 @@ from textual.content import Content
 from textual.widget import Widget
 
 from launcher.status import Severity
+from text.plain import plain
 from tui.i18n import _, ngettext
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from tui.widgets.log_view import LogView

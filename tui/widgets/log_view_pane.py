@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, ClassVar
 from textual import on
 from textual.containers import Vertical
 
+from text.plain import plain
 from tui import clock
 from tui.i18n import _, ngettext
 from tui.widgets.log_view import LogView
 from tui.widgets.log_view_bar import LogBar, grouped
 from tui.widgets.log_view_prompt import LogPrompt
 from tui.widgets.log_view_save import default_path, home_path, reason, save_lines
-from tui.widgets.plain import plain
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:

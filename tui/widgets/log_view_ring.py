@@ -13,8 +13,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from launcher.status import LogLine, Severity
+from text.plain import plain
 from tui.i18n import said
-from tui.widgets.plain import plain
 
 LONGEST_TEXT = 16_384
 """Characters of one line that are kept; the file has the whole line."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from text.plain import plain
 from tui.i18n import _
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
 from tui.widgets.map_field import bar_length_m
@@ -20,7 +21,6 @@ from tui.widgets.map_scene import (
     TRUTH,
     grid_step_m,
 )
-from tui.widgets.plain import plain
 from tui.widgets.sonar_bar import ink_of
 from tui.widgets.sonar_words import STOP_BELOW_M, remark
 

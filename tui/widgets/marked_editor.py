@@ -11,7 +11,7 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widgets import TextArea
 
-from tui.widgets.plain import plain
+from text.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

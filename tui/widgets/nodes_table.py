@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len
 
 from launcher.status import NodeState
+from text.plain import plain
 from tui.i18n import N_, _, said
-from tui.widgets.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:

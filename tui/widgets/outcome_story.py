@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from text.plain import plain
 from tui.emergency import blocked_reason
 from tui.i18n import _, ngettext
 from tui.widgets import outcome_words as words
 from tui.widgets.json_words import reported_words
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

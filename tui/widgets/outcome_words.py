@@ -6,8 +6,8 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
+from text.plain import plain
 from tui.i18n import _
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

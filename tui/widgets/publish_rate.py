@@ -10,8 +10,8 @@ from textual.message import Message
 from textual.widgets import Input, Static
 
 from graph.publications import LEAST_HZ, MOST_HZ
+from text.plain import plain
 from tui.i18n import _
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from graph.qos_fit import DEADLINE, LEASE
+from text.plain import plain
 from tui.i18n import N_, _, ngettext
-from tui.widgets.plain import plain
 from tui.widgets.topic_figures import seconds_text
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from textual.message import Message
 
 from graph.held import Holding
 from robot.words import STOP, DriveSetpoint
+from text.plain import plain
 from tui import clock
 from tui.actions import REGISTRY, Acting, bindings
 from tui.actions.app import EmergencyRelease
@@ -32,7 +33,6 @@ from tui.teleop_route import (
     route,
 )
 from tui.widgets.drawing import Drawing, Line
-from tui.widgets.plain import plain
 from tui.widgets.teleop_view import Driving, drawn
 from tui.widgets.wheels_reading import Wheels, wheels_in
 

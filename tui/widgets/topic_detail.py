@@ -9,10 +9,10 @@ from textual.content import Content
 from textual.widget import Widget
 
 from graph.data import Trouble
+from text.plain import plain
 from tui.i18n import _
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.image_view import ImageView
-from tui.widgets.plain import plain
 from tui.widgets.topic_endpoints import TopicEndpoints
 from tui.widgets.topic_words import advice, ends, figures, packed
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from text.plain import plain
 from tui.i18n import _
-from tui.widgets.plain import plain
 from tui.widgets.topic_figures import UNKNOWN, seconds_text
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from graph.qos_fit import LEASE, LIVELINESS, mismatches
+from text.plain import plain
 from tui.i18n import _, ngettext
 from tui.widgets.drawing import Ink, Line, fit
-from tui.widgets.plain import plain
 from tui.widgets.qos_words import pair_words
 from tui.widgets.topic_endpoint_columns import Column, columns_for, left_over
 from tui.widgets.topic_words import names

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple, SupportsFloat
 
-from tui.widgets.plain import plain
+from text.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import Value

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
+from text.plain import plain
 from tui.i18n import _
 from tui.widgets.drawing import Ink, Line, fit
-from tui.widgets.plain import plain
 from tui.widgets.topic_figures import UNKNOWN
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len
 
 from graph.data import Trouble
+from text.plain import plain
 from tui.i18n import _, ngettext
-from tui.widgets.plain import plain
 from tui.widgets.qos_words import misfit_words
 from tui.widgets.topic_figures import count_text, seconds_text
 from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text

@@ -9,8 +9,8 @@ from typing import TypeAlias
 from rich.cells import cell_len, set_cell_size
 
 from graph.data import TopicRow, Trouble
+from text.plain import plain
 from tui.i18n import N_, _
-from tui.widgets.plain import plain
 from tui.widgets.topic_figures import UNKNOWN, count_text, seconds_text
 
 SortKey: TypeAlias = "tuple[float, str]"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robot.sound import RATE_HZ, level_dbfs, samples_of, text_in
+from text.plain import plain
 from tui.i18n import _, ngettext
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from text.plain import plain
 from tui.i18n import _, ngettext
-from tui.widgets.plain import plain
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate

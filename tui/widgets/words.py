@@ -9,7 +9,7 @@ from rich.style import Style
 from rich.text import Text
 from textual.strip import Strip
 
-from tui.widgets.plain import plain
+from text.plain import plain
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -14,10 +14,10 @@ from graph.making import FieldError
 from graph.types import UnknownTypeError
 from graph.yaml_form import check, prefilled
 from graph.yaml_text import YamlError
+from text.plain import plain
 from tui.actions import Acting, bindings
 from tui.actions.yaml_form import FORM_ACTIONS
 from tui.i18n import _
-from tui.widgets.plain import plain
 from tui.widgets.working import Working
 from tui.widgets.yaml_editor import YamlEditor
 from tui.widgets.yaml_words import place_of, wrong_words

@@ -7,9 +7,9 @@ from typing import TypeAlias
 from graph.making import FieldError
 from graph.types import UnknownTypeError
 from graph.yaml_text import YamlError
+from text.plain import plain
 from tui.i18n import _, said
 from tui.widgets.marked_editor import Place
-from tui.widgets.plain import plain
 
 LONGEST = 300
 

@@ -1,0 +1,1 @@
+"""Text from outside, and how it may be shown: every room may import this one, it imports none."""
