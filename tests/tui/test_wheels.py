@@ -65,6 +65,26 @@ async def test_whatever_comes_is_shown(value: dict[str, Any]) -> None:
             assert any("---" in row for row in rows(panel))
 
 
+@pytest.mark.parametrize(("width", "height"), [(60, 1), (34, 5), (44, 14)])
+async def test_an_angle_that_no_wheel_can_have_is_named(width: int, height: int) -> None:
+    panel = WheelsPanel()
+    async with alone(panel, width, height).run_test(size=(100, 40)):
+        for steering, words in ((1e308, "1e308"), (-1e308, "-1e308"), (7.0, "7")):
+            panel.show(Wheels(0.3, 0.3, steering))
+            shown = "\n".join(rows(panel))
+            if height > 1:
+                assert f"out of range: {words} rad" in shown
+
+
+async def test_speeds_that_no_wheel_can_have_are_told_shortly() -> None:
+    panel = WheelsPanel()
+    async with alone(panel, 44, 14).run_test(size=(100, 40)):
+        panel.show(Wheels(1e308, -1.7e308, 0.5))
+        shown = "\n".join(rows(panel))
+        assert "1e308" in shown
+        assert "-1.7e308" in shown
+
+
 @pytest.mark.parametrize(
     ("speed", "steering", "words"),
     [

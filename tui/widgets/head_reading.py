@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from tui.figures import whole
 from tui.i18n import _
 
 PAN, TILT = "pan_joint", "tilt_joint"
@@ -45,10 +46,9 @@ class Pose:
 def _words(degrees: float, plus: str, minus: str) -> str:
     if not math.isfinite(degrees):
         return "---"
-    whole = round(degrees)
-    if not whole:
+    if not round(degrees):
         return "0°"
-    return (plus if whole > 0 else minus).format(degrees=abs(whole))
+    return (plus if degrees > 0 else minus).format(degrees=whole(abs(degrees)))
 
 
 def head_in(value: Mapping[str, Any]) -> Pose | None:

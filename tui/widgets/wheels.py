@@ -6,9 +6,10 @@ import math
 
 from rich.cells import cell_len
 
+from tui.figures import figure, short
 from tui.i18n import _
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
-from tui.widgets.wheels_reading import Wheels
+from tui.widgets.wheels_reading import Wheels, can_be_turned_to
 from tui.widgets.wheels_view import chassis, speed_bar
 
 MOST_M_S = 0.5
@@ -111,9 +112,11 @@ def _number(value: float) -> float:
 def _side(name: str, speed: float, rows: int, look: str, *, right: bool) -> list[Line]:
     """Name and speed of a wheel, at the height of the rear wheels."""
     texts = [""] * rows
-    texts[rows - 2], texts[rows - 1] = name, speed_words(speed)
+    words = speed_words(speed)
+    texts[rows - 2] = name
+    texts[rows - 1] = words if cell_len(words) <= SIDE else number_words(speed)
     return [
-        [Ink(" " * max(0, SIDE - cell_len(text)) + text if right else fit(text, SIDE), look)]
+        [Ink(fit(" " * max(0, SIDE - cell_len(text)) + text if right else text, SIDE), look)]
         for text in texts
     ]
 
@@ -127,7 +130,7 @@ def _level(speed: float, width: int, look: str) -> Line:
 
 def number_words(value: float) -> str:
     """`-0.25`."""
-    return f"{value:.2f}" if math.isfinite(value) else "---"
+    return figure(value) if math.isfinite(value) else "---"
 
 
 def speed_words(speed: float) -> str:
@@ -136,9 +139,11 @@ def speed_words(speed: float) -> str:
 
 
 def angle_words(steering_rad: float) -> str:
-    """`0.50 rad 29° left`."""
+    """`0.50 rad 29° left`, or that no wheel can be turned so far."""
     if not math.isfinite(steering_rad):
         return "---"
+    if not can_be_turned_to(steering_rad):
+        return _("out of range: {angle} rad").format(angle=short(steering_rad))
     degrees = round(math.degrees(steering_rad))
     words = _("{degrees}° left") if degrees > 0 else _("{degrees}° right")
     turned = words.format(degrees=abs(degrees)) if degrees else "0°"
@@ -151,4 +156,4 @@ def radius_words(radius_m: float) -> str:
         return "R ---"
     if math.isinf(radius_m):
         return "R ∞"
-    return "R " + _("{metres} m").format(metres=f"{abs(radius_m):.2f}")
+    return "R " + _("{metres} m").format(metres=figure(abs(radius_m)))

@@ -12,6 +12,8 @@ from tui.i18n import _
 
 STANDING_BELOW_M_S = 0.005
 EVEN_WITHIN_M_S = 0.003
+FARTHEST_RAD = math.pi
+"""A wheel that is said to be turned farther is not: a half turn is the most that an angle tells."""
 LEFT, RIGHT, STEERING = "rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"
 
 
@@ -45,6 +47,11 @@ class Wheels:
         if left < right:
             return _("left wheel slower")
         return _("right wheel slower")
+
+
+def can_be_turned_to(steering_rad: float) -> bool:
+    """Whether that can be the angle of a wheel: a finite one, of half a turn at most."""
+    return abs(steering_rad) <= FARTHEST_RAD
 
 
 def wheels_in(value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M) -> Wheels | None:

@@ -7,7 +7,7 @@ import math
 from robot.kinematics import TRACK_M, WHEELBASE_M
 from tui.widgets.dots import Dots, rectangle
 from tui.widgets.drawing import Ink, Line
-from tui.widgets.wheels_reading import Wheels
+from tui.widgets.wheels_reading import Wheels, can_be_turned_to
 
 WHEEL_M = (0.035, 0.085)
 """Width and length of a wheel as drawn: a little larger than life."""
@@ -30,7 +30,7 @@ def chassis(wheels: Wheels, columns: int, rows: int) -> list[Line]:
     body = [(middle - half_body, front), (middle, nose), (middle + half_body, front)]
     tail = rear + scale * 0.02
     dots.outline([*body, (middle + half_body, tail), (middle - half_body, tail)], "muted")
-    angle = wheels.steering_rad if math.isfinite(wheels.steering_rad) else 0.0
+    angle = wheels.steering_rad if can_be_turned_to(wheels.steering_rad) else 0.0
     size = scale * WHEEL_M[0], scale * WHEEL_M[1]
     for side, look in ((-1, "accent"), (1, "second")):
         x = middle + side * half_track
