@@ -30,8 +30,9 @@ MAX_HISTORY_CHARS = 8 << 20
 
 
 def encode(message: Mapping[str, Any]) -> bytes:
-    """Return a message as its line."""
-    return json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+    """Return a message as its line; names of files may hold halves of characters."""
+    text = json.dumps(message, ensure_ascii=False, separators=(",", ":"))
+    return text.encode("utf-8", "surrogatepass") + b"\n"
 
 
 def pack_text(text: str) -> Any:  # noqa: ANN401 - JSON

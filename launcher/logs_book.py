@@ -12,6 +12,7 @@ from launcher.logs_ring import LogRing
 from launcher.logs_text import plain_text
 from launcher.status import LogLine, Severity
 from launcher.words import say
+from text.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -46,7 +47,7 @@ class LogBook:
         now = time.time()
         ring = self.rings[node]
         ring.append(LogLine(node, ring.last_seq + 1, now, severity, words, "", DECK))
-        stamped = f"[{severity.name}] [{now:.9f}] [{DECK}]: {words}\n"
+        stamped = f"[{severity.name}] [{now:.9f}] [{DECK}]: {plain(words)}\n"
         self._files.write(node, stamped.encode(errors="backslashreplace"))
         self._on_line()
 

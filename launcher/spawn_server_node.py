@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from launcher.process_marks import show_mark, show_name, show_title
 from launcher.process_table import NODE_MARK
 from launcher.process_ties import die_with_parent, leave_libraries_alone_at_exit
+from text.plain import plain
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -140,7 +141,7 @@ def _execute(birth: Birth) -> None:
 
 
 def _give_up(word: str, code: int) -> None:
-    os.write(2, f"deck: {word}\n".encode(errors="backslashreplace"))
+    os.write(2, f"deck: {plain(word)}\n".encode(errors="backslashreplace"))
     os._exit(code)
 
 

@@ -9,12 +9,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from text.plain import filled
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
 
 class Words(str):
-    """An English sentence that remembers what it was made of."""
+    """An English sentence that remembers what it was made of.
+
+    As a text it is harmless, whatever its values are; `values` holds them as they came.
+    """
 
     __slots__ = ("template", "values")
 
@@ -23,7 +28,7 @@ class Words(str):
 
     def __new__(cls, template: str, values: dict[str, object]) -> Self:
         """Fill `template`, in the manner of `str.format`, with `values`."""
-        words = super().__new__(cls, template.format(**values) if values else template)
+        words = super().__new__(cls, filled(template, values))
         words.template = template
         words.values = values
         return words

@@ -12,10 +12,11 @@ of one cell: control characters by their pictures (U+2400 and on), all else by U
 from __future__ import annotations
 
 import re
+from string import Formatter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 
@@ -82,6 +83,22 @@ def replaced(text: str, instead: Callable[[str], str]) -> str:
     if text.isprintable() and (text.isascii() or _PRINTABLE.search(text) is None):
         return text
     return _HIDDEN.sub(lambda found: instead(found[1]) if found[1] else found[0], text)
+
+
+def filled(template: str, values: Mapping[str, object]) -> str:
+    """Return a sentence of ours with values from anywhere in it, in the manner of `str.format`."""
+    if not values:
+        return template
+    return _FILLING.vformat(template, (), values)
+
+
+class _Filling(Formatter):
+    def format_field(self, value: object, format_spec: str) -> str:
+        """Make harmless what a value was turned into, however the template wants it written."""
+        return plain(format(value, format_spec))
+
+
+_FILLING = _Filling()
 
 
 def _picture(character: str) -> str:

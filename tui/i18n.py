@@ -12,6 +12,8 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from text.plain import filled, plain, plain_lines
+
 LOCALE = Path(__file__).parent / "locale"
 DOMAIN = "deck"
 LANGUAGES = ("en", "ru")
@@ -72,18 +74,21 @@ def N_(message: str) -> str:  # noqa: N802 - gettext's own name
 
 
 def said(words: str) -> str:
-    """Return a sentence of the launcher (`launcher.words.say`) in the language spoken now."""
+    """Return a sentence of the launcher (`launcher.words.say`) in the language spoken now.
+
+    Its values, and a text that is no such sentence, are made harmless.
+    """
     template = getattr(words, "template", None)
     if template is None:
-        return words
+        return plain_lines(words)
     found: dict[str, object] = getattr(words, "values", {})
     values = {k: said(value) if isinstance(value, str) else value for k, value in found.items()}
-    return _(template).format(**values) if values else _(template)
+    return filled(_(template), values)
 
 
 def pick(texts: Mapping[str, str]) -> str:
     """Return the text in the language spoken now out of {code: text}, else English, else any."""
-    return texts.get(_language) or texts.get("en") or next(iter(texts.values()), "")
+    return plain(texts.get(_language) or texts.get("en") or next(iter(texts.values()), ""))
 
 
 if __name__ == "__main__":

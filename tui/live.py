@@ -17,6 +17,7 @@ from launcher.rundir import log_dir
 from text.plain import plain
 from tui import clock
 from tui.app import DeckApp, every_action
+from tui.cli.output import say_error
 from tui.i18n import _, detect, set_language
 from tui.launchpad import LivePad
 from tui.settings import Settings, SettingsError, load, save, settings_path
@@ -155,5 +156,5 @@ def run_live(order: Order, lang: str | None) -> int:
 
 
 def _refused(words: str, code: int = 2) -> int:
-    print(words, file=sys.stderr)  # noqa: T201
+    say_error(words)
     return code

@@ -12,8 +12,9 @@ import pytest
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
 from launcher.words import say
 from tests.waiting import wait_until
+from text.plain import is_plain
 from tui.cli.line_writer import MOST_WAITING, LineWriter
-from tui.cli.output import Paint, table
+from tui.cli.output import Paint, harmless, json_text, table
 from tui.cli.report import JsonReport, Summary, TextReport
 from tui.i18n import set_language
 
@@ -182,3 +183,19 @@ def test_json_is_one_object_a_line_and_ends_with_the_summary() -> None:
     assert events[2]["severity"] == "warn"
     assert events[-1]["exit_code"] == 1
     assert events[-1]["nodes"][0]["healthy"] is False
+
+
+def test_of_what_a_terminal_obeys_only_our_own_colours_are_written() -> None:
+    line = Paint(Terminal(), {"TERM": "xterm"})("a\x1b[31mb", "31", "1")
+    assert harmless(f"{line}\x1b[45m\x1b]0;x\x07\nnext") == (
+        "\x1b[31;1ma␛[31mb\x1b[0m␛[45m␛]0;x␇\nnext"
+    )
+
+
+def test_json_is_read_back_as_it_was_and_shows_no_more_than_it_should() -> None:
+    value = {"a\x1b": ["Привет \u202e \U000e0065 \ud800 \x9b\n", 1.5, None]}
+    text = json_text(value)
+    assert json.loads(text) == value
+    assert "Привет" in text
+    assert is_plain(text)
+    assert json.loads(json_text(value, indent=2)) == value

@@ -7,8 +7,9 @@ parser of its own.
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, NoReturn
+from typing import IO, TYPE_CHECKING, NoReturn
 
+from tui.cli.output import harmless
 from tui.cli.values import count, domain, folder, rate, seconds
 from tui.i18n import LANGUAGES, N_, _, ngettext
 
@@ -37,6 +38,10 @@ WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--lang")
 
 class Parser(argparse.ArgumentParser):
     """A parser that speaks the language of the screen and names the help."""
+
+    def _print_message(self, message: str, file: IO[str] | None = None) -> None:  # type: ignore[override]
+        """Repeat nothing as it was typed: it may have been pasted."""
+        super()._print_message(harmless(message), file)
 
     def error(self, message: str) -> NoReturn:
         """End with 2: what is wrong, and where the help is."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import sys
 from typing import TYPE_CHECKING
 
@@ -18,8 +17,9 @@ from launcher.errors import (
     UnknownNodeError,
 )
 from launcher.events import LogEvent
+from text.plain import plain
 from tui.cli.health import settled, well
-from tui.cli.output import Paint, say_error, write
+from tui.cli.output import Paint, json_text, say_error, write
 from tui.cli.report import TextReport
 from tui.cli.sessions import as_json, show
 from tui.i18n import _, language, ngettext, said
@@ -129,7 +129,7 @@ async def _ps(options: Namespace) -> int:
         found.append((link.session, tuple(link.nodes.values())))
         await link.aclose()
     if options.json:
-        write(json.dumps([as_json(*each) for each in found], ensure_ascii=False, indent=2))
+        write(json_text([as_json(*each) for each in found], indent=2))
         return 0
     if not found:
         say_error(str(said(NotRunningError().args[0])))
@@ -174,7 +174,7 @@ async def _down(options: Namespace) -> int:
     session, count = link.session, len(link.nodes)
     await link.shutdown()
     words = ngettext("{name} stopped, {count} node", "{name} stopped, {count} nodes", count)
-    write(words.format(name=session.name, count=count))
+    write(words.format(name=plain(session.name), count=count))
     return 0
 
 

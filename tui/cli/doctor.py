@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from tui.cli.output import DIM, GREEN, RED, YELLOW, Paint, write
+from text.plain import plain
+from tui.cli.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
 from tui.doctor import Level, examine
 from tui.i18n import N_, _
 
@@ -28,7 +28,7 @@ def doctor_command(options: Namespace) -> int:
     """Examine everything; 1 if something is missing that Deck cannot do without."""
     findings = examine()
     if options.json:
-        write(json.dumps([asdict(finding) for finding in findings], ensure_ascii=False, indent=2))
+        write(json_text([asdict(finding) for finding in findings], indent=2))
     else:
         show(findings, Paint(sys.stdout))
     return 1 if any(finding.level is Level.FAIL for finding in findings) else 0
@@ -43,6 +43,6 @@ def show(findings: Iterable[Finding], paint: Paint) -> None:
 
 def _show(finding: Finding, paint: Paint, width: int) -> None:
     word, colour = LOOKS[finding.level]
-    write(f"{paint(_(word).ljust(width), colour)}  {finding.text}")
+    write(f"{paint(_(word).ljust(width), colour)}  {plain(finding.text)}")
     if finding.mend:
         write(f"{'':{width}}  {paint('-> ' + finding.mend, DIM)}")

@@ -8,6 +8,8 @@ import threading
 from collections import deque
 from typing import TYPE_CHECKING
 
+from tui.cli.output import harmless
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -69,7 +71,7 @@ class LineWriter:
             )
 
     def _append(self, line: str) -> None:
-        data = (line + "\n").encode(self._encoding, "replace")
+        data = (harmless(line) + "\n").encode(self._encoding, "replace")
         self._waiting.append(data)
         self._size += len(data)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import asdict
 from typing import TYPE_CHECKING
@@ -11,7 +10,8 @@ from launcher.catalog import find_profile, list_profiles
 from launcher.errors import ProfileError
 from launcher.profile import load_profile
 from launcher.profile_text import shown
-from tui.cli.output import DIM, RED, YELLOW, Paint, write
+from text.plain import plain
+from tui.cli.output import DIM, RED, YELLOW, Paint, json_text, write
 from tui.i18n import _, ngettext, pick, said
 
 if TYPE_CHECKING:
@@ -27,14 +27,14 @@ def list_command(options: Namespace) -> int:
     """Show every profile; broken ones with their first problem."""
     entries = list_profiles()
     if options.json:
-        write(json.dumps([_as_json(entry) for entry in entries], ensure_ascii=False, indent=2))
+        write(json_text([_as_json(entry) for entry in entries], indent=2))
         return 0
     width = max((len(entry.name) for entry in entries), default=0)
     paint = Paint(sys.stdout)
     for entry in entries:
-        name = entry.name.ljust(width)
+        name = plain(entry.name).ljust(width)
         if entry.error:
-            first = said(entry.problems[0].words) if entry.problems else entry.error
+            first = said(entry.problems[0].words) if entry.problems else plain(entry.error)
             write(f"{name}  {paint(_('broken'), RED)}: {first}")
             continue
         nodes = paint(_("nodes: {names}").format(names=", ".join(entry.nodes)), DIM)
@@ -55,7 +55,7 @@ def check_command(options: Namespace) -> int:
         paths = [entry.path for entry in list_profiles()]
     if options.json:
         found = [_checked(path, options) for path in paths]
-        write(json.dumps(found, ensure_ascii=False, indent=2))
+        write(json_text(found, indent=2))
         return 2 if any(each["problems"] for each in found) else 0
     return max([_check(path, options) for path in paths], default=0)
 
@@ -93,13 +93,13 @@ def _check(path: Path, options: Namespace) -> int:
         write(_line(problem, paint, YELLOW, _("warning") + ": "))
     count = len(profile.nodes)
     nodes = ngettext("{count} node", "{count} nodes", count).format(count=count)
-    write(f"{shown(path)}: {_('all is well')}, {nodes}")
+    write(f"{plain(shown(path))}: {_('all is well')}, {nodes}")
     return 0
 
 
 def _line(problem: ProfileProblem, paint: Paint, colour: str, kind: str = "") -> str:
     words = said(problem.words)
-    where = f"{problem.where}: "
+    where = plain(f"{problem.where}: ")
     return paint(where, colour) + kind + words.removeprefix(where)
 
 

@@ -1,20 +1,28 @@
-"""Writing to standard output: colour where it is wanted, tables, and a reader that may be slow."""
+"""Writing to the standard streams: harmless text, colour where it is wanted, tables, JSON."""
 
 from __future__ import annotations
 
 import contextlib
+import json
 import os
+import re
 import sys
+import traceback
 from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
+from text.plain import plain, plain_lines, replaced
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from types import TracebackType
 
 RED, GREEN, YELLOW, DIM, BOLD = "31", "32", "33", "2", "1"
 PREFIX_COLOURS = ("36", "35", "32", "34", "33", "96", "95", "92", "94", "93")
 """For the names of nodes, taken in turn."""
+_CODE = "|".join(("0", RED, GREEN, YELLOW, DIM, BOLD, *PREFIX_COLOURS))
+_COLOUR = re.compile(rf"(\x1b\[(?:{_CODE})(?:;(?:{_CODE}))*m)")
 
 
 class Paint:
@@ -26,12 +34,34 @@ class Paint:
         self.wanted = stream.isatty() and not env.get("NO_COLOR") and env.get("TERM") != "dumb"
 
     def __call__(self, text: str, *codes: str) -> str:
-        """Return the text in these colours."""
+        """Return the text, which may come from anywhere, in these colours."""
+        text = plain(text)
         return f"\x1b[{';'.join(codes)}m{text}\x1b[0m" if self.wanted and codes else text
 
 
+def harmless(text: str) -> str:
+    """Return lines that may be written: of what a terminal obeys, only Deck's own colours."""
+    pieces = _COLOUR.split(text)
+    pieces[::2] = map(plain_lines, pieces[::2])
+    return "".join(pieces)
+
+
+def json_text(value: object, indent: int | None = None) -> str:
+    """Return JSON in which text stays readable, and what is not harmless is escaped."""
+    return replaced(json.dumps(value, ensure_ascii=False, indent=indent), _escaped)
+
+
+def _escaped(character: str) -> str:
+    # The ends of lines stand between the values: within them they are escaped already.
+    return character if character == "\n" else json.dumps(character)[1:-1]
+
+
 def make_streams_safe() -> None:
-    """Have nobody trip over a stream that is closed, or that lacks a character."""
+    """Have nobody trip over a stream that is closed, or that lacks a character.
+
+    A fault of Deck's own tells what it was about, and so it is told harmlessly, too.
+    """
+    sys.excepthook = _tell_fault
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
@@ -39,6 +69,12 @@ def make_streams_safe() -> None:
             setattr(sys, name, nowhere)
         elif isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")
+
+
+def _tell_fault(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
+    say_error("".join(traceback.format_exception(kind, error, trace)).rstrip("\n"))
 
 
 def keep_stdout_to_ourselves() -> None:
@@ -56,7 +92,7 @@ def keep_stdout_to_ourselves() -> None:
 def say_error(text: str) -> None:
     """Write to standard error, whatever became of it."""
     try:
-        sys.stderr.write(text + "\n")
+        sys.stderr.write(harmless(text) + "\n")
         sys.stderr.flush()
     except (OSError, ValueError):
         pass
@@ -64,12 +100,13 @@ def say_error(text: str) -> None:
 
 def write(text: str) -> None:
     """Write a line to standard output, at once."""
-    sys.stdout.write(text + "\n")
+    sys.stdout.write(harmless(text) + "\n")
     sys.stdout.flush()
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the lines of a table, columns as wide as they need to be."""
+    """Return the lines of a table, columns as wide as they need to be, cells from anywhere."""
+    rows = [[plain(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=False)]
     return [
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()

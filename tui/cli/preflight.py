@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import asdict
 from typing import TYPE_CHECKING
@@ -11,8 +10,9 @@ from launcher.catalog import find_profile
 from launcher.errors import UsageError
 from launcher.profile import load_profile
 from launcher.words import say
+from text.plain import plain
 from tui.cli.doctor import show
-from tui.cli.output import Paint, write
+from tui.cli.output import Paint, json_text, write
 from tui.doctor.finding import Level
 from tui.i18n import _, ngettext
 
@@ -43,10 +43,10 @@ def preflight_command(options: Namespace) -> int:
     findings = examine(profile)
     bad = sum(finding.level is Level.FAIL for finding in findings)
     if options.json:
-        write(json.dumps([asdict(finding) for finding in findings], ensure_ascii=False, indent=2))
+        write(json_text([asdict(finding) for finding in findings], indent=2))
         return NOT_READY if bad else 0
     if not findings:
-        write(_("{name} names no device").format(name=profile.name))
+        write(_("{name} names no device").format(name=plain(profile.name)))
         return 0
     show(findings, Paint(sys.stdout))
     if not bad:

@@ -10,7 +10,6 @@ With `--json` it writes one object a line, told apart by `event`:
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import signal
@@ -26,7 +25,7 @@ from launcher.errors import UsageError
 from launcher.process_shm_unfinished import discard_unfinished
 from launcher.words import say
 from text.plain import plain
-from tui.cli.output import BOLD, Paint, keep_stdout_to_ourselves, table, write
+from tui.cli.output import BOLD, Paint, json_text, keep_stdout_to_ourselves, table, write
 from tui.i18n import _
 from tui.recording_words import complaints, progress, size_words
 
@@ -145,7 +144,7 @@ def _table(status: RecordingStatus) -> None:
         write("")
         write(Paint(sys.stdout)(first, BOLD))
         for line in others:
-            write(plain(line, len(line)))
+            write(line)
 
 
 def _figures(status: RecordingStatus) -> dict[str, object]:
@@ -158,4 +157,4 @@ def _figures(status: RecordingStatus) -> dict[str, object]:
 
 
 def _object(event: str, **fields: object) -> None:
-    write(json.dumps({"event": event, **fields}, ensure_ascii=False))
+    write(json_text({"event": event, **fields}))

@@ -12,12 +12,12 @@ JSON is one object a line, told apart by `event`:
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from launcher.status import NodeState, Severity
-from tui.cli.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, table
+from text.plain import plain
+from tui.cli.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
 from tui.i18n import _, ngettext, said
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class TextReport:
         if line.severity is not Severity.INFO:
             text = f"{line.severity.name} {text}"
         colour = COLOURS.get(line.severity) or (DIM if line.source == DECK else "")
-        self._line(line.node, self._paint(text, colour) if colour else text)
+        self._line(line.node, self._paint(text, colour) if colour else plain(text))
 
     def skipped(self, node: str, lines: int) -> None:
         """Tell that lines were left out."""
@@ -120,7 +120,7 @@ class TextReport:
 
     def note(self, text: str) -> None:
         """Tell something about the run itself."""
-        self._line(DECK, text)
+        self._line(DECK, plain(text))
 
     def summary(self, summary: Summary) -> None:
         """Tell how it went, as a table."""
@@ -147,7 +147,7 @@ class TextReport:
             parts.append(_("not healthy: {names}").format(names=", ".join(bad)))
         if summary.reason:
             parts.append(_("ended from elsewhere: {reason}").format(reason=said(summary.reason)))
-        words = "; ".join(parts) or _("every node stayed healthy")
+        words = plain("; ".join(parts)) or _("every node stayed healthy")
         self._write(_("{words}; {seconds:.1f} s").format(words=words, seconds=summary.seconds))
 
     def _line(self, node: str, text: str) -> None:
@@ -217,7 +217,7 @@ class JsonReport:
         )
 
     def _object(self, event: str, **fields: object) -> None:
-        self._write(json.dumps({"event": event, **fields}, ensure_ascii=False))
+        self._write(json_text({"event": event, **fields}))
 
 
 def status_fields(node: NodeStatus) -> dict[str, object]:
