@@ -14,10 +14,11 @@ import pytest
 
 from launcher.profile import load_profile
 from launcher.profile_devices import variable
+from launcher.rundir import OWN_RUN_DIR
 from tui.cli.arguments import COMMANDS, parser_of, split
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-SERVICE = DOCS / "deck-robot.service"
+SERVICE = DOCS / "deck-robot@.service"
 PAGES = ["raspberry-pi.md", "raspberry-pi.ru.md"]
 
 
@@ -29,7 +30,8 @@ def page(request: pytest.FixtureRequest) -> str:
 
 def service() -> configparser.SectionProxy:
     """Return what the unit says of the service."""
-    unit = configparser.ConfigParser(interpolation=None, strict=True)
+    # Settings that may be said twice are lists; what is asked for here is said once.
+    unit = configparser.ConfigParser(interpolation=None, strict=False)
     unit.optionxform = str  # type: ignore[assignment,method-assign]
     unit.read_string(SERVICE.read_text())
     return unit["Service"]
@@ -57,17 +59,41 @@ def test_only_deck_is_asked_to_stop_and_gets_the_time_that_it_may_need() -> None
     assert settings["Restart"] == "on-failure"
 
 
+def analyzed(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Let systemd-analyze look at the service as it is installed: a template, for one user."""
+    unit = tmp_path / SERVICE.name
+    shutil.copy(SERVICE, unit)
+    return subprocess.run(
+        ["systemd-analyze", *arguments, str(unit)], capture_output=True, text=True, check=False
+    )
+
+
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="no systemd here")
 def test_systemd_takes_the_service(tmp_path: Path) -> None:
-    done = subprocess.run(
-        ["systemd-analyze", "verify", "--user", str(SERVICE)],
-        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    said = [line for line in done.stderr.splitlines() if SERVICE.name in line]
+    done = analyzed(tmp_path, "verify")
+    said = [line for line in done.stderr.splitlines() if "deck-robot@" in line]
     assert (done.returncode, said) == (0, [])
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="no systemd here")
+def test_the_service_is_closed_to_what_a_robot_does_not_need(tmp_path: Path) -> None:
+    done = analyzed(tmp_path, "security", "--offline=true", "--threshold=40")
+    assert done.returncode == 0, done.stdout
+    allowed = re.findall(r"^DeviceAllow=(.*)$", SERVICE.read_text(), re.MULTILINE)
+    assert {one.split()[0].removeprefix("char-") for one in allowed} >= {
+        "ttyACM",
+        "ttyUSB",
+        "video4linux",
+        "alsa",
+    }
+    assert service()["DevicePolicy"] == "closed"
+    assert service()["IPAddressDeny"] == "any"
+
+
+def test_the_remembered_stop_and_the_logs_can_be_written_by_the_service() -> None:
+    assert service()["ProtectSystem"] == "strict"
+    paths = service()["ReadWritePaths"].split()
+    assert {"/dev/shm", "/home/%i/.local/state/deck"} <= set(paths)
 
 
 def test_the_profiles_shown_can_be_used(page: str, tmp_path: Path) -> None:
@@ -97,7 +123,7 @@ def test_the_variables_shown_are_those_of_the_robot(page: str) -> None:
     }
     shown = set(re.findall(r"DECK_\w+", page))
     assert len(shown) >= 6
-    assert shown <= known
+    assert shown <= known | {OWN_RUN_DIR}
 
 
 def test_both_pages_link_what_is_there_and_have_the_same_parts(page: str) -> None:
