@@ -6,6 +6,7 @@ other profile says. A node set to nothing is taken out, and `run` replaces `exec
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.profile_text import SHIPPED, read_text, shown
@@ -15,7 +16,6 @@ from launcher.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
-    from pathlib import Path
 
     from launcher.profile_tree import Problems
 
@@ -26,6 +26,8 @@ JOINED: Any = {
     "devices": ALL,
 }
 """Which mappings are joined, by their keys; `*` stands for any."""
+MAX_CHAIN = 32
+"""Profiles that extend one another; nobody keeps more of them in mind."""
 RIVALS = {"run": "exec", "exec": "run"}
 
 
@@ -60,6 +62,11 @@ def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | N
         message = say("profiles extend each other in a cycle: {cycle}", cycle=cycle)
         problems.add(entry.value.place, ("extends",), message)
         return own
+    if len(seen) == MAX_CHAIN:
+        message = say("more than {most} profiles extend each other in a row", most=MAX_CHAIN)
+        hint = say("say here what they say together")
+        problems.add(entry.value.place, ("extends",), message, hint)
+        return own
     base = _read(base_path, problems, seen)
     return own if base is None else _without_removed(_joined(base, own))
 
@@ -67,7 +74,8 @@ def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | N
 def _base_path(wanted: str, path: Path) -> Path | None:
     """Find the profile: a path beside this file, else a name beside it or in the course."""
     beside = path.parent / wanted
-    candidates = [beside, beside.with_name(beside.name + ".yaml"), SHIPPED / f"{wanted}.yaml"]
+    # Put together as text: `/` and `..` have no name that an ending could be added to.
+    candidates = [beside, Path(f"{beside}.yaml"), SHIPPED / f"{wanted}.yaml"]
     try:
         return next((candidate for candidate in candidates if candidate.is_file()), None)
     except (OSError, ValueError):

@@ -260,6 +260,18 @@ BAD = {
         "extends: 09-brian\nnodes: {a: {exec: [x]}}",
         "1:10: extends: there is no profile '09-brian' to extend (did you mean 09-brain?)",
     ),
+    "a folder without a name extended": (
+        "extends: /\nnodes: {a: {exec: [x]}}",
+        "1:10: extends: there is no profile '/' to extend",
+    ),
+    "the folder above extended": (
+        "extends: ..\nnodes: {a: {exec: [x]}}",
+        "1:10: extends: there is no profile '..' to extend",
+    ),
+    "nothing extended": (
+        "extends: ''\nnodes: {a: {exec: [x]}}",
+        "1:10: extends: there is no profile '' to extend",
+    ),
     "a profile that extends itself": (
         "extends: lesson\nnodes: {a: {exec: [x]}}",
         "1:10: extends: profiles extend each other in a cycle: lesson -> lesson",
@@ -363,6 +375,16 @@ def test_a_circle_of_profiles_is_named(tmp_path: Path) -> None:
     assert "profiles extend each other in a cycle: a -> b -> c -> a" in _refused(
         tmp_path / "a.yaml"
     )
+
+
+def test_a_chain_of_profiles_without_end_is_refused(tmp_path: Path) -> None:
+    for number in range(1500):
+        written(tmp_path, f"extends: p{number + 1}", f"p{number}.yaml")
+    written(tmp_path, "nodes: {x: {exec: [x]}}", "p1500.yaml")
+    assert "p31.yaml:1:10: extends: more than 32 profiles extend each other" in _refused(
+        tmp_path / "p0.yaml"
+    )
+    assert list(load_profile(tmp_path / "p1469.yaml").nodes) == ["x"]
 
 
 def test_a_fault_in_an_extended_profile_names_that_file(tmp_path: Path) -> None:
