@@ -26,10 +26,9 @@ from launcher.control_socket import connect
 from launcher.errors import ConnectionLostError, ProtocolError, UnknownNodeError
 from launcher.events import LogEvent
 from launcher.rundir import log_dir, run_dir
-from launcher.running import find_running
+from launcher.running import find_running, running_records
 from launcher.serial_ports import serial_ports
 from launcher.supervisor_plan import plan_of
-from launcher.supervisor_record import read_records
 from launcher.words import say
 
 if TYPE_CHECKING:
@@ -99,12 +98,13 @@ async def attach(name: str | None = None) -> SupervisorClient:
         ConnectionLostError: if it has ended just now, or does not answer.
         ProtocolError: if it is of another version.
     """
-    return await _connect(find_running(name).folder)
+    record = await asyncio.to_thread(find_running, name)
+    return await _connect(record.folder)
 
 
 def running() -> list[SessionInfo]:
     """Return every session that runs, oldest first."""
-    return [record.session for record in read_records(run_dir()) if record.runs]
+    return [record.session for record in running_records()]
 
 
 def _read(

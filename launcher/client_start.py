@@ -92,7 +92,10 @@ class StartingSupervisor:
             if "no_room" in answer:
                 raise RunDirError(unpack_text(answer["no_room"]))
             if "running" in answer:
-                raise AlreadyRunningError(unpack_session(answer["running"]))
+                session = unpack_session(answer["running"])
+                raise AlreadyRunningError(
+                    session, answer["run_dir"], answer["down"], answer["free"]
+                )
             return Path(answer["folder"]), os.dup(stdin.fileno())
         finally:
             self.give_up()

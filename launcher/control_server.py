@@ -91,7 +91,9 @@ class ControlServer:
         self._last_log = float("-inf")
 
     async def serve(self, listening: socket.socket) -> None:
-        """Accept clients from now on."""
+        """Accept clients here from now on, and nowhere else; those that there are stay."""
+        if self._server is not None:
+            self._server.close()
         self._server = await asyncio.start_unix_server(
             self._welcome, sock=listening, limit=MAX_REQUEST_BYTES
         )

@@ -161,22 +161,40 @@ class SeveralRunningError(SessionError):
 
 
 class AlreadyRunningError(SessionError):
-    """The same profile runs already in that domain."""
+    """The same nodes, or others that drive the same wheels, run already in that domain."""
 
     exit_code = 2
 
-    def __init__(self, session: SessionInfo) -> None:
-        """`session`: the one that runs."""
+    def __init__(
+        self, session: SessionInfo, run_dir: str = "", down: str = "deck down", free: int = 0
+    ) -> None:
+        """`session`: the one that runs; `run_dir`: its run directory if it is not ours.
+
+        `down`: what stops it; `free`: a domain in which there is no session.
+        """
         self.session = session
-        super().__init__(
-            say(
-                "{name} runs already in domain {domain} (pid {pid}); `deck attach` shows it,"
-                " `deck down` stops it",
-                name=session.name,
-                domain=session.domain,
-                pid=session.supervisor_pid,
+        self.free = free
+        values: dict[str, object] = {
+            "name": session.name,
+            "domain": session.domain,
+            "pid": session.supervisor_pid,
+            "down": down,
+            "free": free,
+        }
+        if run_dir:
+            words = say(
+                "{name} runs already in domain {domain} (pid {pid}, run directory {run_dir});"
+                " `{down}` stops it, `--domain {free}` starts another beside it",
+                run_dir=run_dir,
+                **values,
             )
-        )
+        else:
+            words = say(
+                "{name} runs already in domain {domain} (pid {pid}); `deck attach` shows it,"
+                " `{down}` stops it, `--domain {free}` starts another beside it",
+                **values,
+            )
+        super().__init__(words)
 
 
 class StartError(SessionError):

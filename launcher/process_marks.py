@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import ctypes
 
-from launcher.process_table import NODE_MARK, RUN_MARK, stat_fields
+from launcher.process_table import NODE_MARK, RUN_MARK, SUPERVISOR_MARK, stat_fields
 from launcher.process_ties import set_short_name
 
 ROOM_ARGUMENT = "-" * 160
 """Last argument of a command line that has room for titles."""
-_ROOM = {RUN_MARK: "-" * 80, NODE_MARK: "-" * 255}
+_ROOM = {RUN_MARK: "-" * 80, NODE_MARK: "-" * 255, SUPERVISOR_MARK: "-" * 90}
 
 _ARG_START, _ARG_END, _ENV_START, _ENV_END = range(48, 52)  # fields of /proc/self/stat, proc(5)
 

@@ -23,6 +23,9 @@ RUN_MARK = "DECK_RUN_ID"
 NODE_MARK = "DECK_NODE"
 """Environment variable that says which node of that run it is, or descends from."""
 
+SUPERVISOR_MARK = "DECK_SUPERVISOR"
+"""Environment variable of a supervisor: its run's id, and where it holds its folder open."""
+
 _EXEC_WITHIN_S = 0.1
 _EXEC_LOOK_EVERY_S = 0.0005
 
@@ -80,13 +83,18 @@ def stat_fields(stat: bytes) -> list[bytes]:
     return stat[stat.rindex(b")") + 2 :].split()
 
 
+def process_numbers() -> list[int]:
+    """Return the number of every process that this user can see."""
+    # Path objects cost more than the rest.
+    return [int(entry) for entry in os.listdir("/proc") if entry.isdigit()]  # noqa: PTH208
+
+
 def processes() -> Iterator[Process]:
     """Yield every process that this user can see."""
-    for entry in os.listdir("/proc"):  # noqa: PTH208 - Path objects cost more than the rest
-        if entry.isdigit():
-            process = read_process(int(entry))
-            if process is not None:
-                yield process
+    for pid in process_numbers():
+        process = read_process(pid)
+        if process is not None:
+            yield process
 
 
 def read_marks(pid: int) -> Mapping[str, str] | None:
@@ -132,7 +140,7 @@ def _is_being_executed(pid: int) -> bool:
     return bool(int(fields[20])) and not int(fields[23])
 
 
-_MARKS = frozenset((RUN_MARK.encode(), NODE_MARK.encode(), OWN_RUN_DIR.encode()))
+_MARKS = frozenset(mark.encode() for mark in (RUN_MARK, NODE_MARK, SUPERVISOR_MARK, OWN_RUN_DIR))
 
 
 def command_line(pid: int) -> str:

@@ -29,7 +29,7 @@ def run_dir() -> Path:
     Raises:
         RunDirError: if it is a link, a file, or somebody else's.
     """
-    return _own_folder(run_path(os.environ))
+    return own_folder(run_path(os.environ))
 
 
 def log_dir() -> Path:
@@ -68,8 +68,12 @@ def run_path(environ: Mapping[str, str]) -> Path:
     return Path(f"/tmp/deck-{os.getuid()}")
 
 
-def _own_folder(path: Path) -> Path:
-    """Make `path` if need be, and make sure that nobody else could have planted it."""
+def own_folder(path: Path) -> Path:
+    """Make `path` if need be, and make sure that nobody else could have planted it.
+
+    Raises:
+        RunDirError: if it is a link, a file, or somebody else's, or cannot be made.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with contextlib.suppress(FileExistsError):

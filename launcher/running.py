@@ -7,13 +7,30 @@ from typing import TYPE_CHECKING
 
 from launcher.catalog import fitting, is_path
 from launcher.errors import NotRunningError, SeveralRunningError
-from launcher.rundir import run_dir
+from launcher.rundir import OWN_RUN_DIR, run_dir
+from launcher.supervisor_found import supervisors
 from launcher.supervisor_record import read_records
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from launcher.supervisor_record import RunRecord
+
+
+def running_records() -> list[RunRecord]:
+    """Return every session that runs, oldest first, also one whose run directory was lost.
+
+    Whoever keeps runs apart by `DECK_RUN_DIR` is told of his own only.
+    """
+    records = read_records(run_dir())
+    found = {record.session.run_id: record for record in records if record.runs}
+    for supervisor in supervisors():
+        if supervisor.run_id in found or supervisor.purpose != os.environ.get(OWN_RUN_DIR, ""):
+            continue
+        record = supervisor.record()
+        if record is not None:
+            found[supervisor.run_id] = record
+    return [found[run_id] for run_id in sorted(found)]
 
 
 def find_running(name: str | None = None) -> RunRecord:
@@ -25,7 +42,7 @@ def find_running(name: str | None = None) -> RunRecord:
         NotRunningError: if there is none.
         SeveralRunningError: if there are several to choose from.
     """
-    found = [record for record in read_records(run_dir()) if record.runs]
+    found = running_records()
     chosen = found if name is None else _meant(name, found)
     names = [record.session.name for record in found]
     if not chosen:

@@ -24,6 +24,19 @@ if TYPE_CHECKING:
 _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTNG_", "AMENT_")
 """Variables that count when an interpreter or a library starts: a fork would come too late."""
 
+_DRIVERS = frozenset(
+    f"nodes.{name}"
+    for name in (
+        "ai_brain",
+        "ai_driver",
+        "chassis",
+        "drive_to_point",
+        "electronic_differential",
+        "llm_parser",
+    )
+)
+"""What gives orders to the wheels; two sessions with any of these would fight over them."""
+
 _BOOTSTRAP_DONE = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 """Set by the ROS wheels once LD_LIBRARY_PATH leads into this environment."""
 
@@ -71,6 +84,11 @@ class Plan:
     def needs(self) -> dict[str, tuple[str, ...]]:
         """Node to the nodes it needs."""
         return {node.name: node.needs for node in self.nodes}
+
+    @property
+    def drives(self) -> bool:
+        """Whether anything gives orders to the wheels."""
+        return any(node.command in _DRIVERS for node in self.nodes)
 
     @property
     def warm(self) -> bool:

@@ -10,6 +10,7 @@ import fcntl
 import json
 import os
 import shutil
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 RECORD_NAME = "session.json"
 _LOCK_NAME = "lock"
+_LOCKED_WITHIN_S = 5.0
+"""Whoever holds the lock for longer has been stopped in the middle of it."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +38,17 @@ class RunRecord:
     nodes: tuple[str, ...]
     processes: Mapping[str, tuple[int, int]]
     """Node to the number of its process and its start in ticks."""
+    drives: bool = False
+    """Whether any of them gives orders to the wheels."""
 
     @property
     def runs(self) -> bool:
         """Whether its supervisor is alive."""
         return supervisor_runs(self.session.run_id)
+
+    def collides(self, other: RunRecord) -> bool:
+        """Whether the two would get in each other's way in one domain."""
+        return bool(set(self.nodes) & set(other.nodes)) or (self.drives and other.drives)
 
     def write(self) -> None:
         """Write it, all or nothing."""
@@ -48,6 +57,7 @@ class RunRecord:
             "session": pack_session(self.session),
             "nodes": self.nodes,
             "processes": self.processes,
+            "drives": self.drives,
         }
         draft = self.folder / f"{RECORD_NAME}.new"
         draft.write_text(json.dumps(fields), encoding="utf-8")
@@ -60,33 +70,52 @@ class RunRecord:
 
 def read_records(run_dir: Path) -> list[RunRecord]:
     """Return every run that has left a record, oldest first; broken records are passed over."""
-    records = []
-    for path in sorted(run_dir.glob(f"*/{RECORD_NAME}")):
-        with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
-            fields = json.loads(path.read_text(encoding="utf-8"))
-            processes = {
-                str(node): (int(pid), int(started))
-                for node, (pid, started) in fields["processes"].items()
-            }
-            session = unpack_session(fields["session"])
-            records.append(RunRecord(path.parent, session, tuple(fields["nodes"]), processes))
-    return records
+    found = (read_record(path.parent) for path in sorted(run_dir.glob(f"*/{RECORD_NAME}")))
+    return [record for record in found if record is not None]
+
+
+def read_record(folder: Path) -> RunRecord | None:
+    """Return the record of the run in this folder; None if there is none, or a broken one."""
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
+        fields = json.loads((folder / RECORD_NAME).read_text(encoding="utf-8"))
+        processes = {
+            str(node): (int(pid), int(started))
+            for node, (pid, started) in fields["processes"].items()
+        }
+        session = unpack_session(fields["session"])
+        drives = bool(fields.get("drives"))
+        return RunRecord(folder, session, tuple(fields["nodes"]), processes, drives)
+    return None
 
 
 @contextlib.contextmanager
 def exclusively(run_dir: Path) -> Iterator[None]:
-    """Keep other supervisors from looking and writing at the same time."""
-    descriptor = os.open(run_dir / _LOCK_NAME, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    """Keep this user's other supervisors from looking and writing at the same time."""
+    descriptor = _lock_file(run_dir)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        deadline = time.monotonic() + _LOCKED_WITHIN_S
+        while not _locked(descriptor) and time.monotonic() < deadline:
+            time.sleep(0.005)
         yield
     finally:
         os.close(descriptor)
 
 
-def rival(records: list[RunRecord], nodes: tuple[str, ...], domain: int) -> RunRecord | None:
-    """Return a run that has one of these nodes in this domain already."""
-    for record in records:
-        if record.session.domain == domain and set(nodes) & set(record.nodes) and record.runs:
-            return record
-    return None
+def _lock_file(run_dir: Path) -> int:
+    """Open what all of this user's supervisors lock, whatever their run directory."""
+    flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
+    with contextlib.suppress(OSError):
+        descriptor = os.open(f"/tmp/deck-{os.getuid()}.lock", flags, 0o600)
+        if os.fstat(descriptor).st_uid == os.getuid():
+            return descriptor
+        os.close(descriptor)
+    # Somebody else has planted it there: those of one run directory at least.
+    return os.open(run_dir / _LOCK_NAME, flags, 0o600)
+
+
+def _locked(descriptor: int) -> bool:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True

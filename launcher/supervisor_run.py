@@ -6,13 +6,11 @@ import asyncio
 import contextlib
 import os
 import signal
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.control_protocol import MAX_MESSAGE_BYTES, encode, pack_session, pack_text
 from launcher.control_server import ControlServer
-from launcher.control_socket import listen
 from launcher.logs_book import DECK, LogBook
 from launcher.logs_files import LogFiles, prune_runs
 from launcher.process_exit import Reaper
@@ -20,11 +18,14 @@ from launcher.process_members import Members, Orphans
 from launcher.process_shm import sweep_abandoned
 from launcher.process_spawner import Spawner
 from launcher.process_stop import QUICK, Stop
+from launcher.rundir import OWN_RUN_DIR
 from launcher.status import SessionInfo, Severity, Stray
 from launcher.strays import end_strays, find_strays, forget_ended_runs
+from launcher.supervisor_beside import free_domain, neighbours, rival
+from launcher.supervisor_home import Home
 from launcher.supervisor_plan import Plan
 from launcher.supervisor_process import ProcessLauncher, ProcessScan
-from launcher.supervisor_record import RunRecord, exclusively, read_records, rival
+from launcher.supervisor_record import RunRecord, exclusively, read_records
 from launcher.supervisor_session import Session
 from launcher.words import Words, say
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from launcher.logs_ring import LogRing
     from launcher.spawn_server_start import SpawnServerHandle
     from launcher.status import LogLine, NodeStatus
+    from launcher.supervisor_beside import Neighbour
 
 STRAYS_AGAIN_S = 3.0
 """What is left of a run that ended a moment ago may just be ending."""
@@ -46,12 +48,12 @@ async def run(run_id: str, spawn_server: SpawnServerHandle) -> None:
     if not line.endswith(b"\n"):
         return  # The profile was no good, or the client has gone: there is nothing to do.
     plan = Plan.from_json(line)
-    record = _record(plan, run_id)
+    home = Home(_record(plan, run_id))
     try:
-        if _claim(record, plan):
-            await Supervisor(plan, record, spawn_server).run(stdin)
+        if _claim(home, plan):
+            await Supervisor(plan, home, spawn_server).run(stdin)
     finally:
-        record.remove()
+        home.remove()
 
 
 async def _open_stdin() -> asyncio.StreamReader:
@@ -78,25 +80,36 @@ def _record(plan: Plan, run_id: str) -> RunRecord:
         foreground=plan.foreground,
     )
     nodes = tuple(node.name for node in plan.nodes)
-    return RunRecord(Path(plan.run_dir, run_id), session, nodes, {})
+    return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
 
 
-def _claim(record: RunRecord, plan: Plan) -> bool:
+def _claim(home: Home, plan: Plan) -> bool:
     """Make room for this run, unless another has these nodes in this domain."""
-    folder = record.folder.parent
+    folder = home.run_dir
     try:
         with exclusively(folder):
-            other = rival(read_records(folder), record.nodes, plan.domain)
+            others = neighbours()
+            other = rival(others, home.record)
             if other is not None:
-                _answer({"running": pack_session(other.session)})
+                _answer(_refusal(other, free_domain(others, plan.domain)))
                 return False
-            record.write()
-        folder = Path(record.session.log_dir)
+            home.settle()
+        folder = Path(home.record.session.log_dir)
         _keep_last_words(folder)
     except OSError as problem:
         _answer({"no_room": pack_text(_no_room(folder, problem))})
         return False
     return True
+
+
+def _refusal(other: Neighbour, free: int) -> dict[str, object]:
+    elsewhere = other.purpose != os.environ.get(OWN_RUN_DIR, "")
+    return {
+        "running": pack_session(other.record.session),
+        "run_dir": other.run_dir if elsewhere else "",
+        "down": other.down if elsewhere else "deck down",
+        "free": free,
+    }
 
 
 def _no_room(folder: Path, problem: OSError) -> Words:
@@ -127,11 +140,11 @@ def _keep_last_words(folder: Path) -> None:
 class Supervisor:
     """Fits `Controlled`: what clients ask for ends here."""
 
-    def __init__(self, plan: Plan, record: RunRecord, spawn_server: SpawnServerHandle) -> None:
-        self.info = record.session
+    def __init__(self, plan: Plan, home: Home, spawn_server: SpawnServerHandle) -> None:
+        self.info = home.record.session
         self.strays: tuple[Stray, ...] = ()
         self._plan = plan
-        self._record = record
+        self._home = home
         self._loop = asyncio.get_running_loop()
         self._reaper = Reaper()
         self._spawner = Spawner(self.info.run_id, spawn_server, self._spawn_server_died)
@@ -155,12 +168,13 @@ class Supervisor:
         """Run the session to its end."""
         self._reaper.install(self._loop)
         self._install_signals()
-        await self.control.serve(listen(self._record.folder))
+        await self.control.serve(self._home.listen())
         self._session.start()
-        _answer({"folder": str(self._record.folder)})
+        _answer({"folder": str(self._home.record.folder)})
         helpers = [
             asyncio.create_task(self._session.measure()),
             asyncio.create_task(self._look_for_strays()),
+            asyncio.create_task(self._home.keep(self.control.serve, self._home_moved)),
             asyncio.create_task(self._watch_owner(stdin)),
         ]
         await self._end.wait()
@@ -170,7 +184,7 @@ class Supervisor:
         self._spawner.close()
         # Whoever hears that it is over finds the logs complete, and nothing in the way.
         self._files.close()
-        self._record.remove()
+        self._home.remove()
         await self.control.close(self._reason)
 
     # What clients ask.
@@ -258,9 +272,12 @@ class Supervisor:
     def _write_record(self) -> None:
         """Note which processes there are, for whoever comes after a sudden end."""
         try:
-            replace(self._record, processes=self._session.processes).write()
+            self._home.note(self._session.processes)
         except OSError as problem:
-            self._book.say(DECK, Severity.ERROR, _no_room(self._record.folder, problem))
+            self._book.say(DECK, Severity.ERROR, _no_room(self._home.record.folder, problem))
+
+    def _home_moved(self, story: Words) -> None:
+        self._book.say(DECK, Severity.WARN, story)
 
     def _spawn_server_died(self, pid: int) -> None:
         self._book.say(
@@ -282,7 +299,7 @@ class Supervisor:
             self._find_strays()
 
     def _find_strays(self) -> None:
-        run_dir = self._record.folder.parent
+        run_dir = self._home.run_dir
         strays = find_strays(run_dir)
         forget_ended_runs(run_dir, strays)
         if strays != self.strays:
@@ -290,5 +307,5 @@ class Supervisor:
             self.control.strays_changed()
 
     def _prune_logs(self) -> None:
-        running = {record.session.run_id for record in read_records(self._record.folder.parent)}
+        running = {record.session.run_id for record in read_records(self._home.run_dir)}
         prune_runs(Path(self._plan.log_dir) / self._plan.name, running)

@@ -74,7 +74,8 @@ async def _up(options: Namespace) -> int:
         )
     except AlreadyRunningError as error:
         say_error(said(error.args[0]))
-        return 1  # Nothing was wrong with what was asked for: it is up.
+        # Nothing was wrong with what was asked for if that is up.
+        return 1 if error.session.profile == str(profile.path) else error.exit_code
     try:
         try:
             await asyncio.wait_for(_settle(link), UP_WITHIN_S)
