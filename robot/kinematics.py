@@ -30,6 +30,18 @@ class WheelSpeeds:
     radius_m: float
     """Turning radius of the middle of the rear axle, + is to the left; inf when straight."""
 
+    @property
+    def fastest_m_s(self) -> float:
+        """Of the faster wheel, without its sign."""
+        return max(abs(self.left_m_s), abs(self.right_m_s))
+
+    def slowed_to(self, most_m_s: float) -> WheelSpeeds:
+        """No wheel faster than that, on the same circle: both are slowed in proportion."""
+        if self.fastest_m_s <= most_m_s:
+            return self
+        part = most_m_s / self.fastest_m_s
+        return WheelSpeeds(self.left_m_s * part, self.right_m_s * part, self.radius_m)
+
 
 def turning_radius(steering_rad: float, wheelbase_m: float = WHEELBASE_M) -> float:
     """Radius in metres of the circle of the rear axle: R = L / tan(delta).

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robot.limits import STEERING, first_excess, wheel_limits
 from robot.wire_pico import (
     PROTOCOL,
     SEQUENCES,
@@ -51,7 +52,8 @@ class SimulatedPico:
         self._obeyed = 0
         self._counts = False
         """Whether a drive line came since the hello: the next one must be ahead of it."""
-        self._late = 0
+        self._refused = 0
+        """Drive lines that were out of order, or beyond the limits."""
         self._sequence = 0
         self._out = b""
 
@@ -88,7 +90,7 @@ class SimulatedPico:
     @property
     def refused(self) -> int:
         """Lines that were of no use."""
-        return self._decoder.errors + self._late
+        return self._decoder.errors + self._refused
 
     def _hello(self, message: Hello) -> None:
         self._counts = False
@@ -103,8 +105,13 @@ class SimulatedPico:
         if self._counts:
             ahead = (message.seq - self._obeyed) % SEQUENCES
             if not 0 < ahead < SEQUENCES // 2:
-                self._late += 1
+                self._refused += 1
                 return
+        wheels, steering = wheel_limits(), (message.steering_rad, STEERING)
+        if first_excess((message.left_rad_s, wheels), (message.right_rad_s, wheels), steering):
+            self._refused += 1
+            self._stop_anew()
+            return
         self._obeyed, self._counts = message.seq, True
         if message.left_rad_s == message.right_rad_s == 0 and not self.flags & _NEEDS_RELEASE:
             self.flags.discard("A")

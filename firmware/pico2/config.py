@@ -1,7 +1,7 @@
 """What somebody would measure with a ruler, or solder to another pin. Nothing else is to be changed."""
 
 PROTOCOL = 1
-FIRMWARE = "1.0.0"
+FIRMWARE = "1.1.0"
 
 # Pins (GP numbers). None where nothing is connected.
 LEFT_PINS = {"ina": 2, "inb": 3, "pwm": 4, "fault": 6, "current": 26, "encoder": None}
@@ -18,6 +18,8 @@ QUIET_MS = 1000  # without a good line for so long nobody listens: no telemetry
 
 MAX_SPEED_MRAD_S = 20000  # of a wheel at full duty
 COUNTS_PER_TURN = 390  # rising edges of A in one turn of a wheel
+LIMIT_SPEED_MRAD_S = 17907  # what asks a wheel for more is refused; as robot/limits.py has it
+LIMIT_STEERING_MRAD = 500  # the same of the steering
 GAIN_P = 30  # permille of duty for a wheel that is 1000 mrad/s too slow
 GAIN_I = 120  # the same, a second
 

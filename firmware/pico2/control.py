@@ -71,7 +71,12 @@ class Control:
 
     def _take_d(self, sequence, left, right, steering):
         if self._any_obeyed and not 0 < (sequence - self._obeyed) & 0xFFFF < 32768:
-            self.reader.refused = (self.reader.refused + 1) & 0xFFFFFFFF
+            self._refuse()
+            return
+        if self._is_beyond(left, right, steering):
+            # Nobody can have meant it, so that nothing of it is taken for a sign of life either.
+            self._refuse()
+            self._stop_anew()
             return
         self._obeyed, self._any_obeyed = sequence, True
         if left == 0 and right == 0 and not self.flags & {"E", "L", "R", "U", "H"}:
@@ -83,6 +88,13 @@ class Control:
             self._steering = steering
             self.board.steer(self._servo_us(steering))
         self._drive()
+
+    def _is_beyond(self, left, right, steering):
+        most = self.config.LIMIT_SPEED_MRAD_S
+        return max(abs(left), abs(right)) > most or abs(steering) > self.config.LIMIT_STEERING_MRAD
+
+    def _refuse(self):
+        self.reader.refused = (self.reader.refused + 1) & 0xFFFFFFFF
 
     def _servo_us(self, steering):
         c = self.config

@@ -70,7 +70,7 @@ def pico(modules: Path, tmp_path: Path) -> Iterator[LivePico]:
 def test_the_driver_drives_the_firmware(pico: LivePico, ros_domain: int, tmp_path: Path) -> None:
     params: dict[str, object] = {"port": tmp_path / "pico", "max_age_s": 0.5}
     with Peer(ros_domain) as peer, NodeProcess("nodes.chassis", ros_domain, params=params) as node:
-        node.wait_for_words("The Pico answers: firmware 1.0.0, protocol 1")
+        node.wait_for_words("The Pico answers: firmware 1.1.0, protocol 1")
         joints = peer.hear("/joint_states", JointState)
         publisher = peer.publisher("/wheel_commands", JointState)
         timer = peer.node.create_timer(0.1, lambda: publisher.publish(wheels(5.0)))

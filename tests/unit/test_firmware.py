@@ -262,6 +262,39 @@ def test_a_weak_battery_stops_after_half_a_second(pico: Pico) -> None:
     assert "U" not in flags(pico.hear(Drive(6, 0, 0, 0), analog={BATTERY: 14000}))
 
 
+@pytest.mark.parametrize(
+    "beyond",
+    [
+        Drive(3, 17.908, 5, 0),
+        Drive(3, 5, -200, 0),
+        Drive(3, 5, 5, 0.502),
+        Drive(3, 0, 0, -1.571),
+    ],
+    ids=["left", "right", "steering", "steering of a stop"],
+)
+def test_what_is_beyond_the_limits_stops_and_is_counted(pico: Pico, beyond: Drive) -> None:
+    """Whoever asked: it is not slowed, for nobody can have meant it."""
+    pico.start()
+    before = pico.hear(Drive(2, 17.906, -17.906, 0.5))
+    assert not stood(before)
+    assert before["told"][-1].refused == 0
+    answer = pico.hear(beyond)
+    assert answer["motors"] == [0, 0]
+    assert answer["servo_ns"] == before["servo_ns"]
+    assert flags(answer) == {"A", "N"}
+    assert answer["told"][-1].refused == 1
+    assert stood(pico.hear(Drive(4, 5, 5, 0)))
+    pico.hear(Drive(5, 0, 0, 0))
+    assert not stood(pico.hear(Drive(6, 5, 5, 0)))
+
+
+def test_lines_beyond_the_limits_are_no_heartbeat(pico: Pico) -> None:
+    pico.start()
+    for sequence in range(2, 16):
+        answer = pico.hear(Drive(sequence, 200, 200, 0), ms=20)
+    assert {"W", "A"} <= flags(answer)
+
+
 def test_current_is_told(pico: Pico) -> None:
     pico.start()
     answer = pico.hear(Drive(2, 5, 5, 0), analog={LEFT_CURRENT: 2780})

@@ -93,12 +93,14 @@ def test_the_simulated_pico_does_what_the_firmware_does(seed: int) -> None:
                 [
                     Drive(sequence, 0, 0, 0.1),
                     Drive(sequence, 5, 4, -0.1),
+                    Drive(sequence, 18, 4, -0.1),
+                    Drive(sequence, 5, 4, -0.6),
                     Hello(sequence),
                     Hello(sequence, 2),
                     Halt(sequence),
                     Release(sequence),
                 ],
-                [20, 30, 2, 0.3, 0.5, 1.5],
+                [20, 30, 1, 1, 2, 0.3, 0.5, 1.5],
             )[0]
             octets = encode(message)
             if dice.random() < 0.05:
