@@ -19,9 +19,9 @@ STARTED = Phrase("The chassis at {port} obeys {topic}", "Шасси на {port} 
 COMMAND_OLD = Phrase(
     "No wheel command for {seconds:g} s: stop", "Нет команд колёсам дольше {seconds:g} с: стоп"
 )
-NO_NUMBER = Phrase(
-    "The wheel command is no number ({left}, {right} rad/s, {steering} rad): stop",
-    "В команде колёсам не числа ({left}, {right} рад/с, {steering} рад): стоп",
+TOO_FAST = Phrase(
+    "A wheel is asked for {speed:.1f} rad/s of {fastest:g}: both are slowed",
+    "От колеса требуют {speed:.1f} рад/с из {fastest:g}: замедляю оба",
 )
 EMERGENCY = Phrase(
     "EMERGENCY STOP: the wheels stand until it is released",
@@ -34,6 +34,7 @@ RELEASED = Phrase(
 STANDS = Phrase("The wheels stand: {reasons}", "Колёса стоят: {reasons}")
 _DRIVES = Phrase("ready to drive", "готово ехать")
 _NO_ANSWER = Phrase("no Pico answers at {port}", "Pico не отвечает на {port}")
+_REFUSED = Phrase("refused: {refused}", "отказано: {refused}")
 _FLAGS = {
     "E": Phrase("emergency stop", "аварийная остановка"),
     "W": Phrase("no drive line for 250 ms", "нет строк управления 250 мс"),
@@ -70,11 +71,12 @@ class Standing:
 
 
 def diagnosis(
-    say: Speech, status: DiagnosticStatus, pico: PicoClient, emergency: bool
+    say: Speech, status: DiagnosticStatus, pico: PicoClient, emergency: bool, refused: str
 ) -> DiagnosticStatus:
     """Add to the state of the port how the Pico is, for programs and for people."""
     telemetry = pico.telemetry
     status.values.append(KeyValue(key="emergency_stop", value=str(emergency).lower()))
+    status.values.append(KeyValue(key="refused", value=refused))
     if telemetry is None or not pico.answers:
         if pico.link.connected:
             status.level = DiagnosticStatus.ERROR
@@ -94,6 +96,9 @@ def diagnosis(
     status.values += [KeyValue(key=key, value=value) for key, value in values.items()]
     why = reasons(say, telemetry.flags)
     status.message = say.text(STANDS, reasons=why) if why else say.text(_DRIVES)
+    if refused:
+        status.message += "; " + say.text(_REFUSED, refused=refused)
+        status.level = DiagnosticStatus.WARN
     if why:
         bad = telemetry.flags & _BAD
         status.level = DiagnosticStatus.ERROR if bad else DiagnosticStatus.WARN

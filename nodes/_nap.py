@@ -13,14 +13,14 @@ import math
 import time
 from typing import TYPE_CHECKING
 
-from nodes._lateness import age_s
-
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
 
 _DRAIN_S = 0.5
 """How long it takes to get rid of what has waited, on a machine that is busy besides."""
 _DRAIN_UNDER_LOAD_S = 3.0
+_ANOTHER_CLOCK_S = 30.0
+"""A difference of more than that is one of clocks, and tells nothing of how long it waited."""
 
 
 class Nap:
@@ -41,5 +41,7 @@ class Nap:
     def kept_waiting(self, stamp: Time) -> bool:
         """Whether a message of this stamp was sent while this process slept."""
         awake_s = time.monotonic() - self._woke_s
-        age = age_s(stamp) if awake_s < _DRAIN_UNDER_LOAD_S else None
-        return age is not None and age > awake_s
+        if awake_s > _DRAIN_UNDER_LOAD_S or not (stamp.sec or stamp.nanosec):
+            return False
+        age_s = time.time() - stamp.sec - stamp.nanosec * 1e-9
+        return bool(awake_s < age_s < _ANOTHER_CLOCK_S)

@@ -18,7 +18,9 @@ from nodes import _safety_words as words
 from nodes._arrivals import Arrivals
 from nodes._drive import from_message, to_message
 from nodes._nap import Nap
+from nodes._refusals import Refusals
 from nodes._topics import DEPTH, DRIVE_SAFE, DRIVE_TELEOP
+from robot.limits import SPEED, STEERING
 from robot.safety import Shares, Verdict, allowed, gate
 from robot.safety_sources import Sources
 from robot.words import STOP, DriveSetpoint
@@ -50,6 +52,8 @@ class Moment(NamedTuple):
     """How much of that passes, 0 to 1; of no speed, how much of one forward would."""
     age_s: float | None = None
     """Of the newest command that counts."""
+    refused: str = ""
+    """What was asked for in the last moments and refused."""
 
 
 class Gate:
@@ -70,6 +74,7 @@ class Gate:
         self._ignored_s = -math.inf
         self._sent = STOP
         self._nap = Nap()
+        self._refusals = Refusals(node)
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE_SAFE, DEPTH)
         self._arrivals = Arrivals()
         for name in names:
@@ -121,6 +126,7 @@ class Gate:
             asked_m_s,
             allowed(asked_m_s, self._verdict, self._shares),
             order.age_s(now_s) if order else None,
+            self._refusals.recent,
         )
 
     def _hear(self, source: str, message: AckermannDriveStamped) -> None:
@@ -128,16 +134,7 @@ class Gate:
             return
         self._arrivals.hear(source)
         self._look()
-        asked = from_message(message)
-        if not (math.isfinite(asked.speed_m_s) and math.isfinite(asked.steering_rad)):
-            self._node.say.error(
-                words.COMMAND_NO_NUMBER,
-                every_s=1.0,
-                source=source,
-                speed=asked.speed_m_s,
-                steering=asked.steering_rad,
-            )
-            asked = STOP
+        asked = self._granted(source, message)
         if self._verdict in _HOLDING:
             if asked.speed_m_s:
                 self._tell_cut(asked)
@@ -148,6 +145,14 @@ class Gate:
             return
         self._ignored, self._ignored_s = source, time.monotonic()
         self._node.say.warn(words.IGNORED, every_s=2.0, ignored=source, source=driving.source)
+
+    def _granted(self, source: str, message: AckermannDriveStamped) -> DriveSetpoint:
+        """What it asks for, a stop if that is refused."""
+        asked = from_message(message)
+        refused = self._refusals.beyond(
+            source, (asked.speed_m_s, SPEED), (asked.steering_rad, STEERING)
+        ) or self._refusals.untimely(source, message.header.stamp, self._sources.limit_s(source))
+        return STOP if refused else asked
 
     def _passed(self, order: Order | None) -> DriveSetpoint:
         return gate(order.setpoint if order else STOP, self._verdict, self._shares)

@@ -32,10 +32,6 @@ COMMAND_CUT = Phrase(
     "The command {speed:.2f} m/s, {steering:.2f} rad is stopped: {reason}",
     "Команда {speed:.2f} м/с, {steering:.2f} рад остановлена: {reason}",
 )
-COMMAND_NO_NUMBER = Phrase(
-    "The command of {source} is no number ({speed} m/s, {steering} rad): stop",
-    "В команде {source} не числа ({speed} м/с, {steering} рад): стоп",
-)
 COMMAND_OLD = Phrase(
     "No new command for {seconds:g} s: stop", "Нет новых команд дольше {seconds:g} с: стоп"
 )
@@ -91,6 +87,7 @@ _SLOWED = Phrase("slowed to {percent} %: {why}", "замедлен до {percent
 _AND_IGNORED = Phrase(
     "; {ignored} is ignored: {source} drives", "; {ignored} не слушаю: едем по {source}"
 )
+_AND_REFUSED = Phrase("; refused: {refused}", "; отказано: {refused}")
 _REASONS = {
     Sight.FREE: Phrase("{place} {metres:.2f} m", "{place} {metres:.2f} м"),
     Sight.CLOSE: Phrase("{place} {metres:.2f} m", "{place} {metres:.2f} м"),
@@ -124,7 +121,7 @@ def diagnosis(
     """
     bad = [view for view in views if view.sight != Sight.FREE]
     blind = any(view.sight != Sight.CLOSE for view in bad)
-    level = DiagnosticStatus.WARN if bad else DiagnosticStatus.OK
+    level = DiagnosticStatus.WARN if bad or moment.refused else DiagnosticStatus.OK
     if verdict == Verdict.EMERGENCY_STOP or blind:
         level = DiagnosticStatus.ERROR
     return DiagnosticStatus(
@@ -144,6 +141,8 @@ def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], moment: Mome
         sentence = say.text(_SLOWED, percent=percent, why=_reason(say, view))
     if moment.ignored:
         sentence += say.text(_AND_IGNORED, ignored=moment.ignored, source=moment.source)
+    if moment.refused:
+        sentence += say.text(_AND_REFUSED, refused=moment.refused)
     return sentence
 
 
@@ -169,5 +168,6 @@ def _values(verdict: Verdict, views: Sequence[View], moment: Moment) -> Iterator
         yield f"{view.place}_m", "" if metres is None else f"{metres:.3f}"
     yield "source", moment.source
     yield "ignored", moment.ignored
+    yield "refused", moment.refused
     yield "allowed", f"{moment.allowed:.2f}"
     yield "command_age_s", "" if moment.age_s is None else f"{moment.age_s:.2f}"

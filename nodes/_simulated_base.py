@@ -7,7 +7,6 @@ a real one was there it never comes back: where a robot really is cannot be made
 
 from __future__ import annotations
 
-import math
 import time
 from typing import TYPE_CHECKING
 
@@ -21,9 +20,9 @@ from nodes._speech import Phrase
 from nodes._topics import DEPTH, ODOMETRY, TF
 from robot.geometry import quaternion_from_rpy
 from robot.kinematics import turning_radius
-from robot.limits import SPEED, STEERING
+from robot.limits import SPEED, STEERING, first_excess
 from robot.odometry import Pose, advance
-from robot.words import STOP, DriveSetpoint
+from robot.words import STOP
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -88,16 +87,10 @@ class SimulatedBase:
 
     def _hear(self, message: AckermannDriveStamped) -> None:
         asked = from_message(message)
-        if self._held() or not (
-            math.isfinite(asked.speed_m_s) and math.isfinite(asked.steering_rad)
-        ):
-            self.stop()
-            return
-        self._step()
-        self._command = DriveSetpoint(
-            max(SPEED.low, min(SPEED.high, asked.speed_m_s)),
-            max(STEERING.low, min(STEERING.high, asked.steering_rad)),
-        )
+        beyond = first_excess((asked.speed_m_s, SPEED), (asked.steering_rad, STEERING))
+        self.stop()
+        if not self._held() and beyond is None:
+            self._command = asked
 
     def _look(self) -> None:
         mine = 1 if self.is_on else 0

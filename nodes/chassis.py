@@ -2,8 +2,8 @@
 
 A drive line goes out `rate` times a second, whether there is a command or not: it is the heartbeat
 without which the Pico stops within 250 ms. A command that is older than `max_age_s`, is no number,
-or came before an emergency stop, a fault or a new connection was over, is a stop. /emergency_stop
-is latched here and in the Pico.
+is beyond robot/limits.py, or came before an emergency stop, a fault or a new connection was over,
+is a stop. /emergency_stop is latched here and in the Pico.
 
 Published with every telemetry (50 Hz), to who listens: /joint_states, /odom, /tf; /battery and
 /diagnostics once a second. It connects again by itself. At its end it leaves a stop behind.
@@ -26,23 +26,24 @@ from nodes._chassis_messages import JOINTS, DeadReckoning, battery
 from nodes._chassis_words import (
     COMMAND_OLD,
     EMERGENCY,
-    NO_NUMBER,
     RELEASED,
     STARTED,
+    TOO_FAST,
     Standing,
     diagnosis,
 )
 from nodes._diagnostics import tell_every_second
 from nodes._emergency import EmergencyStop
-from nodes._lateness import is_late
 from nodes._life import run
 from nodes._nap import Nap
 from nodes._node import LessonNode
 from nodes._pace import Pace
 from nodes._parameters import Number, Text, Whole
 from nodes._pico_client import PicoClient
+from nodes._refusals import Refusals
 from nodes._topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
+from robot.limits import MOTOR_RAD_S, STEERING, wheel_limits
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -50,7 +51,6 @@ if TYPE_CHECKING:
     from robot.wire_pico import Telemetry
 
 JOINT_STATES, BATTERY = "/joint_states", "/battery"
-_MOST_RAD_S, _MOST_RAD = 200.0, 1.5
 _STILL = (0.0, 0.0, 0.0)
 _REARMS = frozenset("ELRUHA")
 """Flags of the Pico after which only a new command counts."""
@@ -86,6 +86,14 @@ class Chassis(LessonNode):
             high=2.0,
             unit="m",
         ),
+        Number(
+            "max_wheel_speed",
+            MOTOR_RAD_S,
+            "Of a motor at full power; both wheels are slowed to it",
+            low=0.1,
+            high=200.0,
+            unit="rad/s",
+        ),
     )
 
     def __init__(self) -> None:
@@ -95,6 +103,8 @@ class Chassis(LessonNode):
         self._standing = Standing(self.say)
         self._release_wanted = False
         self._nap = Nap()
+        self._refusals = Refusals(self)
+        self._wheel_limits = wheel_limits(self.number("wheel_radius"))
         self._sending = threading.Lock()
         self._reckoning = DeadReckoning(self.number("wheelbase"), self.number("wheel_radius"))
         self._pico = PicoClient(self, int(self.number("baud")), self._hear)
@@ -127,29 +137,40 @@ class Chassis(LessonNode):
 
     def _obey(self, message: JointState) -> None:
         stamp = message.header.stamp
-        late = is_late(self.say, stamp, self.number("max_age_s"))
-        if self._nap.lasted(_AWAY_S) or self._nap.kept_waiting(stamp) or late:
+        if self._nap.lasted(_AWAY_S) or self._nap.kept_waiting(stamp):
             return
-        velocity = dict(zip(message.name, message.velocity, strict=False))
-        position = dict(zip(message.name, message.position, strict=False))
-        asked = (
-            velocity.get(JOINTS[0], math.nan),
-            velocity.get(JOINTS[1], math.nan),
-            position.get(JOINTS[2], math.nan),
-        )
-        if not all(map(math.isfinite, asked)):
-            self.say.error(NO_NUMBER, every_s=1.0, left=asked[0], right=asked[1], steering=asked[2])
-            asked = _STILL
-        if self._emergency.active:
-            asked = _STILL
-        left, right = (max(-_MOST_RAD_S, min(_MOST_RAD_S, speed)) for speed in asked[:2])
-        command = (left, right, max(-_MOST_RAD, min(_MOST_RAD, asked[2])))
+        command = _STILL if self._emergency.active else self._granted(message)
         with self._sending:
             self._commanded_s = time.monotonic()
             if command != self._command:
                 # The same again goes out at its pace.
                 self._command = command
                 self._send()
+
+    def _granted(self, message: JointState) -> tuple[float, float, float]:
+        """What it asks for as far as these motors can, a stop if that is refused."""
+        velocity = dict(zip(message.name, message.velocity, strict=False))
+        position = dict(zip(message.name, message.position, strict=False))
+        left, right = (velocity.get(joint, math.nan) for joint in JOINTS[:2])
+        steering = position.get(JOINTS[2], math.nan)
+        refused = self._refusals.beyond(
+            WHEEL_COMMANDS,
+            (left, self._wheel_limits),
+            (right, self._wheel_limits),
+            (steering, STEERING),
+        ) or self._refusals.untimely(WHEEL_COMMANDS, message.header.stamp, self.number("max_age_s"))
+        if refused:
+            return _STILL
+        part = self._part_of(max(abs(left), abs(right)))
+        return (left * part, right * part, steering)
+
+    def _part_of(self, asked_rad_s: float) -> float:
+        """How much of that speed the motors can make, 0 to 1; less than all is told."""
+        most_rad_s = self.number("max_wheel_speed")
+        if asked_rad_s <= most_rad_s:
+            return 1.0
+        self.say.warn(TOO_FAST, every_s=5.0, speed=asked_rad_s, fastest=most_rad_s)
+        return most_rad_s / asked_rad_s
 
     def _emergency_changed(self, active: bool) -> None:
         with self._sending:
@@ -174,7 +195,7 @@ class Chassis(LessonNode):
     def _status(self) -> DiagnosticStatus:
         pico = self._pico
         status = pico.link.status(self.get_name(), pico.errors, pico.frames)
-        return diagnosis(self.say, status, pico, self._emergency.active)
+        return diagnosis(self.say, status, pico, self._emergency.active, self._refusals.recent)
 
     # ---------------------------------------------------------------- at a pace
 

@@ -6,7 +6,8 @@ a joint takes no such command (a wheel has no position, the steering no velocity
 
 The command of the moment is repeated `rate` times a second, so that one who comes late sees it. It
 becomes a stop at an emergency stop (latched until released), as soon as no /drive came for
-`max_age_s` seconds, at a command that is no number, and when this node ends.
+`max_age_s` seconds, at a command that is refused, and when this node ends. Refused is what is no
+number or beyond robot/limits.py, and what is stamped too long ago or ahead.
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ from sensor_msgs.msg import JointState
 
 from nodes._drive import FRAME, from_message
 from nodes._emergency import EmergencyStop
-from nodes._lateness import is_late
 from nodes._life import run
 from nodes._nap import Nap
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Text
+from nodes._refusals import Refusals
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, DRIVE, WHEEL_COMMANDS
 from robot.kinematics import (
@@ -35,14 +36,12 @@ from robot.kinematics import (
     WheelSpeeds,
     wheel_speeds,
 )
+from robot.limits import MOTOR_RAD_S, RIM_M_S, SPEED, STEERING, Limits
 from robot.words import STOP, DriveSetpoint
 
 JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach everybody."""
-
-_ROUNDING = 1e-6
-"""0.6 rad is a little more in the 32 bits of a /drive."""
 
 _STARTED = Phrase(
     "The electronic differential listens to {topic}", "Электронный дифференциал слушает {topic}"
@@ -55,15 +54,15 @@ _STANDING = Phrase("Standing" + _NUMBERS[0], "Стоим" + _NUMBERS[1])
 _STRAIGHT = Phrase("Straight" + _NUMBERS[0], "Едем прямо" + _NUMBERS[1])
 _LEFT = Phrase("Turning left" + _NUMBERS[0], "Поворот налево" + _NUMBERS[1])
 _RIGHT = Phrase("Turning right" + _NUMBERS[0], "Поворот направо" + _NUMBERS[1])
-_NO_NUMBER = Phrase(
-    "The command is no number ({speed} m/s, {steering} rad): stop",
-    "В команде не числа ({speed} м/с, {steering} рад): стоп",
-)
 _TOO_MUCH = Phrase(
     "Asked for {speed:.2f} m/s and {steering:.2f} rad, limited to {fastest:g} m/s"
     " and {sharpest:g} rad",
     "Запрошено {speed:.2f} м/с и {steering:.2f} рад, ограничено до {fastest:g} м/с"
     " и {sharpest:g} рад",
+)
+_TOO_FAST = Phrase(
+    "The outer wheel would make {speed:.2f} m/s of {fastest:.2f}: both are slowed",
+    "Внешнее колесо делало бы {speed:.2f} м/с из {fastest:.2f}: замедляю оба",
 )
 _SILENT = Phrase("No command for {max_age:g} s: stop", "Нет команд дольше {max_age:g} с: стоп")
 _EMERGENCY = Phrase(
@@ -91,9 +90,29 @@ class ElectronicDifferential(LessonNode):
         Number("track", TRACK_M, "Between the rear wheels", low=0.02, high=10.0, unit="m"),
         Number("wheel_radius", WHEEL_RADIUS_M, "Of a rear wheel", low=0.005, high=2.0, unit="m"),
         Number(
-            "max_speed", 1.0, "Faster commands are slowed to it", low=0.01, high=20.0, unit="m/s"
+            "max_speed",
+            SPEED.high,
+            "Faster commands are slowed to it",
+            low=0.01,
+            high=SPEED.high,
+            unit="m/s",
         ),
-        Number("max_steering", 0.6, "The steering's stop", low=0.05, high=1.5, unit="rad"),
+        Number(
+            "max_steering",
+            STEERING.high,
+            "The steering's stop",
+            low=0.05,
+            high=STEERING.high,
+            unit="rad",
+        ),
+        Number(
+            "max_wheel_speed",
+            MOTOR_RAD_S,
+            "Of a motor at full power; both wheels are slowed to it",
+            low=0.1,
+            high=200.0,
+            unit="rad/s",
+        ),
         Number("rate", 2.0, "Repetitions of the command a second", low=0.5, high=100.0, unit="Hz"),
         Number(
             "max_age_s",
@@ -108,6 +127,7 @@ class ElectronicDifferential(LessonNode):
         super().__init__()
         self._command = STOP
         self._nap = Nap()
+        self._refusals = Refusals(self)
         self._heard = False
         self._told: DriveSetpoint | None = None
         topic = self.text("drive_topic")
@@ -132,25 +152,30 @@ class ElectronicDifferential(LessonNode):
 
     def _hear(self, message: AckermannDriveStamped) -> None:
         stamp = message.header.stamp
-        late = is_late(self.say, stamp, self.number("max_age_s"))
-        if self._held_up() or self._nap.kept_waiting(stamp) or late:
+        if self._held_up() or self._nap.kept_waiting(stamp):
             return
         self._await_next()
         if self._emergency.active:
             return
         self._heard = True
-        self._command = self._limited(from_message(message))
+        self._command = self._granted(message)
         self._publish()
         # The next repetition counts from here.
         self._timer.reset()
 
+    def _granted(self, message: AckermannDriveStamped) -> DriveSetpoint:
+        """What it asks for as far as this chassis may, a stop if that is refused."""
+        asked, topic = from_message(message), self.text("drive_topic")
+        refused = self._refusals.beyond(
+            topic, (asked.speed_m_s, SPEED), (asked.steering_rad, STEERING)
+        ) or self._refusals.untimely(topic, message.header.stamp, self.number("max_age_s"))
+        return STOP if refused else self._limited(asked)
+
     def _limited(self, asked: DriveSetpoint) -> DriveSetpoint:
         speed, steering = asked.speed_m_s, asked.steering_rad
-        if not (math.isfinite(speed) and math.isfinite(steering)):
-            self.say.error(_NO_NUMBER, every_s=1.0, speed=speed, steering=steering)
-            return STOP
         fastest, sharpest = self.number("max_speed"), self.number("max_steering")
-        if abs(speed) > fastest + _ROUNDING or abs(steering) > sharpest + _ROUNDING:
+        speeds, angles = Limits(-fastest, fastest, "m/s"), Limits(-sharpest, sharpest, "rad")
+        if not (speeds.allow(speed) and angles.allow(steering)):
             self.say.warn(
                 _TOO_MUCH,
                 every_s=1.0,
@@ -159,9 +184,17 @@ class ElectronicDifferential(LessonNode):
                 fastest=fastest,
                 sharpest=sharpest,
             )
-        return DriveSetpoint(
-            max(-fastest, min(fastest, speed)), max(-sharpest, min(sharpest, steering))
-        )
+        return DriveSetpoint(speeds.clamped(speed), angles.clamped(steering))
+
+    def _wheels(self) -> WheelSpeeds:
+        """What the command asks of the wheels, the outer one within its limit."""
+        speed, steering = self._command.speed_m_s, self._command.steering_rad
+        asked = wheel_speeds(speed, steering, self.number("wheelbase"), self.number("track"))
+        fastest = min(RIM_M_S, self.number("max_wheel_speed") * self.number("wheel_radius"))
+        wheels = asked.slowed_to(fastest)
+        if wheels is not asked:
+            self.say.warn(_TOO_FAST, every_s=5.0, speed=asked.fastest_m_s, fastest=fastest)
+        return wheels
 
     def _await_next(self) -> None:
         """Give the next command `max_age_s` from now."""
@@ -200,13 +233,12 @@ class ElectronicDifferential(LessonNode):
         self._publish()
 
     def _publish(self) -> None:
-        speed, steering = self._command.speed_m_s, self._command.steering_rad
-        wheels = wheel_speeds(speed, steering, self.number("wheelbase"), self.number("track"))
+        wheels = self._wheels()
         message = JointState()
         message.header.stamp = self.get_clock().now().to_msg()
         message.header.frame_id = FRAME
         message.name = list(JOINTS)
-        message.position = [math.nan, math.nan, steering]
+        message.position = [math.nan, math.nan, self._command.steering_rad]
         radius_m = self.number("wheel_radius")
         message.velocity = [wheels.left_m_s / radius_m, wheels.right_m_s / radius_m, math.nan]
         self._publisher.publish(message)

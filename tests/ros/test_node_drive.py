@@ -115,7 +115,7 @@ def test_too_much_is_limited_with_a_word(peer: Peer, ros_domain: int) -> None:
     params: dict[str, object] = {"max_speed": 0.2, "max_steering": 0.1}
     with NodeProcess("nodes.electronic_differential", ros_domain, params=params) as node:
         heard = peer.hear("/wheel_commands", JointState)
-        peer.say("/drive", drive(-9.0, 1.5))
+        peer.say("/drive", drive(-0.4, 0.4))
         wait_until(lambda: heard and heard[-1].velocity[0] != 0, "wheels")
         left, right = rims(heard[-1])
         assert (left + right) / 2 == pytest.approx(-0.2)

@@ -1,0 +1,108 @@
+"""What a node refuses of what it is asked, why, and how it says so.
+
+A command with a number beyond the limits, or with a stamp that does not belong to this moment, is
+refused, and what is refused is a stop. That holds for the gate, the electronic differential and the
+chassis alike; none of them trusts the one before it.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING
+
+from nodes._speech import Phrase
+from robot.limits import first_excess
+
+if TYPE_CHECKING:
+    from builtin_interfaces.msg import Time
+
+    from nodes._node import LessonNode
+    from robot.limits import Limits
+
+_REMEMBER_S = 1.5
+"""So long a state tells of it: a little longer than from one state to the next."""
+_LONGEST_WAY_S = 2.0
+"""For who lets commands grow as old as they like: that long one may have been on its way."""
+_AHEAD_S = 0.5
+_ANOTHER_CLOCK_S = 30.0
+"""Nothing is so long on its way."""
+
+_NO_NUMBER = Phrase(
+    "{source} asks for {value:g} {unit}, which is no number: refused, stop",
+    "{source} просит {value:g} {unit}, а это не число: отказ, стоп",
+)
+_BEYOND = Phrase(
+    "{source} asks for {value:g} {unit}, the limit is {limit:g} {unit}: refused, stop",
+    "{source} просит {value:g} {unit}, предел — {limit:g} {unit}: отказ, стоп",
+)
+_UNITS = {
+    "m/s": Phrase("m/s", "м/с"),
+    "rad": Phrase("rad", "рад"),
+    "rad/s": Phrase("rad/s", "рад/с"),
+}
+_OLD = Phrase(
+    "A command of {source} is {age:.1f} s old by its stamp and is not obeyed",
+    "Команде {source} по её метке времени {age:.1f} с, она не исполняется",
+)
+_OTHER_CLOCK = Phrase(
+    "The stamps of {source} are {age:.1f} s {which} this computer's clock: it is not obeyed;"
+    " set the clocks of both computers (chrony, NTP), or leave the stamps at zero",
+    "Метки времени {source} {which} часов этого компьютера на {age:.1f} с: команды не исполняются;"
+    " сверьте часы обоих компьютеров (chrony, NTP) или оставьте метки нулевыми",
+)
+_BEHIND, _AHEAD = Phrase("behind", "отстают от"), Phrase("ahead of", "опережают показания")
+
+
+class Refusals:
+    """What this node has refused lately."""
+
+    def __init__(self, node: LessonNode) -> None:
+        """Say it with the voice of `node`, and go by its clock."""
+        self._node = node
+        self._words = ""
+        self._at_s = -math.inf
+
+    @property
+    def recent(self) -> str:
+        """What was refused in the last moments, for programs; empty if nothing was."""
+        return self._words if time.monotonic() - self._at_s < _REMEMBER_S else ""
+
+    def beyond(self, source: str, *asked: tuple[float, Limits]) -> bool:
+        """Whether one of these numbers is none, or is beyond its limits; that is told."""
+        excess = first_excess(*asked)
+        if excess is None:
+            return False
+        self._remember(str(excess))
+        self._node.say.error(
+            _BEYOND if math.isfinite(excess.value) else _NO_NUMBER,
+            every_s=1.0,
+            source=source,
+            value=excess.value,
+            unit=self._node.say.text(_UNITS[excess.limits.unit]),
+            limit=excess.limits.high,
+        )
+        return True
+
+    def untimely(self, source: str, stamp: Time, max_age_s: float) -> bool:
+        """Whether it is stamped longer ago than that, or ahead; a stamp of zero tells nothing.
+
+        With a `max_age_s` of 0 it may still not have been on its way for seconds.
+        """
+        if not (stamp.sec or stamp.nanosec):
+            return False
+        now_s = self._node.get_clock().now().nanoseconds * 1e-9
+        age_s = now_s - stamp.sec - stamp.nanosec * 1e-9
+        if -_AHEAD_S <= age_s <= (max_age_s or _LONGEST_WAY_S):
+            return False
+        self._remember(f"stamp {age_s:.1f} s old")
+        say = self._node.say
+        if 0 < age_s < _ANOTHER_CLOCK_S:
+            say.warn(_OLD, every_s=1.0, source=source, age=age_s)
+        else:
+            which = say.text(_BEHIND if age_s > 0 else _AHEAD)
+            say.error(_OTHER_CLOCK, every_s=1.0, source=source, age=abs(age_s), which=which)
+        return True
+
+    def _remember(self, words: str) -> None:
+        self._words, self._at_s = words, time.monotonic()
