@@ -15,6 +15,8 @@ from typing import Any, TypeAlias
 
 import yaml
 
+from text.plain import is_plain, replaced
+
 Scalar: TypeAlias = "bool | int | float | str | None"
 
 LONGEST_WORD = 1000
@@ -31,10 +33,6 @@ _FLOAT = re.compile(
 _NOT_FINITE = re.compile(r"(?P<sign>[-+]?)\.?(?:inf|Inf|INF)|\.?(?:nan|NaN|NAN)")
 _PLAIN = re.compile(r"[^\W\d][\w/.+-]*(?: [\w/.+-]+)*|/[\w/.+-]*")
 """Texts that need no quotes, whatever stands around them."""
-_UNPRINTABLE = re.compile(
-    "[\x7f-\xa0\u200b-\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufffe\uffff]"
-)
-"""What YAML forbids, and what a terminal would not show as it stands."""
 _BASES = {"0b": 2, "0x": 16, "0o": 8}
 
 
@@ -93,17 +91,37 @@ def _float(number: float) -> str:
 @lru_cache(maxsize=4096)
 def quoted(text: str) -> str:
     """Return a text, in double quotes where it would else be something different."""
-    is_plain = len(text) <= LONGEST_WORD and _PLAIN.fullmatch(text) and meaning(text) == text
-    if is_plain and _RESOLVER.resolve(yaml.ScalarNode, text, (True, False)) == _TEXT:
+    is_word = len(text) <= LONGEST_WORD and _PLAIN.fullmatch(text) and is_plain(text)
+    is_text = is_word and meaning(text) == text
+    if is_text and _RESOLVER.resolve(yaml.ScalarNode, text, (True, False)) == _TEXT:
         return text
-    return _UNPRINTABLE.sub(_escape, json.dumps(text, ensure_ascii=False))
+    return in_quotes(text)
+
+
+def in_quotes(text: str) -> str:
+    """Return a text in double quotes, with escapes for what could not be seen, or be YAML."""
+    return replaced(json.dumps(text, ensure_ascii=False), escaped).replace("\xa0", "\\u00A0")
+
+
+def escaped(character: str) -> str:
+    """Return a character as an escape, as it may stand between double quotes."""
+    code = ord(character)
+    is_half_a_character = 0xD800 <= code <= 0xDFFF
+    if code > 0xFFFF:
+        return f"\\U{code:08X}"
+    return f"\\u{0xFFFD if is_half_a_character else code:04X}"
+
+
+def unquoted(text: str) -> str | None:
+    """Return the text that stands between double quotes, None if it is written otherwise."""
+    if len(text) < 2 or not (text.startswith('"') and text.endswith('"')):
+        return None
+    try:
+        value = yaml.safe_load(text)
+    except yaml.YAMLError:
+        return None
+    return value if isinstance(value, str) else None
 
 
 _RESOLVER: Any = yaml.resolver.Resolver()
 _TEXT = "tag:yaml.org,2002:str"
-
-
-def _escape(found: re.Match[str]) -> str:
-    code = ord(found[0])
-    is_half_a_character = 0xD800 <= code <= 0xDFFF
-    return f"\\u{0xFFFD if is_half_a_character else code:04X}"

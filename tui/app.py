@@ -13,12 +13,14 @@ from textual.binding import Binding, BindingType
 from textual.events import Key, Paste
 from textual.widget import Widget
 
+from text.plain import plain, plain_lines
 from tui.actions import REGISTRY, Acting, Action, bindings, bound
 from tui.actions.app import APP_ACTIONS, EmergencyStop
 from tui.actions.recording import RECORDING_ACTIONS
 from tui.actions.replay import REPLAY_ACTIONS
 from tui.brake import Brake
 from tui.feed import Feed, GraphReady
+from tui.harmless import Harmless
 from tui.i18n import LANGUAGES, NAMES, _, language, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
 from tui.nap import Nap
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
     from textual.command import Provider
     from textual.driver import Driver
     from textual.events import Event
+    from textual.filter import LineFilter
+    from textual.notifications import SeverityLevel
     from textual.screen import Screen
 
     from tui.seams import Launchpad
@@ -82,6 +86,7 @@ class DeckApp(App[int], Acting):
         self.brake = Brake(self)
         self.recording = Recording(self)
         self.nap = Nap()
+        self._harmless = Harmless()
         self._typed = Typed(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
         self.register_theme(HIGH_CONTRAST)
@@ -151,6 +156,23 @@ class DeckApp(App[int], Acting):
                     await old.remove()
         # Who watches the theme, as each TextArea does, is held until it changes, gone or not.
         self.mutate_reactive(DeckApp.theme)
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Look at every line once more before it goes to the terminal."""
+        return [*super().get_line_filters(), self._harmless]
+
+    def notify(
+        self,
+        message: str,
+        *,
+        title: str = "",
+        severity: SeverityLevel = "information",
+        timeout: float | None = None,
+        markup: bool = False,
+    ) -> None:
+        """Tell something in a corner, as the text that it is."""
+        message, title = plain_lines(message), plain(title)
+        super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
 
     def show_help(self) -> None:
         """Explain the screen in front."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 
 import pytest
@@ -122,7 +123,8 @@ async def test_hostile_text_in_the_editor_is_harmless() -> None:
     async with app.run_test(size=(60, 12)) as pilot:
         app.editor.replace_all('{"a": "\x1b]52;c;QQ==\x07\x00[red]\u202e"}')
         await pilot.pause()
-        assert app.lines()[0] == '1  {"a": "␛]52;c;QQ==␇␀[red]\N{REPLACEMENT CHARACTER}"}'
+        assert app.lines()[0] == r'1  {"a": "\u001b]52;c;QQ==\u0007\u0000[red]\u202e"}'
+        assert json.loads(app.editor.text) == {"a": "\x1b]52;c;QQ==\x07\x00[red]\u202e"}
 
 
 async def test_another_text_can_be_undone() -> None:

@@ -185,7 +185,8 @@ async def test_hostile_text_in_the_form_is_harmless() -> None:
     app = FormApp("std_msgs/msg/String")
     async with app.run_test(size=(80, 24)) as pilot:
         await checked(pilot)
-        app.form.editor.replace_all("data: \x1b]52;c;QQ==\x07[red]\u202e")
+        app.form.editor.replace_all('data: "\x1b]52;c;QQ==\x07[red]\u202e\U000e0065"')
         await checked(pilot)
-        assert app.lines()[0] == "1✗ data: ␛]52;c;QQ==␇[red]\N{REPLACEMENT CHARACTER}"
+        assert app.lines()[0] == r'1  data: "\u001B]52;c;QQ==\u0007[red]\u202E\U000E0065"'
+        assert app.form.value == {"data": "\x1b]52;c;QQ==\x07[red]\u202e\U000e0065"}
         assert "\x1b" not in app.form.verdict

@@ -6,8 +6,10 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.containers import Vertical
+from textual.content import Content
 
 from graph.data import Trouble
+from text.plain import plain
 from tui.i18n import _
 
 if TYPE_CHECKING:
@@ -57,7 +59,8 @@ class Panel(Vertical):
 
     def _entitle(self) -> None:
         source = f"← {self._source}" if self._source else ""
-        self.border_title = " ".join(filter(None, (_(self.title), source, self._page)))
+        words = " ".join(filter(None, (_(self.title), source, self._page)))
+        self.border_title = Content(plain(words))
 
     def watched(self) -> set[str]:
         """Return the topics whose newest message is wanted."""

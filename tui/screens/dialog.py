@@ -6,9 +6,11 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 from textual.containers import Vertical, VerticalScroll
+from textual.content import Content
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
+from text.plain import plain
 from tui.actions import Acting, Action, bindings
 from tui.i18n import N_
 from tui.widgets.key_bar import KeyBar
@@ -17,7 +19,6 @@ from tui.widgets.working import Working
 if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.binding import BindingType
-    from textual.content import Content
 
     from tui.app import DeckApp
     from tui.messages import LanguageChanged
@@ -96,5 +97,5 @@ class Dialog(ModalScreen[Answer], Acting, Working):
 
     def redraw(self) -> None:
         """Show the text as it is now, in the language spoken now."""
-        self.query_one("#dialog").border_title = self.title_words()
+        self.query_one("#dialog").border_title = Content(plain(self.title_words()))
         self.query_one("#dialog-text", Static).update(self.words())

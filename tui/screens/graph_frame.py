@@ -12,6 +12,7 @@ from tui.actions.graph import Housekeeping
 from tui.i18n import _
 from tui.screens.base import DeckScreen
 from tui.screens.graph_trail import Trail
+from tui.widgets.field import Field
 from tui.widgets.graph_action import ActionPane
 from tui.widgets.graph_ask import AskPane
 from tui.widgets.graph_index import Entry, chosen_of, entries
@@ -84,7 +85,7 @@ class GraphFrame(DeckScreen):
         """Kinds and filter above list and detail."""
         with Horizontal(id="graph-bar"):
             yield GraphTabs()
-            yield Input(id="graph-filter", compact=True, select_on_focus=False)
+            yield Field(id="graph-filter", compact=True, select_on_focus=False)
             yield Static(id="graph-count", markup=False)
         with Horizontal(id="graph-body"):
             yield GraphList()

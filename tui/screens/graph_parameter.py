@@ -14,17 +14,20 @@ from textual.widgets import Input, Static
 from text.plain import plain
 from tui.i18n import _
 from tui.screens.dialog import Dialog
-from tui.widgets.graph_parameter_words import allowed_words, typed
+from tui.widgets.field import Field
+from tui.widgets.graph_parameter_words import allowed_words, meant, typed
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from graph.data import ParameterRow
+    from graph.data import ParameterRow, Value
 
 LONGEST = 400
+TEXTS = frozenset({"string", "not_set"})
+"""Types whose value is the text that is typed."""
 
-Apply = Callable[[str], Awaitable[str]]
-"""Sets the value that was typed; returns why it was refused, or nothing."""
+Apply = Callable[["Value"], Awaitable[str]]
+"""Sets the value; returns why it was refused, or nothing."""
 
 
 class ParameterDialog(Dialog[bool]):
@@ -41,6 +44,7 @@ class ParameterDialog(Dialog[bool]):
         """Ask for the value of a parameter of `node`."""
         super().__init__()
         self._node, self._row, self._apply = node, row, apply
+        self._typed = typed(row.value)
         self._busy = False
 
     def title_words(self) -> str:
@@ -62,7 +66,7 @@ class ParameterDialog(Dialog[bool]):
         """Words, field, remark, keys."""
         with Vertical(id="dialog"):
             yield Static(id="dialog-text", markup=False)
-            yield Input(typed(self._row.value), compact=True, disabled=self._row.read_only)
+            yield Field(self._typed, compact=True, disabled=self._row.read_only)
             yield Static(id="parameter-remark", markup=False)
             yield Static(id="parameter-keys", markup=False)
 
@@ -97,12 +101,18 @@ class ParameterDialog(Dialog[bool]):
             self.run_worker(self._set(event.value), exit_on_error=False)
 
     async def _set(self, text: str) -> None:
-        refusal = await self._apply(text)
+        refusal = await self._apply(self._value(text))
         self._busy = False
         if refusal:
             self._remark(_("Refused: {reason}").format(reason=refusal))
         elif self.is_current:
             self.dismiss(True)
+
+    def _value(self, text: str) -> Value:
+        """Return what the text stands for; the value that it was as long as nobody changed it."""
+        if self._row.value is not None and text == self._typed:
+            return self._row.value
+        return meant(text) if self._row.type_name in TEXTS else text
 
     def _remark(self, words: str) -> None:
         remark = self.query_one("#parameter-remark", Static)

@@ -64,8 +64,8 @@ def load(app: DeckApp, table: GraphParameters) -> None:
     app.push_screen(dialog)
 
 
-async def _apply(app: DeckApp, table: GraphParameters, row: ParameterRow, text: str) -> str:
-    return await _set(app, table, {row.name: text})
+async def _apply(app: DeckApp, table: GraphParameters, row: ParameterRow, value: Value) -> str:
+    return await _set(app, table, {row.name: value})
 
 
 async def _set(app: DeckApp, table: GraphParameters, values: Mapping[str, Value]) -> str:

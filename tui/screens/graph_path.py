@@ -14,6 +14,7 @@ from textual.widgets import Input, Static
 from text.plain import plain
 from tui.i18n import _
 from tui.screens.dialog import Dialog
+from tui.widgets.field import Field
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -52,7 +53,7 @@ class PathDialog(Dialog[str]):
         """Words, field, remark, keys."""
         with Vertical(id="dialog"):
             yield Static(id="dialog-text", markup=False)
-            yield Input(self._path, compact=True, select_on_focus=False)
+            yield Field(self._path, compact=True, select_on_focus=False)
             yield Static(id="path-remark", markup=False)
             yield Static(id="path-keys", markup=False)
 

@@ -132,8 +132,9 @@ class PublishDialog(Dialog[None]):
     def redraw(self) -> None:
         """Say everything in the language spoken now."""
         dialog = self.query_one("#dialog")
-        dialog.border_title = self.title_words()
-        dialog.border_subtitle = f"{self.deck.keys_of(EmergencyStop)[-1]} {_(EmergencyStop.title)}"
+        dialog.border_title = Content(self.title_words())
+        stop = f"{self.deck.keys_of(EmergencyStop)[-1]} {_(EmergencyStop.title)}"
+        dialog.border_subtitle = Content(stop)
         self.target.relabel()
         self.form.relabel()
         self.rate.relabel()

@@ -19,6 +19,7 @@ from tui.i18n import N_, _, ngettext
 from tui.screens.topics_pictures import TopicsPictures
 from tui.screens.topics_plotting import PlotPlace
 from tui.widgets.echo_tree import EchoTree
+from tui.widgets.field import Field
 from tui.widgets.topic_detail import TopicDetail
 from tui.widgets.topic_plot import TopicPlot
 from tui.widgets.topic_words import size_text
@@ -75,7 +76,7 @@ class TopicsScreen(TopicsPictures):
     def compose_body(self) -> ComposeResult:
         """The filter above table and message."""
         with Horizontal(id="topics-bar"):
-            yield Input(id="topics-filter", compact=True, select_on_focus=False)
+            yield Field(id="topics-filter", compact=True, select_on_focus=False)
             yield Static(id="topics-count", markup=False)
         with Vertical(id="topics-body"):
             yield TopicsTable()

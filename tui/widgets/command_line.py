@@ -14,6 +14,7 @@ from textual.widgets import Input, Static
 from robot.words import WORDS, parse_word
 from text.plain import plain
 from tui.i18n import _, language
+from tui.widgets.field import Field
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -89,7 +90,7 @@ class CommandLine(Vertical):
 
     def compose(self) -> ComposeResult:
         """The field and a remark."""
-        yield Input(compact=True, suggester=WordSuggester(), max_length=LONGEST)
+        yield Field(compact=True, suggester=WordSuggester(), max_length=LONGEST)
         yield Static("", markup=False)
 
     def on_mount(self) -> None:

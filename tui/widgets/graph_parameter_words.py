@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from text.plain import plain
+from graph.yaml_scalars import in_quotes, unquoted
+from text.plain import is_plain, plain
 from tui.i18n import _
 
 if TYPE_CHECKING:
@@ -14,20 +15,29 @@ LONGEST = 400
 
 
 def typed(value: Value | None) -> str:
-    """Return a value as one would type it; a text as it is, a list with commas in brackets."""
+    """Return a value as one would type it: a text as it is, a list with commas in brackets.
+
+    A text that shows not all of itself is in double quotes, with escapes; `meant` takes them away.
+    """
     if value is None:
         return ""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return value
+        return value if is_plain(value) and unquoted(value) is None else in_quotes(value)
     if isinstance(value, (bytes, bytearray)):
         return "[" + ", ".join(map(str, value)) + "]"
     if isinstance(value, (int, float)):
         return repr(value)
     # Quotes keep a text in a list from being taken for a number.
-    items = [f'"{item}"' if isinstance(item, str) else typed(item) for item in _items(value)]
+    items = [in_quotes(item) if isinstance(item, str) else typed(item) for item in _items(value)]
     return "[" + ", ".join(items) + "]"
+
+
+def meant(text: str) -> str:
+    """Return the text that was typed: what is between double quotes, else all of it."""
+    between = unquoted(text)
+    return text if between is None else between
 
 
 def value_text(value: Value | None) -> str:

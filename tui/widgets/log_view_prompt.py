@@ -9,6 +9,8 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
+from tui.widgets.field import Field
+
 if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.widget import Widget
@@ -63,7 +65,7 @@ class LogPrompt(Horizontal):
     def compose(self) -> ComposeResult:
         """Label, field, remark."""
         yield Static("", id="label", markup=False)
-        yield Input(compact=True, select_on_focus=False)
+        yield Field(compact=True, select_on_focus=False)
         yield Static("", id="remark", markup=False)
 
     def ask(self, kind: str, label: str, text: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from rich.segment import Segment
@@ -11,12 +12,14 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widgets import TextArea
 
-from text.plain import plain
+from text.plain import replaced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rich.style import Style
+    from textual.document._document import EditResult
+    from textual.document._edit import Edit
     from textual.events import Paste
 
 MARK = "✗"
@@ -45,6 +48,9 @@ class Token(NamedTuple):
 
 class MarkedEditor(TextArea):
     """Edits text line by line; Enter is a new line, and nothing here sends anything.
+
+    Its text is all to be seen: what would be hidden, or obeyed by the terminal, comes in as an
+    escape, which means the same between double quotes, of YAML and of JSON.
 
     A subclass says what the tokens of a line are. Highlighting hangs on `get_line`, which is there
     to be extended, and not on tree-sitter: it and a grammar are 2.5 MB of compiled code.
@@ -85,7 +91,12 @@ class MarkedEditor(TextArea):
 
     def __init__(self, text: str = "", *, id: str | None = None) -> None:
         super().__init__(
-            text, id=id, soft_wrap=True, show_line_numbers=True, tab_behavior="focus", compact=True
+            self.shown(text),
+            id=id,
+            soft_wrap=True,
+            show_line_numbers=True,
+            tab_behavior="focus",
+            compact=True,
         )
         self.indent_width = 2
         # A blink is bytes over the line twice a second, for as long as the screen is open.
@@ -96,6 +107,24 @@ class MarkedEditor(TextArea):
         """Return the tokens of a line in order; never fails, whatever the line is."""
         del line
         return ()
+
+    def escaped(self, character: str) -> str:
+        """Return what stands for a character that must not be shown as it is."""
+        return json.dumps(character)[1:-1]
+
+    def shown(self, text: str) -> str:
+        """Return a text as it stands in here, in its lines."""
+        lines = text.replace("\r\n", "\n").replace("\r", "\n")
+        return replaced(lines, lambda one: one if one in "\n\t" else self.escaped(one))
+
+    def load_text(self, text: str) -> None:
+        """Begin anew with a text."""
+        super().load_text(self.shown(text))
+
+    def edit(self, edit: Edit) -> EditResult:
+        """Take what was typed, pasted or put here."""
+        edit.text = self.shown(edit.text)
+        return super().edit(edit)
 
     def show_problems(self, places: Iterable[Place]) -> None:
         """Underline what stands at these places and mark their lines; none clears the marks."""
@@ -119,15 +148,14 @@ class MarkedEditor(TextArea):
 
     def on_paste(self, event: Paste) -> None:
         """Leave out what is too long."""
-        if len(event.text) + len(self.text) > self.longest:
+        if len(self.shown(event.text)) + len(self.text) > self.longest:
             event.prevent_default().stop()
             self.post_message(self.TooLong())
 
     def get_line(self, line_index: int) -> Text:
-        """The line with its tokens coloured and control characters harmless."""
+        """The line with its tokens coloured."""
         source = self.document.get_line(line_index)
-        shown = source if source.isprintable() else "\t".join(map(plain, source.split("\t")))
-        line = Text(shown, end="", no_wrap=True)
+        line = Text(source, end="", no_wrap=True)
         for token in self.tokens_of(source) if len(source) <= LONGEST_COLOURED else ():
             line.stylize(self._style(token.kind), token.start, token.end)
         for place in self._places:

@@ -12,6 +12,7 @@ from textual.widgets import Input, Static
 from graph.publications import LEAST_HZ, MOST_HZ
 from text.plain import plain
 from tui.i18n import _
+from tui.widgets.field import Field
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,7 +48,7 @@ class PublishRate(Horizontal):
     def compose(self) -> ComposeResult:
         """All in one line."""
         yield Static(id="rate-label", markup=False)
-        yield Input("10", id="rate-hz", compact=True, select_on_focus=False)
+        yield Field("10", id="rate-hz", compact=True, select_on_focus=False)
         yield Static(id="rate-unit", markup=False)
         yield Static(id="rate-said", markup=False)
 

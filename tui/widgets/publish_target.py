@@ -13,6 +13,7 @@ from textual.widgets import Input, Static
 
 from graph.browse import interfaces
 from tui.i18n import _
+from tui.widgets.field import Field
 from tui.widgets.type_field import TypeField
 from tui.widgets.working import Working
 
@@ -44,7 +45,7 @@ class PublishTarget(Vertical, Working):
         """The topic above its type."""
         with Horizontal(classes="target-row"):
             yield Static(id="target-topic-label", classes="target-label", markup=False)
-            yield Input(id="target-topic", compact=True, select_on_focus=False)
+            yield Field(id="target-topic", compact=True, select_on_focus=False)
         with Horizontal(classes="target-row"):
             yield Static(id="target-type-label", classes="target-label", markup=False)
             yield TypeField()

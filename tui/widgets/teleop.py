@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar, cast
 
+from textual.content import Content
 from textual.message import Message
 
 from graph.held import Holding
@@ -232,7 +233,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
     def _entitle(self) -> None:
         topic = f" → {self._route.topic}" if self._route.topic else ""
-        self.border_title = _(TITLE) + topic
+        self.border_title = Content(_(TITLE) + topic)
 
     def words_changed(self) -> None:
         """Draw anew in another language."""

@@ -10,6 +10,8 @@ from textual.containers import Vertical
 from textual.message import Message
 from textual.widgets import Input, OptionList
 
+from tui.widgets.field import Field
+
 if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.events import DescendantBlur
@@ -49,7 +51,7 @@ class TypeField(Vertical):
 
     def compose(self) -> ComposeResult:
         """The field above the list."""
-        yield Input(compact=True, select_on_focus=False)
+        yield Field(compact=True, select_on_focus=False)
         listed = OptionList(markup=False, compact=True)
         listed.can_focus = False
         yield listed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from graph.yaml_scalars import escaped
 from tui.widgets.marked_editor import MarkedEditor
 from tui.widgets.yaml_tokens import tokens
 
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
 
 class YamlEditor(MarkedEditor):
     """Edits YAML; Enter begins the next line below the beginning of this one."""
+
+    def escaped(self, character: str) -> str:
+        """Return the escape of YAML for a character."""
+        return escaped(character)
 
     def tokens_of(self, line: str) -> Iterable[Token]:
         """Return the tokens of YAML."""

@@ -1,0 +1,89 @@
+"""What stands in a field is what is sent, and what comes from outside goes back as it came."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from textual.app import App, ComposeResult
+from textual.events import Paste
+
+from graph.data import ParameterRow, ParametersResult
+from graph.yaml_scalars import in_quotes, unquoted
+from tests.hostile import EVIL
+from tests.tui.graph_room import opened
+from tests.tui.recorded import RecordedGraph
+from tests.tui.recorded_nodes import graph_update
+from text.plain import is_plain, plain
+from tui.screens.graph_parameter import ParameterDialog
+from tui.widgets.field import Field
+from tui.widgets.graph_parameter_words import meant, typed
+
+NODE = "/sonar_front"
+
+
+class FieldApp(App[None]):
+    """One field."""
+
+    def compose(self) -> ComposeResult:
+        yield Field(EVIL)
+
+
+async def test_what_is_pasted_is_made_visible_and_that_is_the_value() -> None:
+    app = FieldApp()
+    async with app.run_test() as pilot:
+        field = app.query_one(Field)
+        assert field.value == plain(EVIL)
+        field.clear()
+        field.post_message(Paste("/dri\u200bve\x1b]52;c;QQ==\x07\u202e"))
+        await pilot.pause()
+        assert field.value == "/dri\ufffdve␛]52;c;QQ==␇\ufffd"
+        assert field.cursor_position == len(field.value)
+
+
+@given(st.text(st.characters(exclude_categories=("Cs",)), max_size=80))
+def test_a_text_typed_as_it_is_shown_is_that_text(text: str) -> None:
+    assert is_plain(typed(text))
+    assert meant(typed(text)) == text
+    assert unquoted(in_quotes(text)) == text
+
+
+@pytest.mark.parametrize("text", ["plain", "two words", "1.5", 'a "quote" in it', "", "'", '"'])
+def test_an_ordinary_text_is_shown_without_quotes(text: str) -> None:
+    assert typed(text) == text
+
+
+async def asked(value: object, *keys: str) -> tuple[str, object]:
+    """Open a parameter of this value, press keys and Enter: what stood there, what was set."""
+    row = ParameterRow("topic", "string", value)  # type: ignore[arg-type]
+    graph = RecordedGraph(update=graph_update())
+    graph.node_parameters[NODE] = ParametersResult(NODE, (row,))
+    async with opened(graph) as room:
+        await room.choose(NODE)
+        await room.press("p")
+        await room.wait(lambda: room.screen.query("GraphParameters"))
+        await room.wait_for("topic")
+        await room.press("enter")
+        await room.wait(lambda: isinstance(room.app.screen, ParameterDialog))
+        stood = room.app.screen.query_one(Field).value
+        await room.press("end", *keys, "enter")
+        await room.wait(lambda: graph.set_to)
+        return stood, graph.set_to[0][1]["topic"]
+
+
+async def test_a_parameter_that_nobody_changed_is_not_corrupted() -> None:
+    stood, sent = await asked(EVIL)
+    assert is_plain(stood)
+    assert "\\u001b]52;c;" in stood
+    assert sent == EVIL
+
+
+async def test_of_a_hostile_parameter_only_what_was_typed_is_changed() -> None:
+    _stood, sent = await asked(EVIL, "left", "x")
+    assert sent == f"{EVIL}x"
+
+
+async def test_quotes_that_belong_to_a_value_stay_with_it() -> None:
+    stood, sent = await asked('"quoted"', "left", "x")
+    assert stood == r'"\"quoted\""'
+    assert sent == '"quoted"x'
