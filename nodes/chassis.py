@@ -3,7 +3,8 @@
 A drive line goes out `rate` times a second, whether there is a command or not: it is the heartbeat
 without which the Pico stops within 250 ms. A command that is older than `max_age_s`, is no number,
 is beyond robot/limits.py, or came before an emergency stop, a fault or a new connection was over,
-is a stop. /emergency_stop is latched here and in the Pico.
+is a stop. /emergency_stop is latched here and in the Pico; a stop that the Pico has kept is one for
+this node, too.
 
 Published with every telemetry (50 Hz), to who listens: /joint_states, /odom, /tf; /battery and
 /diagnostics once a second. It connects again by itself. At its end it leaves a stop behind.
@@ -33,7 +34,7 @@ from nodes._chassis_words import (
     diagnosis,
 )
 from nodes._diagnostics import tell_every_second
-from nodes._emergency import EmergencyStop
+from nodes._emergency import PICO, EmergencyStop
 from nodes._life import run
 from nodes._nap import Nap
 from nodes._node import LessonNode
@@ -55,6 +56,8 @@ _STILL = (0.0, 0.0, 0.0)
 _REARMS = frozenset("ELRUHA")
 """Flags of the Pico after which only a new command counts."""
 _BATTERY_EVERY_S = 1.0
+_SETTLES_S = 0.5
+"""So long after a release the Pico may still be telling of the stop before it."""
 _AWAY_S = 0.5
 """Who was stopped for longer believes no command that has waited meanwhile."""
 
@@ -102,6 +105,7 @@ class Chassis(LessonNode):
         self._commanded_s = -math.inf
         self._standing = Standing(self.say)
         self._release_wanted = False
+        self._released_s = -math.inf
         self._nap = Nap()
         self._refusals = Refusals(self)
         self._wheel_limits = wheel_limits(self.number("wheel_radius"))
@@ -174,7 +178,8 @@ class Chassis(LessonNode):
 
     def _emergency_changed(self, active: bool) -> None:
         with self._sending:
-            self._command, self._release_wanted = _STILL, not active
+            self._command = _STILL
+            self._want_release(not active)
             if active:
                 self._pico.halt()
             else:
@@ -185,7 +190,23 @@ class Chassis(LessonNode):
             self.say.warn(RELEASED)
 
     def _hear_release(self, message: Bool) -> None:
-        self._release_wanted = not message.data
+        with self._sending:
+            self._want_release(not message.data)
+
+    def _want_release(self, wanted: bool) -> None:
+        self._release_wanted = wanted
+        if wanted:
+            self._released_s = time.monotonic()
+
+    def _take_over(self) -> None:
+        """Take the stop that the Pico keeps for one's own: it is from before, or somebody else's.
+
+        Not one that it has only not let go of yet.
+        """
+        telemetry = self._pico.telemetry
+        kept = telemetry is not None and "E" in telemetry.flags
+        if kept and not self._release_wanted:
+            self._emergency.engage(PICO)
 
     def _publish_battery(self) -> None:
         telemetry = self._pico.telemetry
@@ -218,9 +239,10 @@ class Chassis(LessonNode):
             if self._emergency.active and "E" not in flags:
                 self._pico.halt()
             # Said until it is heard, for a line may be lost.
-            self._release_wanted = self._release_wanted and "E" in flags
-            if self._release_wanted:
+            if self._release_wanted and "E" in flags:
                 self._pico.release()
+            elif time.monotonic() - self._released_s > _SETTLES_S:
+                self._release_wanted = False
         self._pico.drive(*self._command)
 
     def _stand(self) -> None:
@@ -233,6 +255,8 @@ class Chassis(LessonNode):
         if not self.context.ok():
             return
         self._reckoning.take(telemetry)
+        if "E" in telemetry.flags and not self._emergency.active and self.executor is not None:
+            self.executor.create_task(self._take_over)
         stamp = self.get_clock().now().to_msg()
         if self._joints.get_subscription_count():
             self._joints.publish(self._reckoning.joints(telemetry, stamp))

@@ -5,7 +5,9 @@ from __future__ import annotations
 import fcntl
 import gc
 import os
+import shutil
 import signal
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -26,6 +28,10 @@ os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
 
 # Whoever runs this by `&` in a script ignores it, and so would all that is started here.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+STATE_DIR = "DECK_STATE_DIR"
+os.environ[STATE_DIR] = tempfile.mkdtemp(prefix="deck-test-state-")
+"""Set for the whole run: nodes that a module shares, started anew by a test, remember alike."""
 
 DOMAINS = range(1, 102)
 """Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
@@ -51,12 +57,17 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
+def pytest_unconfigure() -> None:
+    """Leave nothing behind."""
+    shutil.rmtree(os.environ[STATE_DIR], ignore_errors=True)
+
+
 @pytest.fixture(autouse=True)
 def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Keep a developer's own settings, run directory and logs out of the tests."""
     for name in ("NO_COLOR", "LANGUAGE", "LC_ALL", "LC_MESSAGES", "COLORTERM"):
         monkeypatch.delenv(name, raising=False)
-    for name in [name for name in os.environ if name.startswith("DECK_")]:
+    for name in [name for name in os.environ if name.startswith("DECK_") and name != STATE_DIR]:
         monkeypatch.delenv(name)
     monkeypatch.setenv("LANG", "C.UTF-8")
     monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "run"))
@@ -96,6 +107,8 @@ class DomainPool:
                 os.close(lock)
                 continue
             self._held[domain] = lock
+            # An emergency stop that an earlier test has left there.
+            (Path(os.environ[STATE_DIR]) / "stops" / str(domain)).unlink(missing_ok=True)
             return domain
         raise RuntimeError("every ROS domain from 1 to 101 is held by a test")
 

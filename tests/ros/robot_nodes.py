@@ -40,12 +40,21 @@ class RobotNodes:
         self.domain, self.folder = domain, folder
         self.peer = Peer(domain)
         self.wheels = Wheels(self.peer)
-        self.robot = mock_robot(domain, folder, noise=0.0, dropout=0.0)
-        self.robot.wait_for_words("The simulated robot is in")
+        self.start_robot()
         self.processes: dict[str, NodeProcess] = {}
         environ = {"DECK_RUN_DIR": str(folder.parent)}
         self._specs = load_profile(ROOT / "profiles" / "robot.yaml", environ=environ).nodes
         wait_until(lambda: self.wheels.told, "news of the motors")
+
+    def start_robot(self) -> None:
+        """Start the emulated robot, the Pico with it."""
+        self.robot = mock_robot(self.domain, self.folder, noise=0.0, dropout=0.0)
+        self.robot.wait_for_words("The simulated robot is in")
+
+    def kill_robot(self) -> None:
+        """Let it be gone as if its power were."""
+        self.robot.send(signal.SIGKILL)
+        self.robot.close()
 
     def start(self, *names: str) -> None:
         """Start nodes, one right after the other, and wait until each works."""

@@ -1,0 +1,132 @@
+"""The emergency stop on disk: one small file a domain, from the stop until its release.
+
+Every node that obeys the stop writes it and reads it at its start, so that a stop outlives
+whoever gave it, every node, and the computer's power. The file is written all-or-nothing, next to
+its place first. What cannot be read counts as a stop: when in doubt nothing moves.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+STATE_DIR = "DECK_STATE_DIR"
+"""Environment variable with the folder of what Deck remembers."""
+_LONGEST = 4096
+
+
+class Stop(NamedTuple):
+    """An emergency stop that is on."""
+
+    since_s: float
+    """Unix time."""
+    by: str
+    """What has engaged it: `topic`, or `pico`."""
+    publishers: str = ""
+    """Full names of the nodes that could have said it on the topic, with blanks between them."""
+    remembered: bool = False
+    """Whether it comes from before the start of this node."""
+    unreadable: str = ""
+    """Why nothing more is known of it."""
+
+
+def stops_folder() -> Path:
+    """Return `stops` in `DECK_STATE_DIR`, `$XDG_STATE_HOME/deck`, or `~/.local/state/deck`.
+
+    Raises:
+        RuntimeError: if this user has no home.
+    """
+    chosen = os.environ.get(STATE_DIR)
+    if chosen:
+        return Path(chosen) / "stops"
+    state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
+    return Path(state) / "deck" / "stops"
+
+
+class StopMemory:
+    """What is remembered of the stop in one domain."""
+
+    def __init__(self, domain: int, writer: str) -> None:
+        """`writer` is the full name of the node."""
+        self._name = str(domain)
+        self._draft = f".{domain}{writer.replace('/', '.')}"
+
+    def recall(self) -> Stop | None:
+        """Return the stop that is remembered, None if none is."""
+        try:
+            with (stops_folder() / self._name).open("rb") as file:
+                text = file.read(_LONGEST)
+        except (FileNotFoundError, RuntimeError):
+            return None
+        except OSError as error:
+            return _unreadable(error.strerror or str(error))
+        return _read(text)
+
+    def keep(self, stop: Stop) -> str:
+        """Write it down, unless a stop is remembered already; return why that failed."""
+        document = {"since": stop.since_s, "by": stop.by, "publishers": stop.publishers}
+        try:
+            folder = stops_folder()
+            if os.path.lexists(folder / self._name):
+                return ""
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            _write(folder / self._draft, json.dumps(document).encode())
+            (folder / self._draft).replace(folder / self._name)
+            _flush(folder)
+        except (OSError, RuntimeError) as error:
+            return _reason(error)
+        return ""
+
+    def forget(self) -> str:
+        """Remember no stop any more; return why that failed."""
+        try:
+            folder = stops_folder()
+            with contextlib.suppress(FileNotFoundError):
+                (folder / self._name).unlink()
+                _flush(folder)
+        except (OSError, RuntimeError) as error:
+            return _reason(error)
+        return ""
+
+
+def _read(text: bytes) -> Stop:
+    try:
+        document = json.loads(text)
+        return Stop(
+            float(document["since"]),
+            str(document["by"]),
+            str(document.get("publishers", "")),
+            remembered=True,
+        )
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        return _unreadable(_reason(error))
+
+
+def _unreadable(reason: str) -> Stop:
+    return Stop(time.time(), "", remembered=True, unreadable=reason)
+
+
+def _write(path: Path, data: bytes) -> None:
+    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW | os.O_CLOEXEC
+    with os.fdopen(os.open(path, flags, 0o600), "wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _flush(folder: Path) -> None:
+    """Let the disk have it: the power may go at any moment."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _reason(error: Exception) -> str:
+    strerror = error.strerror if isinstance(error, OSError) else None
+    return strerror or str(error) or type(error).__name__
