@@ -19,6 +19,7 @@ from tui.actions.app import APP_ACTIONS, EmergencyStop
 from tui.actions.recording import RECORDING_ACTIONS
 from tui.actions.replay import REPLAY_ACTIONS
 from tui.brake import Brake
+from tui.faults import Faults
 from tui.feed import Feed, GraphReady
 from tui.harmless import Harmless
 from tui.i18n import LANGUAGES, NAMES, _, language, set_language
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from textual.notifications import SeverityLevel
     from textual.screen import Screen
 
+    from tui.faults import Journal
     from tui.seams import Launchpad
 
 SCREENS = {
@@ -78,9 +80,16 @@ class DeckApp(App[int], Acting):
         order: Order,
         first_screen: str = "deck",
         driver_class: type[Driver] | None = None,
+        journal: Journal | None = None,
     ) -> None:
-        """`pad` lists and opens; an `order` that names nothing is asked for by the picker."""
+        """`pad` lists and opens; an `order` that names nothing is asked for by the picker.
+
+        With a `journal` the app outlives what its widgets raise, see `tui.faults`.
+        """
         super().__init__(driver_class=driver_class)
+        self.faults = Faults(self, journal)
+        self.has_begun = False
+        """Whether the first frame is out."""
         self.sessions = Sessions(self, pad, order)
         self.feed = Feed(self)
         self.brake = Brake(self)
@@ -129,6 +138,7 @@ class DeckApp(App[int], Acting):
 
     async def _begin(self) -> None:
         """Show the lesson, or the picker if none was named, and open what was ordered."""
+        self.has_begun = True
         await self.push_screen(self._made_screen(self._first_screen))
         self.sessions.begin()
 
@@ -174,6 +184,24 @@ class DeckApp(App[int], Acting):
         message, title = plain_lines(message), plain(title)
         super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
 
+    async def show_safe_screen(self, broken: Screen[Any]) -> None:
+        """Let go of a screen that cannot be drawn; it is made anew when it is asked for again."""
+        from tui.screens.safe import SafeScreen
+
+        if broken is not self.screen:
+            return
+        await self.switch_screen(SafeScreen())
+        if self.is_screen_installed(broken):
+            self.uninstall_screen(broken)
+            await broken.remove()
+
+    def _handle_exception(self, error: Exception) -> None:
+        """Go on, where faults are isolated: Textual would end the app by any of them."""
+        if self.faults.isolates:
+            self.faults.caught(error)
+        else:
+            super()._handle_exception(error)
+
     def show_help(self) -> None:
         """Explain the screen in front."""
         from tui.screens.help import HelpScreen
@@ -187,11 +215,15 @@ class DeckApp(App[int], Acting):
         return self._exception is not None
 
     def on_graph_ready(self, message: GraphReady) -> None:
-        """Take the update that waits."""
+        """Take the update that waits; a fault of the stop does not keep it from the screens."""
         del message
         update = self.feed.take_update()
-        if update is not None:
+        if update is None:
+            return
+        try:
             self.brake.see(update)
+        finally:
+            self.feed.hand_over(update)
 
     def emergency_changed(self) -> None:
         """Tell every screen, and the keys: a release is possible only when engaged."""

@@ -140,7 +140,10 @@ class Feed:
         async for event in link.events(past=KEPT_LINES):
             if link is not self.link:
                 return
-            await self._on_event(event)
+            try:
+                await self._on_event(event)
+            except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+                self._app.faults.caught(error)
 
     async def _on_event(self, event: Event) -> None:
         # The first frame does without.
@@ -157,17 +160,20 @@ class Feed:
             await self.disconnect(event.reason)
 
     def take_update(self) -> GraphUpdate | None:
-        """Hand over the update that waits to the screens that want it, and return it."""
+        """Return the update that waits."""
         update = self._inbox.take()
         if update is None or self.graph is None:
             return None
         self.update = update
-        self._note_rosout(update)
+        return update
+
+    def hand_over(self, update: GraphUpdate) -> None:
+        """Give an update to the screens that want it."""
         front = self.front
         for screen in self._screens:
             if screen is front or not update.samples.keys().isdisjoint(screen.follow_topics()):
                 screen.post_message(GraphChanged(update))
-        return update
+        self._note_rosout(update)
 
     @property
     def _hears_rosout(self) -> bool:

@@ -14,11 +14,13 @@ from textual.theme import BUILTIN_THEMES
 
 from launcher.errors import LauncherError
 from launcher.rundir import log_dir
+from launcher.status import LogLine, Severity
 from text.plain import plain
 from tui import clock
 from tui.app import DeckApp, every_action
 from tui.cli.output import say_error
 from tui.i18n import _, detect, set_language
+from tui.isolation import isolating
 from tui.launchpad import LivePad
 from tui.settings import Settings, SettingsError, load, save, settings_path
 from tui.stray_output import StrayOutput
@@ -28,7 +30,6 @@ from tui.themes import HIGH_CONTRAST
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from launcher.status import LogLine
     from tui.orders import Order
 
 LOOK_S = 0.5
@@ -44,7 +45,7 @@ class LiveApp(DeckApp):
     """Leaves orderly whatever the terminal does, and remembers what was settled."""
 
     def __init__(self, order: Order, stray: StrayOutput, settings: Settings) -> None:
-        super().__init__(LivePad(), order, driver_class=DeckDriver)
+        super().__init__(LivePad(), order, driver_class=DeckDriver, journal=self.note_fault)
         self.terminal_fd = stray.terminal_fd
         self._stray = stray
         self._settings = settings
@@ -100,16 +101,24 @@ class LiveApp(DeckApp):
         except SettingsError as error:
             self.notify(plain(str(error)), severity="warning", markup=False)
 
+    def note_fault(self, words: str, trace: str) -> None:
+        """Keep what has failed in the file of stray output, and tell of it in the log."""
+        self._stray.write(trace)
+        self._note([words], Severity.ERROR)
+
     def _look(self) -> None:
         self._settle()
         if isinstance(self._driver, DeckDriver) and self._driver.gone:
             self._driver.give_up()
             if not self._deserted:
                 self.desert(128 + signal.SIGHUP)
-        fresh = self._stray.new_lines()
-        first, self._stray_count = self._stray_count + 1, self._stray_count + len(fresh)
-        if fresh:
-            self.feed.note(_as_lines(fresh, first))
+        self._note(self._stray.new_lines(), Severity.INFO)
+
+    def _note(self, texts: Sequence[str], severity: Severity) -> None:
+        """Add lines to the log, by the node `deck`."""
+        first, self._stray_count = self._stray_count + 1, self._stray_count + len(texts)
+        if texts:
+            self.feed.note(_as_lines(texts, first, severity))
 
     def _settle(self) -> None:
         """Once the first session is seen, look for garbage among what comes after that alone.
@@ -121,13 +130,11 @@ class LiveApp(DeckApp):
             gc.freeze()
 
 
-def _as_lines(texts: Sequence[str], first: int) -> list[LogLine]:
+def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogLine]:
     """Return what was printed past the screen as lines of the log, by the node `deck`."""
-    from launcher.status import LogLine, Severity
-
     now_s = clock.now()
     return [
-        LogLine("deck", first + at, now_s, Severity.INFO, plain(text), source="deck")
+        LogLine("deck", first + at, now_s, severity, plain(text), source="deck")
         for at, text in enumerate(texts)
     ]
 
@@ -145,7 +152,7 @@ def run_live(order: Order, lang: str | None) -> int:
     except (SettingsError, LauncherError) as error:
         return _refused(str(error))
     set_language(detect(lang, settled=settings.language))
-    with stray:
+    with stray, isolating():
         app = LiveApp(order, stray, settings)
         app.run()
     if app.sessions.parting_words:

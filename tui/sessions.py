@@ -135,8 +135,11 @@ class Sessions:
             await self._back_to_picker()
 
     async def _leave(self) -> None:
-        await self._end()
-        self._app.exit(return_code=self._code)
+        try:
+            await self._end()
+        finally:
+            # Whatever failed on the way: who wants to leave does.
+            self._app.exit(return_code=self._code)
 
     async def _stop_now(self) -> None:
         link = self._app.feed.link

@@ -6,6 +6,7 @@ shown among the logs.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from pathlib import Path
@@ -62,6 +63,11 @@ class StrayOutput:
         os.close(self._fd)
         if empty:
             self.path.unlink(missing_ok=True)
+
+    def write(self, text: str) -> None:
+        """Add what the screen itself has to say; a full disk does not hinder it."""
+        with contextlib.suppress(OSError):
+            os.write(self._fd, text.encode("utf-8", "replace"))
 
     def new_lines(self) -> list[str]:
         """Return what was printed since the last time, the newest lines if it was much."""

@@ -10,9 +10,12 @@ from textual.content import Content
 
 from graph.data import Trouble
 from text.plain import plain
+from tui.faults import bear
 from tui.i18n import _
 
 if TYPE_CHECKING:
+    from textual.visual import VisualType
+
     from graph.data import GraphUpdate, Sample, TopicRow
 
 ALWAYS = 1_000_000
@@ -26,6 +29,7 @@ class Panel(Vertical):
         width: 1fr; height: 1fr; padding: 0 1;
         border: round $primary 60%; border-title-color: $foreground; border-title-style: bold;
         &:focus-within { border: round $accent; }
+        &.-failed > * { display: none; }
     }
     """
 
@@ -40,6 +44,8 @@ class Panel(Vertical):
 
     _source = ""
     _page = ""
+    _fault = ""
+    """What is said in place of the widget while it fails."""
 
     def on_mount(self) -> None:
         """Show the title."""
@@ -73,6 +79,31 @@ class Panel(Vertical):
     def show(self, update: GraphUpdate) -> None:
         """Show what has come, and why nothing has."""
         raise NotImplementedError
+
+    def take(self, update: GraphUpdate) -> None:
+        """Show what has come, or that it cannot be shown, until something comes that can."""
+        try:
+            self.show(update)
+        except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+            self.show_fault(bear(self, error))
+        else:
+            self.show_fault("")
+
+    @property
+    def failed(self) -> bool:
+        """Whether words stand in place of the widget."""
+        return bool(self._fault)
+
+    def show_fault(self, words: str) -> None:
+        """Say in place of the widget what has failed; nothing has if there are no words."""
+        if words != self._fault:
+            self._fault = words
+            self.set_class(bool(words), "-failed")
+            self.refresh(layout=True)
+
+    def render(self) -> VisualType:
+        """Draw what stands behind the widget, which is seen while that fails."""
+        return Content(self._fault) if self._fault else super().render()
 
     def words_changed(self) -> None:
         """Draw anew in another language."""

@@ -221,7 +221,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
                 self._lay_out(self.size.height)
                 self.topics_changed()
         for panel in self.panels:
-            panel.show(message.update)
+            panel.take(message.update)
         row = row_of(message.update, COMMANDS)
         self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
 

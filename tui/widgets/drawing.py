@@ -18,6 +18,7 @@ from textual.widget import Widget
 
 from graph.data import Trouble
 from text.plain import plain
+from tui.faults import bear
 from tui.i18n import _
 from tui.widgets.one_style import OneStyle
 from tui.widgets.trouble import no_data_words, trouble_words
@@ -70,6 +71,8 @@ class Drawing(OneStyle, Widget):
         self._styles: dict[str, Style] = {}
         self._drawn_in = Size(0, 0)
         """For which size the lines were drawn."""
+        self._fault = ""
+        """Why the values cannot be drawn, empty if they can."""
 
     @property
     def has_value(self) -> bool:
@@ -124,9 +127,14 @@ class Drawing(OneStyle, Widget):
 
     def _drawn(self, width: int, height: int) -> list[Line]:
         self._drawn_in = Size(width, height)
+        self._fault = ""
         if not self.has_value:
             return []
-        lines = self.draw(width, height)[:height]
+        try:
+            lines = self.draw(width, height)[:height]
+        except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+            self._fault = bear(self, error)
+            return []
         return [_greyed(line) for line in lines] if self.stale else lines
 
     def on_resize(self) -> None:
@@ -152,7 +160,7 @@ class Drawing(OneStyle, Widget):
     def render_line(self, y: int) -> Strip:
         """One line: of the drawing, or of words in place of it."""
         width = self.size.width
-        if not self.has_value:
+        if self._fault or not self.has_value:
             return self._words(y, width)
         segments = [Segment(ink.text, self._style(ink.look)) for ink in _at(self._lines, y)]
         return Strip(segments).adjust_cell_length(width, self._style(""))
@@ -169,6 +177,8 @@ class Drawing(OneStyle, Widget):
         if self._trouble is not None:
             headline = trouble_words(self._trouble, self._age_s)
         words = (headline, plain(self._detail, 400))
+        if self._fault:
+            words = (self._fault, "")
         strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)
         line = y - max(0, (self.size.height - len(strips)) // 2)
         blank = Strip.blank(width, self.rich_style)

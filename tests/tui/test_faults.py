@@ -1,0 +1,304 @@
+"""What fails on the screen is told in its own place, and the rest goes on: the stop above all."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+import pytest
+from textual.app import App
+from textual.message_pump import MessagePump
+from textual.pilot import Pilot
+from textual.screen import Screen
+from textual.widget import Widget
+
+from tests.tui.app_runs import LESSON_9
+from tests.tui.recorded import (
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    lesson_samples,
+    lesson_update,
+)
+from tests.tui.snapshots import settle
+from tui.app import DeckApp
+from tui.faults import COMPOSING, LAYING_OUT
+from tui.isolation import isolating
+from tui.panels.panel import Panel
+from tui.panels.wheels import WheelsFeed
+from tui.screens.deck import LessonDeck
+from tui.screens.safe import Plainly, SafeScreen
+from tui.screens.topics import TopicsScreen
+from tui.widgets.command_line import CommandLine
+from tui.widgets.head import HeadPanel
+from tui.widgets.key_bar import KeyBar
+from tui.widgets.sonar import Sonar
+from tui.widgets.title_bar import TitleBar
+from tui.widgets.topics_table import TopicsTable
+from tui.widgets.wheels import WheelsPanel
+
+
+@dataclass
+class Isolated:
+    """The app as a person has it: what its widgets raise is told, and it goes on."""
+
+    app: DeckApp
+    pilot: Pilot[Any]
+    graph: RecordedGraph
+    journal: list[tuple[str, str]]
+
+    async def look(self) -> None:
+        """Let the graph say something, and have it shown."""
+        self.graph.show(lesson_update())
+        await self.pilot.pause()
+
+    async def until(self, true: Callable[[], object]) -> None:
+        """Wait for what must come about."""
+        deadline = time.monotonic() + 20
+        while not true():
+            assert time.monotonic() < deadline
+            await self.pilot.pause(0.02)
+
+    async def stops(self) -> bool:
+        """Whether the space bar still stops the wheels."""
+        await self.pilot.press("space")
+        await self.until(lambda: self.graph.published)
+        topic, _type, message = self.graph.published[-1][:3]
+        return topic == "/emergency_stop" and message == {"data": True}
+
+
+@asynccontextmanager
+async def isolated() -> AsyncIterator[Isolated]:
+    graph = RecordedGraph()
+    journal: list[tuple[str, str]] = []
+    app = DeckApp(RecordedPad(graph=graph), LESSON_9, journal=lambda *noted: journal.append(noted))
+    with isolating():
+        async with app.run_test(size=(120, 40)) as pilot:
+            await settle(pilot)
+            yield Isolated(app, pilot, graph, journal)
+            assert app.is_running
+            assert not app.crashed
+
+
+@contextmanager
+def broken(thing: type, method: str) -> Iterator[None]:
+    """Let a method of a class fail."""
+
+    def fail(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("broken on purpose")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(thing, method, fail)
+        yield
+
+
+def shown(widget: Widget) -> str:
+    lines = widget.render_lines(widget.outer_size.region)
+    return "\n".join(line.text.rstrip() for line in lines)
+
+
+FAULT = "has failed (ZeroDivisionError: broken on purpose). The rest goes on."
+
+
+def flat(text: str) -> str:
+    """A text as it was before it was wrapped."""
+    return " ".join(text.replace("│", " ").split())
+
+
+async def test_a_panel_that_cannot_show_says_so_until_it_can() -> None:
+    async with isolated() as deck:
+        wheels = deck.app.screen.query_one(WheelsFeed)
+        head = deck.app.screen.query_one(HeadPanel)
+        with broken(WheelsPanel, "show"):
+            await deck.look()
+            assert f"Wheels {FAULT}" in flat(shown(wheels))
+            assert "45° left" in shown(head)
+            assert not wheels.query_one(WheelsPanel).region
+            await deck.look()
+        assert [words for words, _trace in deck.journal] == [f"Wheels {FAULT}"]
+        assert "broken on purpose" in deck.journal[0][1]
+        assert "Traceback" in deck.journal[0][1]
+        assert await deck.stops()
+        await deck.look()
+        assert "has failed" not in shown(wheels)
+        assert "29° left" in shown(wheels.query_one(WheelsPanel))
+
+
+async def test_a_drawing_that_fails_says_so_in_its_place_until_it_can_be_drawn() -> None:
+    async with isolated() as deck:
+        drawing = deck.app.screen.query_one(WheelsPanel)
+        with broken(WheelsPanel, "draw"):
+            drawing.redraw()
+            await deck.pilot.pause()
+            assert f"Wheels {FAULT}" in flat(shown(drawing))
+        drawing.redraw()
+        await deck.pilot.pause()
+        assert "has failed" not in shown(drawing)
+
+
+@pytest.mark.parametrize(
+    ("part", "method"), [(Sonar, "render_line"), (TitleBar, "render"), (KeyBar, "render")]
+)
+async def test_what_cannot_be_rendered_leaves_the_others_on_the_screen(
+    part: type[Widget], method: str
+) -> None:
+    async with isolated() as deck:
+        widget = deck.app.screen.query(part).first()
+        with broken(part, method):
+            widget.refresh()
+            await deck.pilot.pause()
+            assert "ZeroDivisionError" in shown(widget)
+            await deck.look()
+            assert "45° left" in shown(deck.app.screen.query_one(HeadPanel))
+            assert await deck.stops()
+        widget.refresh()
+        await deck.pilot.pause()
+        await deck.pilot.pause()
+        assert "ZeroDivisionError" not in shown(widget)
+
+
+async def test_a_handler_that_fails_handles_the_next_message() -> None:
+    async with isolated() as deck:
+        with broken(CommandLine, "show_listeners"):
+            await deck.look()
+            await deck.look()
+            assert len(deck.journal) == 1
+        assert await deck.stops()
+        await deck.look()
+        await deck.pilot.press("f3")
+        await deck.until(lambda: isinstance(deck.app.screen, TopicsScreen))
+
+
+async def test_timers_workers_and_callbacks_that_fail_end_nothing() -> None:
+    def fail() -> None:
+        raise ZeroDivisionError("broken on purpose")
+
+    async def work() -> None:
+        fail()
+
+    async with isolated() as deck:
+        screen = deck.app.screen
+        screen.set_timer(0.001, fail)
+        await deck.until(lambda: len(deck.journal) == 1)
+        # One that fails at the same place is the same.
+        screen.run_worker(work(), exit_on_error=True)
+        screen.call_later(fail)
+        deck.app.call_later(fail)
+        screen.call_after_refresh(fail)
+        deck.app.run_worker(work())
+        await deck.pilot.pause(0.05)
+        assert len(deck.journal) == 1
+        assert await deck.stops()
+
+
+async def test_a_key_whose_action_fails_is_told_and_the_next_key_works() -> None:
+    async with isolated() as deck:
+        with broken(DeckApp, "show_help"):
+            await deck.pilot.press("f1")
+            await deck.until(lambda: deck.journal)
+        assert await deck.stops()
+        toasts = [note.message for note in deck.app._notifications]
+        assert any(FAULT in words for words in toasts)
+
+
+async def test_a_panel_that_cannot_be_laid_out_says_so_and_its_screen_stays() -> None:
+    async with isolated() as deck:
+        wheels = deck.app.screen.query_one(WheelsFeed)
+        with broken(WheelsPanel, "_get_box_model"):
+            wheels.query_one(WheelsPanel).refresh(layout=True)
+            await deck.until(lambda: f"Wheels {FAULT}" in flat(shown(wheels)))
+            assert await deck.stops()
+        await deck.look()
+        await deck.until(lambda: "29° left" in shown(wheels.query_one(WheelsPanel)))
+        assert isinstance(deck.app.screen, LessonDeck)
+
+
+async def test_a_screen_that_cannot_be_laid_out_gives_way_to_one_that_can() -> None:
+    async with isolated() as deck:
+        with broken(LessonDeck, "arrange"):
+            deck.app.screen.refresh(layout=True)
+            await deck.until(lambda: isinstance(deck.app.screen, SafeScreen))
+            await deck.until(lambda: shown(deck.app.screen.query_one(Plainly)))
+            words = shown(deck.app.screen.query_one(Plainly))
+            assert "cannot be drawn" in words
+            assert "09-brain" in words
+            assert "space" in words
+            assert await deck.stops()
+            await deck.until(lambda: "EMERGENCY STOP" in shown(deck.app.screen.query_one(Plainly)))
+        await deck.pilot.press("f2")
+        await deck.until(lambda: isinstance(deck.app.screen, LessonDeck))
+        await deck.until(lambda: deck.app.screen.query(Panel))
+
+
+async def test_a_screen_that_cannot_be_made_gives_way_to_one_that_can() -> None:
+    async with isolated() as deck:
+        with broken(TopicsScreen, "compose_body"):
+            await deck.pilot.press("f3")
+            await deck.until(lambda: isinstance(deck.app.screen, SafeScreen))
+            assert await deck.stops()
+        await deck.pilot.press("f3")
+        await deck.until(lambda: isinstance(deck.app.screen, TopicsScreen))
+        await deck.until(lambda: deck.app.screen.query(TopicsTable))
+
+
+async def test_when_nothing_can_be_drawn_the_nodes_are_stopped_the_normal_way() -> None:
+    session = RecordedSession()
+    app = DeckApp(RecordedPad(session), LESSON_9, journal=lambda *_: None)
+    with isolating():
+        async with app.run_test(size=(120, 40)) as pilot:
+            await settle(pilot)
+            with broken(Screen, "arrange"):
+                app.screen.refresh(layout=True)
+                for _round in range(500):
+                    await pilot.pause(0.02)
+                    if app.return_code is not None:
+                        break
+            assert app.return_code == 1
+            assert ("shutdown",) in session.asked
+            assert "cannot draw its screen" in app.sessions.parting_words
+
+
+async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() -> None:
+    async with isolated() as deck:
+        with broken(type(deck.app.brake), "see"):
+            samples = lesson_samples()
+            turned = replace(
+                samples["/head_state"][0], value={"name": ["pan_joint"], "position": [-0.5]}
+            )
+            deck.graph.show(lesson_update(samples={**samples, "/head_state": (turned,)}))
+            await deck.pilot.pause()
+            assert "29° right" in shown(deck.app.screen.query_one(HeadPanel))
+        assert "Deck has failed" in deck.journal[0][0]
+
+
+async def test_without_isolation_a_fault_makes_a_test_red() -> None:
+    app = DeckApp(RecordedPad(), LESSON_9)
+    with pytest.raises(ZeroDivisionError):  # noqa: PT012 - it is raised when the app has gone
+        async with app.run_test(size=(120, 40)) as pilot:
+            await settle(pilot)
+            with broken(WheelsPanel, "draw"):
+                app.screen.query_one(WheelsPanel).redraw()
+                await pilot.pause()
+
+
+async def test_different_faults_are_told_but_not_for_ever() -> None:
+    async with isolated() as deck:
+        for number in range(200):
+            code = compile("\n" * number + "1 / 0", "made.py", "exec")
+            try:
+                exec(code, {})
+            except ZeroDivisionError as error:
+                deck.app.faults.caught(error)
+        assert len(deck.journal) == 64
+
+
+def test_textual_still_has_what_the_isolation_holds_on_to() -> None:
+    assert asyncio.iscoroutinefunction(MessagePump._dispatch_message)
+    assert callable(Widget.render_lines)
+    assert callable(App._handle_exception)
+    assert all(hasattr(Screen, name) for name in LAYING_OUT)
+    assert all(hasattr(Widget, name) for name in COMPOSING)
