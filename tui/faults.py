@@ -33,7 +33,7 @@ TOLD_AGAIN_S = 60.0
 """The same fault is told so often at most, however often it comes."""
 MOST_TOLD = 64
 """So many different faults are told, each with its traceback; of more only their number counts."""
-UNDRAWN_WITHIN_S = 5.0
+UNDRAWN_WITHIN_S = 20.0
 MOST_UNDRAWN = 3
 """A screen that so often within that time could not be drawn is given up."""
 RETRY_S = 0.2

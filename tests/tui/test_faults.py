@@ -58,10 +58,7 @@ class Isolated:
 
     async def until(self, true: Callable[[], object]) -> None:
         """Wait for what must come about."""
-        deadline = time.monotonic() + 20
-        while not true():
-            assert time.monotonic() < deadline
-            await self.pilot.pause(0.02)
+        await until(self.pilot, true)
 
     async def stops(self) -> bool:
         """Whether the space bar still stops the wheels."""
@@ -69,6 +66,13 @@ class Isolated:
         await self.until(lambda: self.graph.published)
         topic, _type, message = self.graph.published[-1][:3]
         return topic == "/emergency_stop" and message == {"data": True}
+
+
+async def until(pilot: Pilot[Any], true: Callable[[], object]) -> None:
+    deadline = time.monotonic() + 60
+    while not true():
+        assert time.monotonic() < deadline
+        await pilot.pause(0.02)
 
 
 @asynccontextmanager
@@ -253,10 +257,7 @@ async def test_when_nothing_can_be_drawn_the_nodes_are_stopped_the_normal_way() 
             await settle(pilot)
             with broken(Screen, "arrange"):
                 app.screen.refresh(layout=True)
-                for _round in range(500):
-                    await pilot.pause(0.02)
-                    if app.return_code is not None:
-                        break
+                await until(pilot, lambda: app.return_code is not None)
             assert app.return_code == 1
             assert ("shutdown",) in session.asked
             assert "cannot draw its screen" in app.sessions.parting_words
