@@ -121,8 +121,9 @@ def _read(
 
 async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
     try:
+        connection = await asyncio.to_thread(connect, folder)
         reader, writer = await asyncio.open_unix_connection(
-            sock=connect(folder), limit=MAX_MESSAGE_BYTES
+            sock=connection, limit=MAX_MESSAGE_BYTES
         )
         writer.write(encode({"deck": VERSION}))
         hello = json.loads(await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S))
@@ -153,6 +154,8 @@ class SupervisorClient:
     ) -> None:
         """`lifeline` is a descriptor that holds a foreground session, or -1."""
         self.session: SessionInfo = unpack_session(hello["session"])
+        self.own = lifeline >= 0
+        """Whether this client has started it in the foreground: it ends with it."""
         self.nodes: dict[str, NodeStatus] = {}
         """Every node in the profile's order, kept current."""
         self.strays: tuple[Stray, ...] = ()

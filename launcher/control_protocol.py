@@ -12,13 +12,13 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray
+from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray, Who
 from launcher.words import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-VERSION = 1
+VERSION = 2
 
 MAX_REQUEST_BYTES = 1 << 20
 """A longer line from a client is an error."""
@@ -105,6 +105,7 @@ def unpack_session(fields: dict[str, Any]) -> SessionInfo:
             **fields,
             "panels": tuple(fields["panels"]),
             "discovery": discovery if isinstance(discovery, str) else tuple(discovery),
+            "started_by": Who(**fields["started_by"]),
         }
     )
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
+import socket
+import struct
 import time
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -25,7 +28,6 @@ from launcher.errors import UnknownNodeError
 from launcher.words import say
 
 if TYPE_CHECKING:
-    import socket
     from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 
     from launcher.logs_ring import LogRing
@@ -39,6 +41,12 @@ MAX_UNSENT_BYTES = 1 << 20
 STUCK_S = 30.0
 """A client that has taken nothing for so long is let go of."""
 MAX_CLIENTS = 64
+MAX_SILENT = 128
+"""Connections that have not greeted yet; of more, the oldest are let go of.
+
+So many cannot come before the one that has greeted at once is heard: asyncio takes 100 at a time.
+"""
+GREETED_WITHIN_S = 10.0
 MAX_REQUESTS = 100
 """Requests of one client that are served at the same time."""
 
@@ -70,8 +78,8 @@ class Controlled(Protocol):
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End what an earlier run has left."""
 
-    def shut_down(self, *, now: bool) -> None:
-        """Begin to stop everything, and then the supervisor."""
+    def shut_down(self, asked_by: int, *, now: bool) -> None:
+        """Begin to stop everything, and then the supervisor, because this process asks for it."""
 
 
 class BadRequestError(Exception):
@@ -83,7 +91,8 @@ class ControlServer:
 
     def __init__(self, controlled: Controlled) -> None:
         self._controlled = controlled
-        self._clients: set[_Client] = set()
+        self._clients: dict[_Client, None] = {}
+        """In the order in which they came."""
         self._server: asyncio.AbstractServer | None = None
         self._loop = asyncio.get_running_loop()
         self._status_timer: asyncio.TimerHandle | None = None
@@ -151,11 +160,13 @@ class ControlServer:
             self._log_timer = self._loop.call_later(LOG_PERIOD_S, self._tell_lines)
 
     async def _welcome(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if len(self._clients) >= MAX_CLIENTS:
+        pid, uid = _peer(writer)
+        if uid != os.getuid() or not self._has_room():
             writer.close()
             return
         client = _Client(writer, ClientFeed(self._controlled.rings()))
         client.task = asyncio.current_task()
+        client.pid = pid
         client.tell(
             {
                 "deck": VERSION,
@@ -164,20 +175,32 @@ class ControlServer:
                 "strays": [pack_stray(one) for one in self._controlled.strays],
             }
         )
-        self._clients.add(client)
+        self._clients[client] = None
         try:
             await self._converse(client, reader)
         except ConnectionError:
             pass
         finally:
-            self._clients.discard(client)
+            self._clients.pop(client, None)
             writer.close()
 
+    def _has_room(self) -> bool:
+        """Whether one more may come; those who say nothing make way."""
+        silent = [client for client in self._clients if not client.greeted]
+        if len(self._clients) - len(silent) >= MAX_CLIENTS:
+            return False
+        for client in silent[: max(len(silent) - MAX_SILENT + 1, 0)]:
+            del self._clients[client]
+            client.writer.transport.abort()
+        return True
+
     async def _converse(self, client: _Client, reader: asyncio.StreamReader) -> None:
-        greeted = False
         while True:
             try:
-                line = await reader.readline()
+                within_s = None if client.greeted else GREETED_WITHIN_S
+                line = await asyncio.wait_for(reader.readline(), within_s)
+            except asyncio.TimeoutError:
+                return
             except ValueError:
                 client.refuse(None, "too_long", say("a request of more than 1 MiB"))
                 return
@@ -185,14 +208,14 @@ class ControlServer:
                 return
             try:
                 request = _read(line)
-                if greeted:
+                if client.greeted:
                     client.begin(self._serve(client, request))
                 else:
                     _check_version(request)
-                    greeted = True
+                    client.greeted = True
             except BadRequestError as error:
                 client.refuse(None, "bad_request", str(error))
-                if not greeted:
+                if not client.greeted:
                     return
             # Who does not take answers need not ask more.
             await client.writer.drain()
@@ -200,7 +223,7 @@ class ControlServer:
     async def _serve(self, client: _Client, request: dict[str, Any]) -> None:
         request_id = request.get("id")
         try:
-            result = await self._answer(request)
+            result = await self._answer(request, client.pid)
         except UnknownNodeError as error:
             client.refuse(
                 request_id, "unknown_node", str(error), name=error.name, known=error.known
@@ -216,7 +239,7 @@ class ControlServer:
             client.tell(client.feed.status_news(self._controlled.statuses()))
             client.tell({"reply": request_id, "result": result})
 
-    async def _answer(self, request: dict[str, Any]) -> object:
+    async def _answer(self, request: dict[str, Any], asked_by: int) -> object:
         controlled = self._controlled
         op = request.get("op")
         if op == "start":
@@ -230,7 +253,7 @@ class ControlServer:
         elif op == "stop_strays":
             await controlled.stop_strays(_strays(request))
         elif op == "shutdown":
-            controlled.shut_down(now=request.get("now") is True)
+            controlled.shut_down(asked_by, now=request.get("now") is True)
         else:
             raise BadRequestError(say("unknown request {op!r}", op=op))
         return None
@@ -259,6 +282,9 @@ class _Client:
         self.writer = writer
         self.feed = feed
         self.task: asyncio.Task[Any] | None = None
+        self.pid = 0
+        """Its process."""
+        self.greeted = False
         self._requests: set[asyncio.Task[None]] = set()
         self._now = now
         self._behind_since: float | None = None
@@ -293,6 +319,15 @@ class _Client:
         """Say that a request was not served, and why."""
         error = {"kind": kind, "message": message, **more}
         self.tell({"reply": request_id, "error": error})
+
+
+def _peer(writer: asyncio.StreamWriter) -> tuple[int, int]:
+    """Return process and user at the other end of a connection."""
+    credentials = struct.Struct("3i")
+    connection = writer.get_extra_info("socket")
+    packed = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, credentials.size)
+    pid, uid, _gid = credentials.unpack(packed)
+    return pid, uid
 
 
 def _read(line: bytes) -> dict[str, Any]:

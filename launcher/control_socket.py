@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import socket
+import struct
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SOCKET_NAME = "control.sock"
+TAKEN_WITHIN_S = 10
 
 
 def listen(folder: Path) -> socket.socket:
@@ -34,9 +36,13 @@ def listen(folder: Path) -> socket.socket:
 
 
 def connect(folder: Path) -> socket.socket:
-    """Return a connection to the session in `folder`; raises OSError if nobody listens."""
+    """Return a connection to the session in `folder`; raises OSError if nobody takes it."""
     client = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
+        # One that is stopped, with others in the queue before us, would be waited for for ever.
+        client.setsockopt(
+            socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", TAKEN_WITHIN_S, 0)
+        )
         with _short_path(folder) as path:
             client.connect(path)
     except OSError:

@@ -112,6 +112,15 @@ def read_marks(pid: int) -> Mapping[str, str] | None:
     return found
 
 
+def read_environment(pid: int, name: str) -> str:
+    """Return one variable of a process's environment, empty if it has none or is not ours."""
+    for entry in (_environ(pid) or b"").split(b"\0"):
+        key, _, value = entry.partition(b"=")
+        if key == name.encode():
+            return value.decode(errors="replace")
+    return ""
+
+
 def _environ(pid: int) -> bytes | None:
     """Return a process's environment; None if it may not be read, or is not there yet.
 

@@ -99,6 +99,18 @@ class LogLine:
 
 
 @dataclass(frozen=True)
+class Who:
+    """Somebody at work, as far as it is known."""
+
+    pid: int = 0
+    user: str = ""
+    tty: str = ""
+    """`pts/3`, empty without a terminal."""
+    host: str = ""
+    """The address they have logged in from by SSH, empty if they have not."""
+
+
+@dataclass(frozen=True)
 class SessionInfo:
     """The running profile as a whole."""
 
@@ -118,6 +130,9 @@ class SessionInfo:
     log_dir: str = ""
     foreground: bool = True
     """Whether the nodes end with the screen that started them."""
+    started_by: Who = Who()
+    since_s: float = 0.0
+    """Unix time of its start."""
 
 
 @dataclass(frozen=True)

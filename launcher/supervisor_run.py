@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import os
 import signal
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ from launcher.supervisor_plan import Plan
 from launcher.supervisor_process import ProcessLauncher, ProcessScan
 from launcher.supervisor_record import RunRecord, exclusively, read_records
 from launcher.supervisor_session import Session
+from launcher.who import who_runs, who_words
 from launcher.words import Words, say
 
 if TYPE_CHECKING:
@@ -78,6 +80,9 @@ def _record(plan: Plan, run_id: str) -> RunRecord:
         supervisor_pid=os.getpid(),
         log_dir=str(Path(plan.log_dir, plan.name, run_id)),
         foreground=plan.foreground,
+        # It waits for the answer to its plan.
+        started_by=who_runs(os.getppid()),
+        since_s=time.time(),
     )
     nodes = tuple(node.name for node in plan.nodes)
     return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
@@ -220,9 +225,13 @@ class Supervisor:
         await end_strays(strays)
         self._find_strays()
 
-    def shut_down(self, *, now: bool) -> None:
-        """Begin to stop everything, and then the supervisor."""
-        self._finish(say("stopped"), now=now or self._end.is_set())
+    def shut_down(self, asked_by: int, *, now: bool) -> None:
+        """Begin to stop everything, and then the supervisor, because this process asks for it."""
+        if asked_by == self.info.started_by.pid:
+            reason = say("stopped")
+        else:
+            reason = say("ended from elsewhere: {who}", who=who_words(who_runs(asked_by)))
+        self._finish(reason, now=now or self._end.is_set())
 
     # What happens.
 

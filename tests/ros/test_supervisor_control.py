@@ -164,6 +164,38 @@ async def test_a_client_that_says_nothing_at_all_is_no_trouble(start: Launch) ->
         one.writer.close()
 
 
+@pytest.mark.parametrize("start_of_a_line", [b"", b'{"deck": '])
+async def test_the_owner_attaches_past_500_connections_that_say_nothing(
+    start: Launch, start_of_a_line: bytes
+) -> None:
+    client = await start(NODE)
+    folder = run_dir() / client.session.run_id
+    half_open = []
+    try:
+        for _connection in range(500):
+            half_open.append(await asyncio.to_thread(connect, folder))
+            half_open[-1].send(start_of_a_line)
+        other = await asyncio.wait_for(attach(), 20)
+        await other.restart("node")
+        await other.aclose()
+        await running_pid(client, "node")
+    finally:
+        for connection in half_open:
+            connection.close()
+
+
+async def test_who_never_greets_is_let_go_of(start: Launch) -> None:
+    client = await start(NODE)
+    silent = await raw(client)
+    silent.writer.write(b'{"deck"')
+    await silent.hear()
+    # The supervisor's own clock; what it says meanwhile is of no interest here.
+    while await silent.hear():
+        pass
+    silent.writer.close()
+    await running_pid(client, "node")
+
+
 async def test_every_client_sees_what_another_does(start: Launch) -> None:
     client = await start(NODE)
     await running_pid(client, "node")
