@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import socket
+import stat
 import struct
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,9 @@ def listen(folder: Path) -> socket.socket:
     """Return a socket of mode 0600 in `folder` that clients can connect to."""
     server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     with _short_path(folder) as path:
-        (folder / SOCKET_NAME).unlink(missing_ok=True)
+        with contextlib.suppress(FileNotFoundError):
+            if stat.S_ISSOCK((folder / SOCKET_NAME).lstat().st_mode):
+                (folder / SOCKET_NAME).unlink()
         before = os.umask(0o177)
         try:
             server.bind(path)

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import os
 import queue
-import shutil
 import threading
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
+from launcher.private_files import make_folder, open_file
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
+    from pathlib import Path
 
 MAX_FILE_BYTES = 8 << 20
 MAX_OLD_FILES = 3
 """`sonar.log.1` is the newest of them."""
 MAX_QUEUED_BYTES = 32 << 20
 """What may wait for a slow disk; beyond it bytes are left out, with a line that counts them."""
-KEPT_RUNS = 10
-"""Runs of one profile whose logs are kept."""
 
 
 class LogFiles:
@@ -91,9 +90,10 @@ class _RotatedFile:
 
     def write(self, data: bytes) -> None:
         if self._file is None:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = self.path.open("ab", buffering=0)
-            self._size = self._file.tell()
+            make_folder(self.path.parent)
+            descriptor = open_file(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+            self._file = os.fdopen(descriptor, "ab", buffering=0)
+            self._size = os.fstat(descriptor).st_size
         if self._size and self._size + len(data) > MAX_FILE_BYTES:
             self._rotate()
             self.write(data)
@@ -114,19 +114,3 @@ class _RotatedFile:
                 older.replace(self.path.with_name(f"{self.path.name}.{number + 1}"))
         self.path.replace(self.path.with_name(f"{self.path.name}.1"))
         self._size = 0
-
-
-def prune_runs(folder: Path, running: Iterable[str], keep: int = KEPT_RUNS) -> None:
-    """Delete the logs of all but the newest runs of a profile; those that run now are kept.
-
-    Args:
-        folder: holds one folder a run, whose names sort by time.
-        running: names of the runs that are not over.
-        keep: how many to keep besides.
-    """
-    if not folder.is_dir():
-        return
-    runs = sorted(entry.name for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False))
-    over = [run for run in runs if run not in set(running)]
-    for run in over[: max(len(over) - keep, 0)]:
-        shutil.rmtree(folder / run, ignore_errors=True)

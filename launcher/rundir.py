@@ -1,6 +1,7 @@
 """Where the launcher keeps what lives as long as a run, and the logs that outlive it.
 
-The run directory holds control sockets: it must be the user's own, and closed to all others.
+The run directory holds control sockets: it must be the user's own, and nobody else may write to
+it. One that Deck makes is closed to all others; one that was there before is never changed.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.errors import RunDirError
+from launcher.private_files import make_folder
 from launcher.words import say
 
 if TYPE_CHECKING:
@@ -22,39 +24,65 @@ OWN_RUN_DIR = "DECK_RUN_DIR"
 
 
 def run_dir() -> Path:
-    """Return the run directory, made if need be: mode 0700, the user's own.
+    """Return the run directory, made with mode 0700 if need be.
 
     `DECK_RUN_DIR`, else `$XDG_RUNTIME_DIR/deck`, else `/tmp/deck-<uid>`.
 
     Raises:
-        RunDirError: if it is a link, a file, or somebody else's.
+        RunDirError: if others could plant something there; it is never changed.
     """
     return own_folder(run_path(os.environ))
+
+
+def found_run_dir() -> Path | None:
+    """Return the run directory if there is one, for whoever only looks.
+
+    Raises:
+        RunDirError: if others could have planted what is there.
+    """
+    path = run_path(os.environ)
+    try:
+        _check_own(path)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise _not_made(path, error) from error
+    return path
+
+
+def log_path() -> Path:
+    """Return where the logs are, whether there are any or not.
+
+    `DECK_LOG_DIR`, else `$XDG_STATE_HOME/deck/logs`, else `~/.local/state/deck/logs`.
+    """
+    chosen = os.environ.get("DECK_LOG_DIR")
+    if chosen:
+        return Path(chosen)
+    state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
+    return Path(state) / "deck" / "logs"
 
 
 def log_dir() -> Path:
     """Return the directory of the logs, made if need be.
 
-    `DECK_LOG_DIR`, else `$XDG_STATE_HOME/deck/logs`, else `~/.local/state/deck/logs`.
-
     Raises:
         RunDirError: if it cannot be made or written.
     """
-    chosen = os.environ.get("DECK_LOG_DIR")
-    if chosen:
-        path = Path(chosen)
-    else:
-        state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-        path = Path(state) / "deck" / "logs"
+    path = log_path()
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        make_folder(path)
     except OSError as error:
         raise _not_made(path, error) from error
-    if not os.access(path, os.W_OK | os.X_OK):
-        raise RunDirError(
-            say("{path} cannot be written; set DECK_LOG_DIR to a folder of yours", path=path)
-        )
+    check_writable(path)
     return path
+
+
+def check_writable(logs: Path) -> None:
+    """Raise RunDirError unless files can be made in the directory of the logs."""
+    if not os.access(logs, os.W_OK | os.X_OK):
+        raise RunDirError(
+            say("{path} cannot be written; set DECK_LOG_DIR to a folder of yours", path=logs)
+        )
 
 
 def run_path(environ: Mapping[str, str]) -> Path:
@@ -69,29 +97,40 @@ def run_path(environ: Mapping[str, str]) -> Path:
 
 
 def own_folder(path: Path) -> Path:
-    """Make `path` if need be, and make sure that nobody else could have planted it.
+    """Make `path` if need be, and make sure that nobody else could plant anything in it.
 
     Raises:
-        RunDirError: if it is a link, a file, or somebody else's, or cannot be made.
+        RunDirError: if others could, or it cannot be made.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         with contextlib.suppress(FileExistsError):
             path.mkdir(mode=0o700)
-        found = path.lstat()
-        if not stat.S_ISDIR(found.st_mode):
-            raise RunDirError(
-                say("{path} is not a directory; remove it, or set DECK_RUN_DIR", path=path)
-            )
-        if found.st_uid != os.getuid():
-            raise RunDirError(
-                say("{path} belongs to somebody else; set DECK_RUN_DIR to your own", path=path)
-            )
-        if stat.S_IMODE(found.st_mode) & 0o077:
-            path.chmod(0o700)
+        _check_own(path)
     except OSError as error:
         raise _not_made(path, error) from error
     return path
+
+
+def _check_own(path: Path) -> None:
+    """Raise RunDirError unless it is a folder of the user's that nobody else can write to."""
+    found = path.lstat()
+    if not stat.S_ISDIR(found.st_mode):
+        raise RunDirError(
+            say("{path} is not a directory; remove it, or set DECK_RUN_DIR", path=path)
+        )
+    if found.st_uid != os.getuid():
+        raise RunDirError(
+            say("{path} belongs to somebody else; set DECK_RUN_DIR to your own", path=path)
+        )
+    if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        raise RunDirError(
+            say(
+                "others can write to {path}; set DECK_RUN_DIR to a folder that is yours alone"
+                " (one that is not there yet is made so), or chmod go-w {path}",
+                path=path,
+            )
+        )
 
 
 def _not_made(path: Path, error: OSError) -> RunDirError:

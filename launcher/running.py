@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from launcher.catalog import fitting, is_path
 from launcher.errors import NotRunningError, SeveralRunningError
-from launcher.rundir import OWN_RUN_DIR, run_dir
+from launcher.rundir import OWN_RUN_DIR, found_run_dir
 from launcher.supervisor_found import supervisors
 from launcher.supervisor_record import read_records
 
@@ -22,7 +22,8 @@ def running_records() -> list[RunRecord]:
 
     Whoever keeps runs apart by `DECK_RUN_DIR` is told of his own only.
     """
-    records = read_records(run_dir())
+    here = found_run_dir()
+    records = read_records(here) if here is not None else []
     found = {record.session.run_id: record for record in records if record.runs}
     for supervisor in supervisors():
         if supervisor.run_id in found or supervisor.purpose != os.environ.get(OWN_RUN_DIR, ""):

@@ -107,5 +107,7 @@ def forget_ended_runs(run_dir: Path, strays: Iterable[Stray]) -> None:
     """Take away the records of runs of which nothing is left."""
     kept = {stray.run_id for stray in strays}
     for record in read_records(run_dir):
-        if not record.runs and record.session.run_id not in kept:
+        run_id = record.session.run_id
+        # A copy of a record that a person keeps has another name.
+        if record.folder.name == run_id and run_id not in kept and not record.runs:
             record.remove()

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import shutil
 import tempfile
 from contextlib import suppress
 from dataclasses import replace
@@ -118,7 +117,8 @@ class Home:
             if not os.path.samestat(os.fstat(held), os.fstat(self._descriptor)):
                 _empty(held)
                 if before != self._proper:
-                    shutil.rmtree(before, ignore_errors=True)
+                    with suppress(OSError):
+                        before.rmdir()
             return self.listen()
         finally:
             os.close(held)

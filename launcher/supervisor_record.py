@@ -9,13 +9,14 @@ import contextlib
 import fcntl
 import json
 import os
-import shutil
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.control_protocol import pack_session, unpack_session
+from launcher.control_socket import SOCKET_NAME
+from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.supervisor_id import supervisor_runs
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from launcher.status import SessionInfo
 
 RECORD_NAME = "session.json"
+_DRAFT_NAME = f"{RECORD_NAME}.new"
 _LOCK_NAME = "lock"
 _LOCKED_WITHIN_S = 5.0
 """Whoever holds the lock for longer has been stopped in the middle of it."""
@@ -52,20 +54,27 @@ class RunRecord:
 
     def write(self) -> None:
         """Write it, all or nothing."""
-        self.folder.mkdir(mode=0o700, exist_ok=True)
+        make_folder(self.folder)
         fields = {
             "session": pack_session(self.session),
             "nodes": self.nodes,
             "processes": self.processes,
             "drives": self.drives,
         }
-        draft = self.folder / f"{RECORD_NAME}.new"
-        draft.write_text(json.dumps(fields), encoding="utf-8")
+        draft = self.folder / _DRAFT_NAME
+        descriptor = open_file(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+            json.dump(fields, file)
         draft.replace(self.folder / RECORD_NAME)
 
     def remove(self) -> None:
-        """Take the run's folder away."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        """Take away what the run has put into its folder, and the folder if that was all."""
+        with contextlib.suppress(OSError):
+            descriptor = open_own_folder(self.folder)
+            try:
+                remove_files(self.folder, descriptor, [_DRAFT_NAME, RECORD_NAME, SOCKET_NAME])
+            finally:
+                os.close(descriptor)
 
 
 def read_records(run_dir: Path) -> list[RunRecord]:
@@ -103,14 +112,14 @@ def exclusively(run_dir: Path) -> Iterator[None]:
 
 def _lock_file(run_dir: Path) -> int:
     """Open what all of this user's supervisors lock, whatever their run directory."""
-    flags = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW
+    flags = os.O_RDWR | os.O_CREAT
     with contextlib.suppress(OSError):
-        descriptor = os.open(f"/tmp/deck-{os.getuid()}.lock", flags, 0o600)
+        descriptor = open_file(f"/tmp/deck-{os.getuid()}.lock", flags)
         if os.fstat(descriptor).st_uid == os.getuid():
             return descriptor
         os.close(descriptor)
     # Somebody else has planted it there: those of one run directory at least.
-    return os.open(run_dir / _LOCK_NAME, flags, 0o600)
+    return open_file(run_dir / _LOCK_NAME, flags)
 
 
 def _locked(descriptor: int) -> bool:

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 from launcher.control_protocol import MAX_MESSAGE_BYTES, encode, pack_session, pack_text
 from launcher.control_server import ControlServer
 from launcher.logs_book import DECK, LogBook
-from launcher.logs_files import LogFiles, prune_runs
+from launcher.logs_files import LogFiles
+from launcher.logs_folder import make_log_folder, prune_runs
+from launcher.private_files import open_file
 from launcher.process_exit import Reaper
 from launcher.process_members import Members, Orphans
 from launcher.process_shm import sweep_abandoned
@@ -26,7 +28,7 @@ from launcher.supervisor_beside import free_domain, neighbours, rival
 from launcher.supervisor_home import Home
 from launcher.supervisor_plan import Plan
 from launcher.supervisor_process import ProcessLauncher, ProcessScan
-from launcher.supervisor_record import RunRecord, exclusively, read_records
+from launcher.supervisor_record import RunRecord, exclusively
 from launcher.supervisor_session import Session
 from launcher.who import who_runs, who_words
 from launcher.words import Words, say
@@ -39,6 +41,8 @@ if TYPE_CHECKING:
     from launcher.status import LogLine, NodeStatus
     from launcher.supervisor_beside import Neighbour
 
+LAST_WORDS = "supervisor"
+"""Name of the log of what the supervisor prints, its tracebacks above all."""
 STRAYS_AGAIN_S = 3.0
 """What is left of a run that ended a moment ago may just be ending."""
 
@@ -100,6 +104,7 @@ def _claim(home: Home, plan: Plan) -> bool:
                 return False
             home.settle()
         folder = Path(home.record.session.log_dir)
+        make_log_folder(folder, (DECK, LAST_WORDS, *home.record.nodes))
         _keep_last_words(folder)
     except OSError as problem:
         _answer({"no_room": pack_text(_no_room(folder, problem))})
@@ -137,9 +142,9 @@ def _say_nothing(*_: object) -> None:
 
 def _keep_last_words(folder: Path) -> None:
     """Send stderr to a file: the client that started this process may be gone long before."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "supervisor.log").open("ab") as words:
-        os.dup2(words.fileno(), 2)
+    words = open_file(folder / f"{LAST_WORDS}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    os.dup2(words, 2)
+    os.close(words)
 
 
 class Supervisor:
@@ -316,5 +321,4 @@ class Supervisor:
             self.control.strays_changed()
 
     def _prune_logs(self) -> None:
-        running = {record.session.run_id for record in read_records(self._home.run_dir)}
-        prune_runs(Path(self._plan.log_dir) / self._plan.name, running)
+        prune_runs(Path(self.info.log_dir).parent)

@@ -9,8 +9,12 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+from contextlib import suppress
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from launcher.private_files import open_file
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -23,7 +27,10 @@ READ_BYTES = 16_384
 
 
 class StrayOutput:
-    """A context in which everything printed goes to `path`; an empty file is removed after."""
+    """A context in which everything printed goes to `path`; an empty file is removed after.
+
+    If there is such a file already, it stays, and `path` becomes another name.
+    """
 
     def __init__(self, path: Path) -> None:
         """Nothing is opened yet."""
@@ -34,12 +41,21 @@ class StrayOutput:
 
     def __enter__(self) -> Self:
         """Lead 1 and 2 to the file."""
-        flags = os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND | os.O_CLOEXEC
-        self._fd = os.open(self.path, flags, 0o600)
+        self._fd = self._new_file()
         for number in (1, 2):
             self._saved.append((number, os.dup(number)))
             os.dup2(self._fd, number)
         return self
+
+    def _new_file(self) -> int:
+        """Make the file; one of that name that is there belongs to somebody."""
+        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND
+        named = self.path
+        for number in count(2):
+            with suppress(FileExistsError):
+                return open_file(self.path, flags)
+            self.path = named.with_stem(f"{named.stem}-{number}")
+        raise AssertionError
 
     @property
     def terminal_fd(self) -> int:

@@ -142,6 +142,18 @@ def test_the_descriptors_are_given_back_and_an_empty_file_is_removed(tmp_path: P
     assert sys.__stderr__ is not None
 
 
+def test_a_file_of_that_name_is_somebodys_and_stays(tmp_path: Path) -> None:
+    path = tmp_path / "screen.log"
+    path.write_text("mine")
+    (tmp_path / "screen-2.log").symlink_to(tmp_path / "elsewhere")
+    with StrayOutput(path) as stray:
+        os.write(2, b"output\n")
+    assert path.read_text() == "mine"
+    assert not (tmp_path / "elsewhere").exists()
+    assert stray.path == tmp_path / "screen-3.log"
+    assert stray.path.read_text() == "output\n"
+
+
 def test_a_flood_past_the_screen_neither_fills_the_disk_nor_memory(tmp_path: Path) -> None:
     path = tmp_path / "screen.log"
     with StrayOutput(path) as stray:

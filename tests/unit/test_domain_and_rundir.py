@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from launcher.domain import default_domain, ros_environment
 from launcher.errors import RunDirError
-from launcher.rundir import log_dir, run_dir
+from launcher.rundir import found_run_dir, log_dir, run_dir
 
 
 def test_users_of_one_machine_get_different_safe_domains(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -50,12 +51,35 @@ def test_the_run_directory_is_made_closed(tmp_path: Path, monkeypatch: pytest.Mo
     assert mode(run_dir()) == 0o700
 
 
-def test_a_run_directory_open_to_others_is_closed(
+def test_a_folder_that_others_can_read_is_used_as_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "r").mkdir(mode=0o755)
+    (tmp_path / "r").mkdir()
+    (tmp_path / "r").chmod(0o755)
     monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "r"))
-    assert mode(run_dir()) == 0o700
+    assert mode(run_dir()) == 0o755
+    assert found_run_dir() == run_dir()
+
+
+@pytest.mark.parametrize("permissions", [0o775, 0o1777])
+@pytest.mark.parametrize("look", [run_dir, found_run_dir])
+def test_a_folder_that_others_can_write_to_is_refused_and_left_as_it_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, permissions: int, look: Callable[[], object]
+) -> None:
+    (tmp_path / "r").mkdir()
+    (tmp_path / "r").chmod(permissions)
+    monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "r"))
+    with pytest.raises(RunDirError, match=r"others can write to .*chmod go-w"):
+        look()
+    assert mode(tmp_path / "r") == permissions
+
+
+def test_whoever_looks_makes_no_run_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "a" / "b"))
+    assert found_run_dir() is None
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_run_directory_planted_as_a_link_is_refused(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from launcher import logs_files
-from launcher.logs_files import LogFiles, prune_runs
+from launcher.logs_files import LogFiles
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -66,12 +66,3 @@ def test_a_file_that_cannot_be_written_is_told_of_once(tmp_path: Path) -> None:
     files.write("sonar", b"two\n")
     files.close()
     assert len(reasons) == 1
-
-
-def test_logs_of_old_runs_go_and_those_of_running_ones_stay(tmp_path: Path) -> None:
-    for day in range(10, 20):
-        (tmp_path / f"202601{day}-1-1").mkdir()
-    prune_runs(tmp_path, ["20260110-1-1"], keep=3)
-    left = sorted(path.name[:8] for path in tmp_path.iterdir())
-    assert left == ["20260110", "20260117", "20260118", "20260119"]
-    prune_runs(tmp_path / "nothing", [])

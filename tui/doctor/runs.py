@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from launcher.errors import LauncherError
-from launcher.rundir import log_dir, run_dir
+from launcher.rundir import check_writable, found_run_dir, log_path, run_path
 from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _, said
 
@@ -39,10 +39,12 @@ def look() -> RunFacts:
     from launcher.strays import find_strays
 
     try:
-        here, logs = run_dir(), log_dir()
+        here, logs = found_run_dir() or run_path(os.environ), log_path()
+        there = next(folder for folder in (logs, *logs.absolute().parents) if folder.exists())
+        check_writable(there)
     except LauncherError as error:
         return RunFacts(error=said(error.args[0]))
-    status = os.statvfs(logs)
+    status = os.statvfs(there)
     return RunFacts(
         run_dir=str(here),
         log_dir=str(logs),
