@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from nodes._pico_client import PicoClient
+    from nodes._refusals import Refusal
     from nodes._speech import Speech
     from robot.wire_pico import Telemetry
 
@@ -71,12 +72,16 @@ class Standing:
 
 
 def diagnosis(
-    say: Speech, status: DiagnosticStatus, pico: PicoClient, emergency: bool, refused: str
+    say: Speech,
+    status: DiagnosticStatus,
+    pico: PicoClient,
+    emergency: bool,
+    refused: Refusal | None,
 ) -> DiagnosticStatus:
     """Add to the state of the port how the Pico is, for programs and for people."""
     telemetry = pico.telemetry
     status.values.append(KeyValue(key="emergency_stop", value=str(emergency).lower()))
-    status.values.append(KeyValue(key="refused", value=refused))
+    status.values.append(KeyValue(key="refused", value=refused.told if refused else ""))
     if telemetry is None or not pico.answers:
         if pico.link.connected:
             status.level = DiagnosticStatus.ERROR
@@ -97,7 +102,7 @@ def diagnosis(
     why = reasons(say, telemetry.flags)
     status.message = say.text(STANDS, reasons=why) if why else say.text(_DRIVES)
     if refused:
-        status.message += "; " + say.text(_REFUSED, refused=refused)
+        status.message += "; " + say.text(_REFUSED, refused=refused.words)
         status.level = DiagnosticStatus.WARN
     if why:
         bad = telemetry.flags & _BAD

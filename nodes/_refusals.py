@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from nodes._speech import Phrase
 from robot.limits import first_excess
@@ -52,6 +52,19 @@ _OTHER_CLOCK = Phrase(
     " сверьте часы обоих компьютеров (chrony, NTP) или оставьте метки нулевыми",
 )
 _BEHIND, _AHEAD = Phrase("behind", "отстают от"), Phrase("ahead of", "опережают показания")
+_SHORT = Phrase(
+    "{value:g} {unit}, limit {limit:g} {unit}", "{value:g} {unit} при пределе {limit:g} {unit}"
+)
+_SHORT_STAMP = Phrase("stamp {age:.1f} s old", "метке {age:.1f} с")
+
+
+class Refusal(NamedTuple):
+    """What was asked for and refused, in few words."""
+
+    told: str
+    """For programs, in English."""
+    words: str
+    """For people."""
 
 
 class Refusals:
@@ -60,28 +73,25 @@ class Refusals:
     def __init__(self, node: LessonNode) -> None:
         """Say it with the voice of `node`, and go by its clock."""
         self._node = node
-        self._words = ""
+        self._last: Refusal | None = None
         self._at_s = -math.inf
 
     @property
-    def recent(self) -> str:
-        """What was refused in the last moments, for programs; empty if nothing was."""
-        return self._words if time.monotonic() - self._at_s < _REMEMBER_S else ""
+    def recent(self) -> Refusal | None:
+        """What was refused in the last moments, None if nothing was."""
+        return self._last if time.monotonic() - self._at_s < _REMEMBER_S else None
 
     def beyond(self, source: str, *asked: tuple[float, Limits]) -> bool:
         """Whether one of these numbers is none, or is beyond its limits; that is told."""
         excess = first_excess(*asked)
         if excess is None:
             return False
-        self._remember(str(excess))
-        self._node.say.error(
-            _BEYOND if math.isfinite(excess.value) else _NO_NUMBER,
-            every_s=1.0,
-            source=source,
-            value=excess.value,
-            unit=self._node.say.text(_UNITS[excess.limits.unit]),
-            limit=excess.limits.high,
-        )
+        say = self._node.say
+        value, limit = excess.value, excess.limits.high
+        unit = say.text(_UNITS[excess.limits.unit])
+        self._remember(str(excess), say.text(_SHORT, value=value, unit=unit, limit=limit))
+        phrase = _BEYOND if math.isfinite(value) else _NO_NUMBER
+        say.error(phrase, every_s=1.0, source=source, value=value, unit=unit, limit=limit)
         return True
 
     def untimely(self, source: str, stamp: Time, max_age_s: float) -> bool:
@@ -95,8 +105,8 @@ class Refusals:
         age_s = now_s - stamp.sec - stamp.nanosec * 1e-9
         if -_AHEAD_S <= age_s <= (max_age_s or _LONGEST_WAY_S):
             return False
-        self._remember(f"stamp {age_s:.1f} s old")
         say = self._node.say
+        self._remember(f"stamp {age_s:.1f} s old", say.text(_SHORT_STAMP, age=age_s))
         if 0 < age_s < _ANOTHER_CLOCK_S:
             say.warn(_OLD, every_s=1.0, source=source, age=age_s)
         else:
@@ -104,5 +114,5 @@ class Refusals:
             say.error(_OTHER_CLOCK, every_s=1.0, source=source, age=abs(age_s), which=which)
         return True
 
-    def _remember(self, words: str) -> None:
-        self._words, self._at_s = words, time.monotonic()
+    def _remember(self, told: str, words: str) -> None:
+        self._last, self._at_s = Refusal(told, words), time.monotonic()

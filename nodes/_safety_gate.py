@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nodes._node import LessonNode
+    from nodes._refusals import Refusal
     from robot.safety_sources import Order
 
 _LAST_STOP = Duration(seconds=0.2)
@@ -52,7 +53,7 @@ class Moment(NamedTuple):
     """How much of that passes, 0 to 1; of no speed, how much of one forward would."""
     age_s: float | None = None
     """Of the newest command that counts."""
-    refused: str = ""
+    refused: Refusal | None = None
     """What was asked for in the last moments and refused."""
 
 

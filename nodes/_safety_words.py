@@ -142,7 +142,7 @@ def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], moment: Mome
     if moment.ignored:
         sentence += say.text(_AND_IGNORED, ignored=moment.ignored, source=moment.source)
     if moment.refused:
-        sentence += say.text(_AND_REFUSED, refused=moment.refused)
+        sentence += say.text(_AND_REFUSED, refused=moment.refused.words)
     return sentence
 
 
@@ -168,6 +168,6 @@ def _values(verdict: Verdict, views: Sequence[View], moment: Moment) -> Iterator
         yield f"{view.place}_m", "" if metres is None else f"{metres:.3f}"
     yield "source", moment.source
     yield "ignored", moment.ignored
-    yield "refused", moment.refused
+    yield "refused", moment.refused.told if moment.refused else ""
     yield "allowed", f"{moment.allowed:.2f}"
     yield "command_age_s", "" if moment.age_s is None else f"{moment.age_s:.2f}"
