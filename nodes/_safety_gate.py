@@ -19,6 +19,7 @@ from nodes._arrivals import Arrivals
 from nodes._drive import from_message, to_message
 from nodes._nap import Nap
 from nodes._refusals import Refusals
+from nodes._sole_publisher import SolePublisher
 from nodes._topics import DEPTH, DRIVE_SAFE, DRIVE_TELEOP
 from robot.limits import SPEED, STEERING
 from robot.safety import Shares, Verdict, allowed, gate
@@ -77,6 +78,7 @@ class Gate:
         self._nap = Nap()
         self._refusals = Refusals(node)
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE_SAFE, DEPTH)
+        SolePublisher(node, self._publisher)
         self._arrivals = Arrivals()
         for name in names:
             hear = functools.partial(self._hear, name)

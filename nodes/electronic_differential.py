@@ -26,6 +26,7 @@ from nodes._nap import Nap
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Text
 from nodes._refusals import Refusals
+from nodes._sole_publisher import SolePublisher
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, DRIVE, WHEEL_COMMANDS
 from robot.kinematics import (
@@ -132,6 +133,7 @@ class ElectronicDifferential(LessonNode):
         self._told: DriveSetpoint | None = None
         topic = self.text("drive_topic")
         self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
+        SolePublisher(self, self._publisher)
         self._emergency = EmergencyStop(self, self._emergency_changed)
         self.create_subscription(AckermannDriveStamped, topic, self._hear, DEPTH)
         self._timer = self.every(1.0 / self.number("rate"), self._repeat)
