@@ -29,6 +29,7 @@ from tui.orders import Order
 from tui.recording import Recording
 from tui.screens.opening import OpeningScreen
 from tui.sessions import Sessions
+from tui.strangers import Strangers
 from tui.themes import CYCLE, HIGH_CONTRAST, after
 from tui.typed import Typed
 from tui.widgets.replay_bar import ReplayBar
@@ -55,6 +56,9 @@ SCREENS = {
     "devices": ("tui.screens.devices", "DevicesScreen"),
 }
 """Imported when first shown: the first frame needs only one of them."""
+
+STRANGERS_S = 20.0
+"""How long it is told beside the title who publishes past the gate."""
 
 
 def _commands() -> type[Provider]:
@@ -93,6 +97,7 @@ class DeckApp(App[int], Acting):
         self.sessions = Sessions(self, pad, order)
         self.feed = Feed(self)
         self.brake = Brake(self)
+        self.strangers = Strangers()
         self.recording = Recording(self)
         self.nap = Nap()
         self._harmless = Harmless()
@@ -224,6 +229,14 @@ class DeckApp(App[int], Acting):
             self.brake.see(update)
         finally:
             self.feed.hand_over(update)
+        if self.strangers.see(update, self.feed.nodes):
+            self._tell_of_strangers()
+
+    def _tell_of_strangers(self) -> None:
+        """Name in every title, and once beside it, who publishes past the gate."""
+        if words := self.strangers.words():
+            self.notify(words[0], severity="error", timeout=STRANGERS_S, markup=False)
+        self.feed.tell(lambda: EmergencyChanged(self.brake.state))
 
     def emergency_changed(self) -> None:
         """Tell every screen, and the keys: a release is possible only when engaged."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from text.plain import plain
 from tui.i18n import N_, _
-from tui.teleop_gate import STOPPED, Gate, gate_in, held_words
+from tui.teleop_gate import STOPPED, Gate, gate_in, held_words, refused_words
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
@@ -74,7 +74,7 @@ class Emergency:
             gate = gate_in(sample)
             if gate is not None and sample.received_s - state.heard_s > SETTLED_S:
                 state = state.told(gate)
-            gate = gate if gate is not None and gate.is_held else None
+            gate = gate if gate is not None and (gate.is_held or gate.refused) else None
             state = replace(state, blocked=blocked_reason(sample), gate=gate)
         return state
 
@@ -106,7 +106,7 @@ def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:
 
 def held_reason(state: Emergency) -> str:
     """Return why the wheels are held, in the screen's language where it is known."""
-    own = "" if state.gate is None else held_words(state.gate)
+    own = "" if state.gate is None else held_words(state.gate) or refused_words(state.gate)
     return own or plain(state.blocked, 400)
 
 

@@ -91,6 +91,7 @@ class Sessions:
         finally:
             self.opening = ""
         app.brake.forget()
+        app.strangers.forget()
         app.feed.connect(link, self.pad.observe(link.session))
         if app.feed.replay is not None:
             await self._show_recording(link.session)

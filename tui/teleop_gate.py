@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -44,6 +45,12 @@ TOO_CLOSE = {
     "front": N_("obstacle ahead too close to measure"),
     "rear": N_("obstacle behind too close to measure"),
 }
+REFUSED = {
+    "m/s": N_("{value} m/s, limit {limit} m/s"),
+    "rad": N_("{value} rad, limit {limit} rad"),
+}
+BEYOND = re.compile(r"(?P<value>\S+) (?P<unit>\S+), limit (?P<limit>\S+) (?P=unit)")
+STAMP = re.compile(r"stamp (?P<age>\S+) s old")
 SOURCES = {"/drive_teleop": N_("the keys")}
 """Those that are known by a better name than their topic."""
 
@@ -65,6 +72,8 @@ class Gate:
     share: float = 1.0
     """How much of the asked speed it allows, 0 to 1."""
     message: str = ""
+    refused: str = ""
+    """What was asked for in the last moments and refused: `0.8 m/s, limit 0.5 m/s`."""
 
     @property
     def is_held(self) -> bool:
@@ -101,6 +110,7 @@ def _read(status: Mapping[str, Any]) -> Gate:
         values.get("ignored", ""),
         1.0 if share is None else share,
         str(status.get("message", "")),
+        values.get("refused", ""),
     )
 
 
@@ -116,9 +126,20 @@ def held_words(gate: Gate) -> str:
     return _(HELD[gate.verdict]) + (f": {why}" if why else "")
 
 
+def refused_words(gate: Gate) -> str:
+    """Say what was refused; empty if nothing was."""
+    told, what = gate.refused, plain(gate.refused, 60)
+    if (found := BEYOND.fullmatch(told)) and found["unit"] in REFUSED:
+        words = REFUSED[found["unit"]]
+        what = _(words).format(value=found["value"], limit=found["limit"])
+    elif found := STAMP.fullmatch(told):
+        what = _("stamp {age} s old").format(age=found["age"])
+    return _("refused: {what}").format(what=what) if told else ""
+
+
 def gate_words(gate: Gate) -> str:
     """Say what is held or slowed and why, else how far it is, and who is obeyed or not."""
-    parts = [held_words(gate)]
+    parts = [held_words(gate), refused_words(gate)]
     sights = (_sight(gate, place, sight) for place, sight in gate.sights.items())
     far = ", ".join(filter(None, sights))
     if gate.is_slowed:

@@ -22,6 +22,7 @@ from tui.i18n import _, ngettext, pick, said
 if TYPE_CHECKING:
     from launcher.status import SessionInfo
     from tui.app import DeckApp
+    from tui.emergency import Emergency
 
 TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
 WELL = frozenset({"ready", "running"})
@@ -37,11 +38,16 @@ def tabs(app: DeckApp, front: str) -> Sequence[tuple[str, str, bool]]:
 
 
 def look(app: DeckApp) -> str:
-    """Return how the title looks: `stop` while stopped, `alarm` while the safety node holds."""
+    """Return how the title looks.
+
+    `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while that holds.
+    """
     if app.feed.link is None:
         return "state"
     if app.brake.state.engaged:
         return "stop"
+    if app.strangers.now:
+        return "danger"
     return "alarm" if app.brake.state.blocked else "state"
 
 
@@ -60,10 +66,19 @@ def states(app: DeckApp) -> Sequence[str]:
         return (_("opening {name}…").format(name=opening),) if opening else ()
     if app.brake.state.engaged:
         return stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0])
+    if app.strangers.now:
+        return app.strangers.words()
     if app.brake.state.blocked:
-        reason = held_reason(app.brake.state)
-        return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
+        return _held(app.brake.state)
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
+
+
+def _held(state: Emergency) -> Sequence[str]:
+    """Return why the gate holds the wheels, or what it refuses though it would let them turn."""
+    reason = held_reason(state)
+    if state.gate is not None and not state.gate.is_held:
+        return (f"⚠ {reason}",)
+    return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
 
 
 def _watched(app: DeckApp, session: SessionInfo) -> Sequence[str]:

@@ -207,6 +207,27 @@ async def test_the_safety_nodes_words_stand_in_the_title() -> None:
         assert "⚠ Motion is held: front 0.38 m" in title.states(app)[0]
 
 
+@pytest.mark.parametrize(
+    ("refused", "words"),
+    [
+        ("0.8 m/s, limit 0.5 m/s", "⚠ refused: 0.8 m/s, limit 0.5 m/s"),
+        ("stamp 10.0 s old", "⚠ refused: stamp 10.0 s old"),
+        ("some\x1b[31mthing", "⚠ refused: some␛[31mthing"),
+    ],
+)
+async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
+    refused: str, words: str
+) -> None:
+    values = [{"key": "verdict", "value": "free"}, {"key": "refused", "value": refused}]
+    status = [{"level": b"\x01", "name": "safety_stop", "message": "-", "values": values}]
+    one = sample(SAFETY_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(lesson_update(samples={SAFETY_TOPIC: (one,)}))
+        await settle(pilot)
+        assert words in app.screen.query_one(TitleBar).text
+
+
 async def test_another_session_begins_without_the_stop_of_the_one_before() -> None:
     pad = RecordedPad(sessions=[])
     async with opened(pad) as (app, pilot):

@@ -11,6 +11,7 @@ from textual.style import Style
 from textual.widget import Widget
 
 NAME = " Deck "
+URGENT = ("danger", "stop")
 SHORT = 3
 """Letters of a tab's word where there is little room."""
 
@@ -37,6 +38,7 @@ class TitleBar(Widget):
         "title-bar--front",
         "title-bar--state",
         "title-bar--alarm",
+        "title-bar--danger",
         "title-bar--stop",
     }
     DEFAULT_CSS = """
@@ -54,6 +56,7 @@ class TitleBar(Widget):
         .title-bar--front { color: $foreground; text-style: bold reverse; }
         .title-bar--state { color: $foreground; }
         .title-bar--alarm { color: #000000; background: #ffb000; text-style: bold; }
+        .title-bar--danger { color: #ffffff; background: #b00020; text-style: bold; }
         .title-bar--stop { color: #ffffff; background: #b00020; text-style: bold; }
         &.-stop {
             background: #b00020;
@@ -78,9 +81,10 @@ class TitleBar(Widget):
     ) -> None:
         """Show tabs of (text, action, in front), and of `states` the first that fits, right.
 
-        `look`: `state`, `alarm` or `stop`; with the last the whole line is red, and where the
-        words do not fit beside the tabs these give way. Tabs that are not in front are
-        shortened, to a few letters, moved together, and then to their keys, before the state is.
+        `look`: `state`, `alarm`, `danger` or `stop`; with the last the whole line is red. Where
+        the words of the last two do not fit beside the tabs these give way. Tabs that are not in
+        front are shortened, to a few letters, moved together, and then to their keys, before the
+        state is.
         """
         shown = (tuple(tabs), tuple(states), look)
         if shown != (self._tabs, self._states, self._look):
@@ -105,13 +109,13 @@ class TitleBar(Widget):
         """Return the tabs that are shown, and the state as long as there is room for it.
 
         The shortest state says too little to spare the tabs for it: they are shortened first.
-        While stopped the words come first, and all tabs may give way.
+        While it is urgent the words come first, and all tabs may give way.
         """
         alone = self.size.width - cell_len(NAME) - 3
         shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
         levels = [_Level(_shortened(self._tabs, letters), gap) for letters, gap in shapes]
         states = self._states or ("",)
-        for state in states if self._look == "stop" else ():
+        for state in states if self._look in URGENT else ():
             for level in (*levels, _Level((), 2)):
                 if cell_len(state) <= alone - level.width:
                     return level, state

@@ -1,0 +1,149 @@
+"""Whoever publishes past the gate is named in red, and the lesson's own nodes are not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+from textual.color import Color
+
+from graph.data import EndpointInfo, GraphUpdate
+from launcher.status import NodeState, NodeStatus
+from tests.tui.app_runs import opened
+from tests.tui.recorded import NODES, TOPICS, RecordedGraph, RecordedPad, lesson_update, topic
+from tests.tui.snapshots import settle
+from tui.strangers import NAMELESS, Strangers
+from tui.widgets.title_bar import TitleBar
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+DRIVE, JOINTS = "ackermann_msgs/msg/AckermannDriveStamped", "sensor_msgs/msg/JointState"
+KINDS = {"/drive_safe": DRIVE, "/wheel_commands": JOINTS}
+GATE, DIFFERENTIAL = "/safety_stop", "/electronic_differential"
+
+
+def graph(
+    at_s: float = 0.0, kinds: Mapping[str, str] = KINDS, **by: tuple[str, ...]
+) -> GraphUpdate:
+    """The lesson's graph with these publishers, by topic without its slash."""
+    changed = {f"/{name}": nodes for name, nodes in by.items()}
+    others = [row for row in TOPICS if row.name not in changed]
+    mine = [
+        topic(
+            name,
+            kinds.get(name, JOINTS),
+            10.0,
+            60,
+            publishers=len(nodes),
+            published_by=tuple(
+                EndpointInfo(node, kinds.get(name, JOINTS), "reliable", "volatile")
+                for node in nodes
+            ),
+        )
+        for name, nodes in changed.items()
+    ]
+    update = lesson_update(topics=tuple(sorted([*others, *mine], key=lambda row: row.name)))
+    return replace(update, time_s=update.time_s + at_s)
+
+
+def named(update: GraphUpdate, nodes: Mapping[str, NodeStatus] = NODES) -> list[tuple[str, str]]:
+    """Topic and name of each stranger."""
+    strangers = Strangers()
+    strangers.see(update, nodes)
+    return [(stranger.topic, stranger.called) for stranger in strangers.now]
+
+
+@pytest.mark.parametrize(
+    ("by", "expected"),
+    [
+        ({"drive_safe": (GATE,)}, []),
+        ({"drive_safe": (GATE,), "wheel_commands": (DIFFERENTIAL,)}, []),
+        ({"drive_safe": (GATE, "/evil")}, [("/drive_safe", "/evil")]),
+        ({"drive_safe": ("/evil",)}, [("/drive_safe", "/evil")]),
+        ({"drive_safe": (GATE, "/evil/safety_stop")}, [("/drive_safe", "/evil/safety_stop")]),
+        ({"wheel_commands": (DIFFERENTIAL,) * 2}, [("/wheel_commands", f"another {DIFFERENTIAL}")]),
+        ({"wheel_commands": (DIFFERENTIAL, "/ai_driver")}, []),
+        ({"drive": ("/ai_driver", "/evil")}, []),
+    ],
+    ids=str,
+)
+def test_who_is_a_stranger(by: dict[str, tuple[str, ...]], expected: list[tuple[str, str]]) -> None:
+    assert named(graph(**by)) == expected
+
+
+def test_a_topic_that_the_profile_calls_otherwise_is_kept_as_well() -> None:
+    update = graph(kinds={"/safe": DRIVE}, safe=(GATE, "/evil"))
+    assert named(update) == [("/safe", "/evil")]
+
+
+def test_without_a_gate_of_its_own_it_takes_two() -> None:
+    """A lesson whose wheels are published by hand, or the course's own nodes, only watched."""
+    for nodes in ({}, {"hello": NODES["ai_brain"]}):
+        assert named(graph(wheel_commands=("/_ros2cli_7",)), nodes) == []
+        assert named(graph(wheel_commands=(DIFFERENTIAL, "/evil")), nodes) == [
+            ("/wheel_commands", "/evil")
+        ]
+
+
+def test_what_a_crash_has_left_in_the_tables_is_no_stranger() -> None:
+    node = NODES["electronic_differential"]
+    update = graph(wheel_commands=(DIFFERENTIAL,) * 2)
+    for restarts, uptime_s, count in ((1, 3.0, 0), (1, 30.0, 1), (0, 3.0, 1)):
+        now = replace(node, state=NodeState.READY, restarts=restarts, uptime_s=uptime_s)
+        assert len(named(update, {**NODES, node.name: now})) == count
+
+
+def test_a_name_is_waited_for() -> None:
+    strangers, by = Strangers(), (GATE, f"/{NAMELESS}")
+    assert not strangers.see(graph(drive_safe=by), NODES)
+    assert not strangers.see(graph(2.0, drive_safe=by), NODES)
+    assert strangers.see(graph(4.0, drive_safe=by), NODES)
+    assert strangers.now[0].called == "a program without a node's name"
+    assert strangers.see(graph(5.0, drive_safe=(GATE,)), NODES)
+    assert strangers.words() == ()
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)])
+@pytest.mark.parametrize("screen", ["deck", "logs"])
+async def test_it_stands_in_the_title_in_red(size: tuple[int, int], screen: str) -> None:
+    pad = RecordedPad()
+    async with opened(pad, screen, size) as (app, pilot):
+        pad.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
+        await settle(pilot)
+        bar = app.screen.query_one(TitleBar)
+        assert "Foreign commands on /wheel_commands: /evil" in bar.text
+        assert bar.get_visual_style("title-bar--danger").background == Color.parse("#b00020")
+        assert any("/evil" in told.message for told in app._notifications)
+        await pilot.press("space")
+        await settle(pilot)
+        assert "EMERGENCY STOP" in bar.text
+        await pilot.press("ctrl+r")
+        pad.graph.show(graph(wheel_commands=(DIFFERENTIAL,)))
+        await settle(pilot)
+        assert "/evil" not in bar.text
+
+
+async def test_another_session_begins_without_the_strangers_of_the_one_before() -> None:
+    pad = RecordedPad(sessions=[])
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
+        await settle(pilot)
+        assert app.strangers.now
+        await pilot.press("f8")
+        await settle(pilot)
+        pad.graph = RecordedGraph()
+        app.sessions.open(app.sessions.order)
+        await settle(pilot)
+        assert not app.strangers.now
+
+
+async def test_a_name_that_would_write_the_terminal_is_harmless() -> None:
+    pad = RecordedPad()
+    async with opened(pad, size=(120, 40)) as (app, pilot):
+        pad.graph.show(graph(drive_safe=(GATE, "/e\x1b]52;c;eA==\x07vil")))
+        await settle(pilot)
+        text = app.screen.query_one(TitleBar).text
+        assert "vil" in text
+        assert "\x1b" not in text
