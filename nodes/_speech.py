@@ -6,6 +6,8 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from text.plain import plain
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -13,9 +15,6 @@ if TYPE_CHECKING:
 
 LONGEST = 400
 """Characters of a message; the rest is cut off."""
-
-_PICTURES = {code: 0x2400 + code for code in range(0x20)} | {0x7F: 0x2421}
-_C1 = dict.fromkeys(range(0x80, 0xA0), "\N{REPLACEMENT CHARACTER}")
 
 
 @dataclass(frozen=True)
@@ -35,8 +34,8 @@ def language(environment: Mapping[str, str]) -> str:
 
 
 def printable(text: str) -> str:
-    """Show control characters as their pictures, replace what is no character, cut to length."""
-    clean = text.encode("utf-8", "replace").decode("utf-8").translate(_PICTURES).translate(_C1)
+    """Make one line of it in which nothing is hidden, cut to length."""
+    clean = plain(text)
     return clean if len(clean) <= LONGEST else clean[: LONGEST - 1] + "…"
 
 

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from text.plain import plain
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -132,7 +134,4 @@ def field_name(path: Path) -> str:
 
 def shown_name(name: str) -> str:
     """Make a name from outside fit to be shown: printable and of a sane length."""
-    printable = "".join(
-        char if char.isprintable() else "\N{REPLACEMENT CHARACTER}" for char in name
-    )
-    return printable if len(printable) <= _LONGEST_NAME else printable[:_LONGEST_NAME] + "…"
+    return plain(name, _LONGEST_NAME) + ("" if len(name) <= _LONGEST_NAME else "…")

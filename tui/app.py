@@ -108,7 +108,7 @@ class DeckApp(App[int], Acting):
     def get_default_screen(self) -> Screen[Any]:
         """Begin with a screen that costs next to nothing: nobody waits for a first frame."""
         opening = self.sessions.opening
-        words = _("opening {name}…").format(name=opening) if opening else _("Lessons")
+        words = _("opening {name}…").format(name=plain(opening)) if opening else _("Lessons")
         return OpeningScreen(words)
 
     def on_mount(self) -> None:
@@ -188,6 +188,10 @@ class DeckApp(App[int], Acting):
         """Tell something in a corner, as the text that it is."""
         message, title = plain_lines(message), plain(title)
         super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
+
+    def copy_to_clipboard(self, text: str) -> None:
+        """Copy lines of text, which may be pasted where they would be obeyed."""
+        super().copy_to_clipboard(plain_lines(text))
 
     async def show_safe_screen(self, broken: Screen[Any]) -> None:
         """Let go of a screen that cannot be drawn; it is made anew when it is asked for again."""

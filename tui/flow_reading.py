@@ -126,8 +126,8 @@ def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Ste
         Step(
             line.time_s,
             LANES.get(programs.get(line.node, ""), LANES.get(line.node, Lane.LOG)),
-            line.node,
-            line.node,
+            plain(line.node, LONGEST),
+            plain(line.node, LONGEST),
             text=plain(line.text, LONGEST),
         )
         for line in lines

@@ -63,7 +63,7 @@ def states(app: DeckApp) -> Sequence[str]:
         if app.feed.ended:
             return (said(app.feed.ended), _("ended"))
         opening = app.sessions.opening
-        return (_("opening {name}…").format(name=opening),) if opening else ()
+        return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
     if app.brake.state.engaged:
         return stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0])
     if app.strangers.now:
@@ -111,11 +111,12 @@ def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     well = sum(node.state.value in WELL for node in nodes)
     sign = "◔" if starting(app) else "●" if well == len(nodes) else "○"
     count = f"{sign} {well}/{len(nodes)}"
-    title = f"{session.lesson} {pick(session.title)}".strip() or session.name
+    name, hardware = plain(session.name), plain(session.hardware)
+    title = f"{plain(session.lesson)} {pick(session.title)}".strip() or name
     domain = _("domain {domain}").format(domain=session.domain)
     return (
-        f"{title} · {session.hardware} · {domain} · {count}",
+        f"{title} · {hardware} · {domain} · {count}",
         f"{title} · {count}",
-        f"{session.name} · {count}",
+        f"{name} · {count}",
         count,
     )

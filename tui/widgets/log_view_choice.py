@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime
 
+from text.plain import plain
 from tui.widgets.log_view_ring import Entry
 from tui.widgets.log_view_rows import WORD_CELLS, WORDS
 
@@ -44,4 +45,4 @@ def exported(entry: Entry, text: str) -> str:
     except (OverflowError, ValueError, OSError):
         stamp = "-"
     word = "-----" if entry.skipped else WORDS[entry.rank].ljust(WORD_CELLS)
-    return f"{stamp[:23]} {word} {entry.node}: {text}"
+    return f"{stamp[:23]} {word} {plain(entry.node)}: {text}"

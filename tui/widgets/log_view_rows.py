@@ -13,6 +13,7 @@ from functools import lru_cache
 from rich.cells import cell_len, set_cell_size
 
 from launcher.status import Severity
+from text.plain import plain
 from tui.i18n import ngettext
 from tui.widgets.log_view_ring import Entry
 
@@ -84,7 +85,7 @@ def gutter_texts(entry: Entry, columns: Columns) -> tuple[str, str, str]:
     when = f" {clock(entry.time_s, columns.time)} " if columns.time else " "
     word = "⋯" if entry.skipped else WORDS[entry.rank]
     word = f"{word[: columns.word].ljust(columns.word)} " if columns.word else ""
-    node = f"{_fitted(entry.node, columns.node)} " if columns.node else ""
+    node = f"{_fitted(plain(entry.node), columns.node)} " if columns.node else ""
     return when, word, node
 
 

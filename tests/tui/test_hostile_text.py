@@ -1,0 +1,371 @@
+"""Whatever text a robot, a recording or a profile brings: no screen gives it to the terminal.
+
+Each screen is led through what it can show, with a recorded world in which every text is hostile,
+and all that the driver is given to write is looked through. Once with the last look that Deck takes
+at each line, and once without: who shows text makes it plain, and does not leave that to others.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+import pytest
+from textual.app import App
+from textual.drivers.headless_driver import HeadlessDriver
+from textual.events import Paste
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from graph.data import (
+    CallResult,
+    EndpointInfo,
+    Goal,
+    GoalStatus,
+    GraphUpdate,
+    ParameterRow,
+    ParametersResult,
+    Publication,
+    Sample,
+    TopicRow,
+    Trouble,
+)
+from launcher.errors import StartError
+from launcher.events import ClosedEvent, StatusEvent, StraysEvent
+from launcher.status import NodeState, Stray
+from launcher.words import say
+from tests.hostile import EVIL, harm_on_screen, poisoned
+from tests.tui import recorded_devices
+from tests.tui.app_runs import LESSON_9
+from tests.tui.recorded import (
+    LESSONS,
+    LINES,
+    NODES,
+    PARAMETERS,
+    SESSION,
+    TOPICS,
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    line,
+    sample,
+)
+from tests.tui.recorded_nodes import graph_update
+from tests.tui.snapshots import settle
+from tui.app import DeckApp
+from tui.orders import Lesson, Order
+from tui.widgets.json_editor import JsonEditor
+
+SIZE = (160, 50)
+STRING = "std_msgs/msg/String"
+NAME = "evil\x1bc\u202e[/]"
+"""Of a profile; it has room in the title."""
+
+
+class Writing(HeadlessDriver):
+    """Keeps what a terminal would be given."""
+
+    written: list[str]
+
+    def __init__(self, *args: Any, **more: Any) -> None:
+        super().__init__(*args, **more)
+        self.written = []
+
+    @property
+    def is_headless(self) -> bool:
+        """Have everything written."""
+        return False
+
+    def write(self, data: str) -> None:
+        self.written.append(data)
+
+
+class Bare(DeckApp):
+    """The app without its last look at each line."""
+
+    def get_line_filters(self) -> Any:
+        return App.get_line_filters(self)
+
+
+def hostile_topics() -> tuple[TopicRow, ...]:
+    """The topics as they are, and each once more with a name, a type and peers that are hostile."""
+    troubled = [
+        replace(row, trouble=trouble, detail=f"{trouble.value} {EVIL}", name=f"/{trouble.name}")
+        for row, trouble in zip(TOPICS, Trouble, strict=False)
+    ]
+    listened = TopicRow("/llm_raw_json", (STRING,), 0, 1)
+    listened = replace(listened, subscribed_by=(EndpointInfo(EVIL, EVIL, EVIL, EVIL),))
+    rows = (listened, *TOPICS, *troubled, *map(poisoned, TOPICS), *map(poisoned, troubled))
+    return tuple(sorted(rows, key=lambda row: row.name))
+
+
+def hostile_samples(
+    samples: dict[str, tuple[Sample, ...]], *, keys: bool
+) -> dict[str, tuple[Sample, ...]]:
+    """Messages with hostile texts on every topic, on those with hostile names, too."""
+    found: dict[str, tuple[Sample, ...]] = {}
+    for name, ones in samples.items():
+        found[name] = tuple(
+            replace(one, value=poisoned(one.value) if keys else _values(one.value)) for one in ones
+        )
+        found[poisoned(name)] = tuple(map(poisoned, ones))
+    return found
+
+
+def _values(value: Any) -> Any:
+    """The values alone are hostile: a name of a joint or of an encoding stays what it is."""
+    if isinstance(value, dict):
+        kept = {"name", "encoding"}
+        return {key: one if key in kept else _values(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_values(one) for one in value]
+    return poisoned(value)
+
+
+def hostile_update(base: GraphUpdate, *, keys: bool = False) -> GraphUpdate:
+    """The graph of lesson 9, and beside it the same with hostile names."""
+    goals = tuple(
+        Goal(
+            number,
+            f"/go{EVIL}",
+            f"deck_interfaces/action/DriveToPoint{EVIL if keys else ''}",
+            status,
+            {"frame": EVIL},
+            {"distance": EVIL},
+            3,
+            {"message": EVIL},
+            EVIL,
+        )
+        for number, status in enumerate(GoalStatus, 1)
+    )
+    return replace(
+        base,
+        topics=hostile_topics() if base.topics == TOPICS else base.topics,
+        samples=hostile_samples(dict(base.samples), keys=keys),
+        nodes=(*base.nodes, *map(poisoned, base.nodes)),
+        services=(*base.services, *map(poisoned, base.services)),
+        actions=(*base.actions, *map(poisoned, base.actions)),
+        goals=goals,
+        publications=(Publication(1, f"/a{EVIL}", f"b{EVIL}", 2.0, 3, 1, EVIL),),
+    )
+
+
+class HostilePad(RecordedPad):
+    """Lessons with hostile titles."""
+
+    async def lessons(self) -> list[Lesson]:
+        return [*LESSONS, *map(poisoned, LESSONS)]
+
+
+def hostile_pad(base: GraphUpdate | None = None, *, keys: bool = False) -> HostilePad:
+    """A session and a graph in which every text is hostile."""
+    nodes = {
+        name: replace(
+            node,
+            detail=EVIL,
+            command=poisoned(node.command),
+            state=state,
+            signal=f"SIG{EVIL}",
+            needs=(EVIL,),
+        )
+        for (name, node), state in zip(NODES.items(), NodeState, strict=False)
+    }
+    nodes[f"bad{EVIL}"] = poisoned(NODES["camera"])
+    lines = [*map(poisoned, LINES), *(replace(each, text=EVIL, logger=EVIL) for each in LINES)]
+    graph = RecordedGraph(update=hostile_update(base or graph_update(), keys=keys))
+    rows = (
+        *map(poisoned, PARAMETERS),
+        *(replace(row, description=EVIL, constraints=EVIL) for row in PARAMETERS),
+        ParameterRow("evil", "string", EVIL, EVIL, EVIL),
+        ParameterRow("many", "string_array", [EVIL, EVIL]),
+    )
+    for row in graph.update.nodes if graph.update else ():
+        # The types are those of ROS: else nobody could change them.
+        known = tuple(replace(each, type_name=each.type_name.split("evil")[0]) for each in rows)
+        graph.node_parameters[row.name] = ParametersResult(row.name, known, "", 0.1)
+    graph.refusals = {row.name: EVIL for row in rows}
+    answer = CallResult("/set_head_position", True, {"text": EVIL}, EVIL, 0.1)
+    graph.answers = {"/set_head_position": answer}
+    session = (
+        replace(poisoned(SESSION), name=NAME)
+        if keys
+        else replace(SESSION, title=poisoned(SESSION.title), name=NAME, hardware=EVIL)
+    )
+    return HostilePad(RecordedSession(session, nodes, lines), graph, [poisoned(SESSION)])
+
+
+@dataclass
+class Stage:
+    """A test's hands and eyes."""
+
+    app: DeckApp
+    pilot: Pilot[Any]
+
+    async def press(self, *keys: str) -> None:
+        """Press keys one by one, each to its end."""
+        for key in keys:
+            await self.pilot.press(key)
+            await self.pilot.pause()
+
+    @property
+    def written(self) -> str:
+        """All that a terminal would have been given."""
+        driver = self.app._driver
+        assert isinstance(driver, Writing)
+        return "".join(driver.written)
+
+
+@asynccontextmanager
+async def on_stage(
+    kind: type[DeckApp], screen: str, pad: RecordedPad, order: Order = LESSON_9
+) -> AsyncIterator[Stage]:
+    """Open a screen on a terminal that is looked through at the end."""
+    app = kind(pad, order, screen, driver_class=Writing)
+    async with app.run_test(headless=False, size=SIZE) as pilot:
+        stage = Stage(app, pilot)
+        await settle(pilot)
+        yield stage
+        await stage.pilot.pause()
+        written = stage.written
+    assert len(written) > 1000
+    assert "evil" in written
+    assert not harm_on_screen(written)
+
+
+apps = pytest.mark.parametrize("kind", [DeckApp, Bare])
+worlds = pytest.mark.parametrize("keys", [False, True], ids=["values", "all"])
+
+WALKS: dict[str, tuple[str, ...]] = {
+    "deck": (
+        *("down", "m", "o", "a", "down", "v", "t", "up", "escape", "l", "f1", "escape"),
+        *("c", *"abc", "escape", "ctrl+x", "f9"),
+    ),
+    "topics": (
+        *("a", *(("down", "e", "m", "v", "y", "e") * 22), "i", "s", "r", "w"),
+        *("slash", *"evil", "enter", "down", "n", "ctrl+t", "ctrl+s", "ctrl+g", "escape"),
+    ),
+    "composer": ("f7", "ctrl+s", "ctrl+t", "escape", "alt+up", "f12"),
+    "logs": (
+        *("up", "up", "c", "C", "w", "m", "o", "a", "s", "l", "down", "enter", "escape"),
+        *("slash", *"evil", "enter", "n", "f", "escape"),
+    ),
+    "graph": (
+        *("a", *(("down", "enter", "p", "m", "escape", "escape") * 12)),
+        *("right", *(("down", "enter", "escape") * 14)),
+        *("right", *(("down", "enter", "escape") * 2)),
+        *("right", *(("down", "enter", "escape") * 14)),
+    ),
+    "flow": ("n", "N", "p", "l", "down", "y", "m", "a"),
+    "devices": (*("down", "up") * 3, "p", "i", "b", "x", "slash", *"evil", "enter"),
+}
+"""Through all that a screen shows."""
+
+
+@apps
+@worlds
+@pytest.mark.parametrize("screen", WALKS)
+async def test_no_screen_gives_it_to_the_terminal(
+    screen: str, kind: type[DeckApp], keys: bool
+) -> None:
+    base = None
+    if screen == "devices":
+        samples = (*recorded_devices.STATUSES, recorded_devices.of_chassis())
+        base = recorded_devices.update(*samples)
+    async with on_stage(kind, screen, hostile_pad(base, keys=keys)) as stage:
+        await stage.press(*WALKS[screen])
+
+
+@apps
+async def test_a_parameter_is_opened_refused_and_left(kind: type[DeckApp]) -> None:
+    async with on_stage(kind, "graph", hostile_pad()) as stage:
+        await stage.press("down", "p")
+        for _row in range(10):
+            await stage.press("down", "enter", "end", "left", "x", "enter", "escape")
+        await stage.press("w", "enter", "escape", "o", "enter", "escape")
+
+
+@apps
+async def test_the_lessons_and_what_is_wrong_with_them(kind: type[DeckApp]) -> None:
+    pad = hostile_pad()
+    pad.refusal = StartError(say("{what}: nothing\n{what}", what=EVIL))
+    async with on_stage(kind, "picker", pad, Order()) as stage:
+        await stage.press(*("down",) * 8, "enter", "escape", "up", "enter", "escape")
+
+
+@apps
+async def test_what_the_supervisor_says(kind: type[DeckApp]) -> None:
+    pad = hostile_pad()
+    assert isinstance(pad.link, RecordedSession)
+    async with on_stage(kind, "deck", pad) as stage:
+        pad.link.say(StraysEvent((Stray(1, 1.0, EVIL, EVIL, EVIL),)))
+        pad.link.say(StatusEvent((poisoned(NODES["camera"]),)))
+        await stage.pilot.pause(0.1)
+        await stage.press("escape", "s", "x", "r")
+        stage.app.notify(EVIL, title=EVIL)
+        await stage.pilot.pause(0.1)
+        pad.link.hold_shutdown = True
+        await stage.press("q")
+        await stage.pilot.pause(0.1)
+        await stage.press("q")
+        pad.link.say(ClosedEvent(EVIL))
+        await stage.pilot.pause(0.1)
+
+
+@apps
+async def test_an_observer_that_cannot_work(kind: type[DeckApp]) -> None:
+    pad = hostile_pad()
+    pad.graph.update = replace(graph_update(), error=EVIL)
+    async with on_stage(kind, "deck", pad) as stage:
+        await stage.press("2", "5", "1")
+
+
+async def test_what_is_pasted_into_a_field_of_textuals_own() -> None:
+    async with on_stage(DeckApp, "deck", hostile_pad()) as stage:
+        await stage.press("ctrl+p")
+        stage.app.post_message(Paste(EVIL.replace("\n", "")))
+        await stage.pilot.pause(0.1)
+
+
+@pytest.mark.parametrize(
+    "show", [lambda text: Static(text, markup=False), lambda text: Static(text * 3, markup=False)]
+)
+async def test_what_somebody_forgot_is_found_by_the_last_look(
+    show: Callable[[str], Static],
+) -> None:
+    async with on_stage(DeckApp, "deck", hostile_pad()) as stage:
+        await stage.app.screen.mount(show(EVIL), before=0)
+        await stage.pilot.pause(0.1)
+
+
+@apps
+async def test_lines_that_come_over_rosout(kind: type[DeckApp]) -> None:
+    pad = hostile_pad()
+    async with on_stage(kind, "logs", pad) as stage:
+        pad.link.say(  # type: ignore[attr-defined]
+            StatusEvent((replace(NODES["camera"], detail=EVIL, state=NodeState.FAILED),))
+        )
+        stage.app.feed.note([line("deck", 1, EVIL)])
+        await stage.pilot.pause(0.1)
+
+
+@apps
+async def test_what_is_composed_and_what_came_of_it(kind: type[DeckApp]) -> None:
+    pad = hostile_pad()
+    async with on_stage(kind, "composer", pad) as stage:
+        text = '{"thought": "' + EVIL + '", "' + EVIL + '": [' + EVIL + "]}"
+        stage.app.screen.query_one(JsonEditor).post_message(Paste(text))
+        await stage.pilot.pause(0.1)
+        await stage.press("f7")
+        results = [
+            sample("/llm_result", STRING, {"data": json.dumps(poisoned(told))})
+            for told in ({"event": "refused", "problems": ["x"]}, {"event": "accepted"})
+        ]
+        raw = sample("/llm_result", STRING, {"data": EVIL})
+        samples = {"/llm_result": (*results, raw)}
+        assert isinstance(pad.graph, RecordedGraph)
+        pad.graph.show(replace(graph_update(), samples=samples))
+        await stage.pilot.pause(0.1)
+        await stage.press("f12", "f9", "alt+up")
