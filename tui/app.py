@@ -268,7 +268,7 @@ class DeckApp(App[int], Acting):
             for action in actions:
                 if action.palette and action.possible(target):
                     run = partial(action.run, target)
-                    yield SystemCommand(_(action.title), _(action.tooltip), run)
+                    yield SystemCommand(_(action.label(target)), _(action.tooltip), run)
         for code, name in NAMES.items():
             yield SystemCommand(name, _("Speak this language."), partial(self.speak, code))
         for theme in sorted(self.available_themes):
@@ -317,7 +317,7 @@ def every_action() -> frozenset[str]:
     """Return the binding id of every action there is; it takes every screen to know them."""
     for module, _made in SCREENS.values():
         import_module(module)
-    for dialog in ("help", "refused", "stopping", "strays"):
+    for dialog in ("end_session", "help", "refused", "stopping", "strays"):
         import_module(f"tui.screens.{dialog}")
     return frozenset(REGISTRY)
 

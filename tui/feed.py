@@ -65,6 +65,12 @@ class Feed:
         return self.link is not None and self.link.session.run_id == WATCH
 
     @property
+    def of_others(self) -> bool:
+        """Whether it is a session that somewhere else was started, and can be ended from here."""
+        link = self.link
+        return link is not None and not (link.own or self.watching or self.replay is not None)
+
+    @property
     def session(self) -> SessionInfo | None:
         """What runs, None while nothing does."""
         return None if self.link is None else self.link.session
@@ -157,6 +163,7 @@ class Feed:
         elif isinstance(event, StraysEvent):
             self._app.sessions.ask_about(event.strays)
         elif isinstance(event, ClosedEvent):
+            self._app.sessions.ended(event.reason)
             await self.disconnect(event.reason)
 
     def take_update(self) -> GraphUpdate | None:

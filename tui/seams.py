@@ -27,6 +27,10 @@ class SessionLink(Protocol):
         """What runs: profile, domain, panels."""
 
     @property
+    def own(self) -> bool:
+        """Whether this screen has started it: then it ends with this screen."""
+
+    @property
     def nodes(self) -> Mapping[str, NodeStatus]:
         """Every node by its name in the profile's order, kept current."""
 

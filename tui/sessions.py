@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.errors import LauncherError
 from text.plain import plain
-from tui.i18n import said
+from tui.i18n import _, said
 from tui.watching import WATCH
 
 if TYPE_CHECKING:
     from launcher.status import SessionInfo, Stray
     from tui.app import DeckApp
     from tui.orders import Order
-    from tui.seams import Launchpad
+    from tui.seams import Launchpad, SessionLink
 
 
 class Sessions:
@@ -40,6 +40,8 @@ class Sessions:
         self._going_back = asyncio.Lock()
         """Held while the screens of a session that has been closed are taken away."""
         self._leaving = False
+        self._stopping: SessionLink | None = None
+        """The session that somebody here has asked to stop."""
         self._code = 0
 
     def begin(self) -> None:
@@ -63,6 +65,16 @@ class Sessions:
         self._leaving = True
         self._code = code
         self._app.run_worker(self._leave(), exclusive=True, group="leaving")
+
+    def end_of_others(self) -> None:
+        """Stop a session that was started elsewhere, if a person says so once more."""
+        self._app.run_worker(self._end_of_others(), exclusive=True, group="leaving")
+
+    def ended(self, reason: str) -> None:
+        """Say why the session on the screen is over, unless that was asked for here."""
+        if self._stopping is None:
+            words = plain(said(reason), 300)
+            self._app.notify(words, severity="warning", timeout=30, markup=False)
 
     def stop_now(self) -> None:
         """Skip the waiting for nodes that do not end by themselves."""
@@ -143,8 +155,8 @@ class Sessions:
             self._app.exit(return_code=self._code)
 
     async def _stop_now(self) -> None:
-        link = self._app.feed.link
-        if link is None:
+        link = self._stopping
+        if link is None or link is not self._app.feed.link:
             self._app.exit(return_code=self._code)
             return
         with contextlib.suppress(LauncherError):
@@ -158,13 +170,20 @@ class Sessions:
         await self._app.forget_screens()
 
     async def _end(self) -> None:
-        """Stop or let go of the session, with a dialog that shows what is waited for."""
+        """Stop the session if it is this screen's own, else let go of it."""
+        feed = self._app.feed
+        if feed.link is None or not feed.link.own:
+            self._say_what_is_left()
+            await feed.disconnect()
+            return
+        await self._stop(feed.link)
+
+    async def _stop(self, link: SessionLink) -> None:
+        """Stop the nodes, with a dialog that shows what is waited for."""
         from tui.screens.stopping import StoppingScreen
 
-        app, link, graph = self._app, self._app.feed.link, self._app.feed.graph
-        if link is None or not link.session.foreground:
-            await app.feed.disconnect()
-            return
+        app, graph = self._app, self._app.feed.graph
+        self._stopping = link
         dialog = StoppingScreen()
         await app.push_screen(dialog)
         ending = [asyncio.ensure_future(link.shutdown())]
@@ -172,8 +191,34 @@ class Sessions:
             ending.append(asyncio.ensure_future(asyncio.to_thread(graph.stop)))
         await asyncio.gather(*ending, return_exceptions=True)
         await app.feed.disconnect()
+        self._stopping = None
         if dialog.is_running and app.screen is dialog:
             await dialog.dismiss()
+
+    async def _end_of_others(self) -> None:
+        from tui.screens.end_session import EndSessionScreen
+
+        link = self._app.feed.link
+        if link is None or not self._app.feed.of_others:
+            return
+        wanted = await self._app.push_screen_wait(EndSessionScreen(link.session))
+        if wanted and link is self._app.feed.link:
+            async with self._going_back:
+                await self._stop(link)
+                await self._back_to_picker()
+
+    def _say_what_is_left(self) -> None:
+        """Name what goes on when this screen is left, and what ends it."""
+        feed = self._app.feed
+        # Whose terminal is gone reads nothing.
+        if not feed.of_others or feed.session is None or not self._leaving or self._code:
+            return
+        session = feed.session
+        if session.foreground:
+            words = _("left as it is: {name} in domain {domain} ends with its own screen")
+        else:
+            words = _("left running: {name} in domain {domain}; `deck down {name}` ends it")
+        self.parting_words = words.format(name=plain(session.name), domain=session.domain)
 
 
 def words_of(error: LauncherError) -> str:

@@ -19,6 +19,7 @@ class WatchLink:
 
     def __init__(self, session: SessionInfo) -> None:
         self.session = session
+        self.own = False
         self.nodes: Mapping[str, NodeStatus] = {}
         self.strays: tuple[Stray, ...] = ()
         self._closed = asyncio.Event()

@@ -63,6 +63,8 @@ class RecordedSession:
     ) -> None:
         """Begin with `lines` in the queue."""
         self.session = session
+        self.own = session.foreground
+        """Set it: another screen's session in the foreground."""
         self.nodes: dict[str, NodeStatus] = dict(nodes)
         self.strays: tuple[Stray, ...] = ()
         self.asked: list[tuple[str, ...]] = []

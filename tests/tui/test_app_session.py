@@ -15,7 +15,7 @@ from textual.widget import Widget
 from graph.data import GraphUpdate, Sample
 from launcher.errors import ProfileError, ProfileProblem, SessionError
 from launcher.events import ClosedEvent, LogEvent, StraysEvent
-from launcher.status import NodeState, Severity, Stray
+from launcher.status import NodeState, Severity, Stray, Who
 from launcher.words import say
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
@@ -35,19 +35,21 @@ from tui.app import DeckApp
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
 from tui.screens.deck import LessonDeck
+from tui.screens.end_session import EndSessionScreen
 from tui.screens.logs import LogsScreen
 from tui.screens.picker import PickerScreen
 from tui.screens.stopping import StoppingScreen
 from tui.screens.strays import StraysScreen
 from tui.screens.topics import TopicsScreen
 from tui.widgets.head import HeadPanel
+from tui.widgets.key_bar import KeyBar
 from tui.widgets.nodes_table import NodesTable
 from tui.widgets.wheels import WheelsPanel
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot
 
-ATTACHED = replace(SESSION, foreground=False)
+ATTACHED = replace(SESSION, foreground=False, started_by=Who(4000, "ann", "pts/2", "10.0.0.7"))
 STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")
 
 
@@ -198,6 +200,75 @@ async def test_leaving_an_attached_session_leaves_it_running() -> None:
         await pilot.press("ctrl+q")
         await pilot.pause()
         assert pad.link.asked == [("aclose",)]
+
+
+def footer(app: DeckApp) -> str:
+    """Return the keys that are shown."""
+    return str(app.screen.query_one(KeyBar).render())
+
+
+def of_another_screen() -> RecordedPad:
+    """A session that a screen elsewhere has started in its own foreground."""
+    pad = RecordedPad(RecordedSession(replace(ATTACHED, foreground=True)))
+    pad.link.own = False
+    return pad
+
+
+async def test_leaving_does_not_end_what_another_screen_has_started() -> None:
+    pad = of_another_screen()
+    async with opened(pad) as (app, pilot):
+        assert "q Detach" in footer(app)
+        await pilot.press("q", "q")
+        await pilot.pause()
+        assert pad.link.asked == [("aclose",)]
+        assert app.sessions.parting_words.startswith("left as it is: 09-brain in domain 42")
+
+
+async def test_what_is_left_running_is_named_with_what_ends_it() -> None:
+    pad = RecordedPad(RecordedSession(ATTACHED))
+    async with opened(pad) as (app, pilot):
+        await pilot.press("q")
+        await pilot.pause()
+        assert app.sessions.parting_words == (
+            "left running: 09-brain in domain 42; `deck down 09-brain` ends it"
+        )
+        assert app.return_code == 0
+
+
+async def test_ones_own_session_is_quit_and_cannot_be_ended_as_anothers() -> None:
+    async with opened() as (app, pilot):
+        assert "q Quit" in footer(app)
+        await pilot.press("shift+f8")
+        await pilot.pause()
+        assert isinstance(app.screen, LessonDeck)
+
+
+async def test_what_another_screen_has_started_is_ended_only_if_asked_and_says_whose() -> None:
+    pad = of_another_screen()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("shift+f8")
+        await settle(pilot)
+        assert isinstance(app.screen, EndSessionScreen)
+        assert "ann on pts/2 from 10.0.0.7 (pid 4000)" in str(app.screen.words())
+        await pilot.press("escape")
+        await settle(pilot)
+        assert pad.link.asked == []
+        await pilot.press("shift+f8")
+        await settle(pilot)
+        await pilot.press("enter")
+        await settle(pilot)
+        assert pad.link.asked == [("shutdown",), ("aclose",)]
+        assert isinstance(app.screen, PickerScreen)
+
+
+async def test_a_session_that_is_ended_elsewhere_says_who_did() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.link.say(ClosedEvent(say("ended from elsewhere: {who}", who="bob on pts/3 (pid 7)")))
+        await pilot.pause()
+        await pilot.pause()
+        messages = [note.message for note in app._notifications]
+        assert messages == ["ended from elsewhere: bob on pts/3 (pid 7)"]
 
 
 async def test_while_nodes_are_stopping_it_says_which_and_q_again_does_not_wait() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,9 +11,10 @@ import pytest
 from textual.widgets import Static
 
 from launcher.errors import ProfileError, ProfileProblem
+from launcher.status import Who
 from launcher.words import say
 from tests.tui.app_runs import opened
-from tests.tui.recorded import LESSONS, SESSION, RecordedPad
+from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
 from tui.orders import Order
 from tui.screens.picker import PickerScreen
@@ -19,7 +22,23 @@ from tui.screens.refused import RefusedScreen
 from tui.widgets.rows import Rows
 
 PICK = Order(hardware="mock", domain=42)
-RUNNING = replace(SESSION, foreground=False, name="02-sonar-safety", domain=17)
+RUNNING = replace(
+    SESSION,
+    foreground=False,
+    name="02-sonar-safety",
+    domain=17,
+    started_by=Who(4000, "ann", "pts/2", "10.0.0.7"),
+    since_s=NOW_S,
+)
+
+
+@pytest.fixture(autouse=True)
+def _utc(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("TZ", "UTC")
+    time.tzset()
+    yield
+    monkeypatch.undo()
+    time.tzset()
 
 
 def about(screen: PickerScreen) -> str:
@@ -90,6 +109,7 @@ async def test_what_runs_in_the_background_is_attached_to() -> None:
     pad = RecordedPad(sessions=[RUNNING])
     async with opened(pad, order=PICK) as (app, pilot):
         assert "Runs already" in about(app.screen)
+        assert "started by ann on pts/2 from 10.0.0.7 (pid 4000) at 0" in about(app.screen)
         await pilot.press("enter")
         await pilot.pause()
         assert pad.orders == [PICK._replace(attach="02-sonar-safety")]

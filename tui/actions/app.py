@@ -223,12 +223,31 @@ class CloseSession(OpenedAction):
     id = "session.close"
     key = "f8"
     title = N_("Lessons")
-    tooltip = N_("Stop this lesson's nodes and go back to the list of lessons.")
+    tooltip = N_("Back to the list of lessons; nodes that this screen has started are stopped.")
 
     @classmethod
     async def run(cls, target: DeckApp) -> None:
         """Stop, or let go of, the session and show the picker."""
         target.sessions.close()
+
+
+class EndSession(SessionAction):
+    """End what somebody else has started."""
+
+    id = "session.end"
+    key = "shift+f8"
+    title = N_("End the session")
+    tooltip = N_("End a session that was started elsewhere; says whose it is, and asks.")
+
+    @classmethod
+    def possible(cls, target: DeckApp) -> bool | None:
+        """Only beside a session of a supervisor that is not this screen's."""
+        return target.feed.of_others
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Ask, and end it."""
+        target.sessions.end_of_others()
 
 
 class Redraw(AppAction):
@@ -252,9 +271,14 @@ class Quit(AppAction):
     id = "app.quit"
     key = "q,й,ctrl+q"
     title = N_("Quit")
-    tooltip = N_("Stop the nodes that this screen has started, and leave.")
+    tooltip = N_("Leave; nodes that this screen has started are stopped, others go on.")
     footer = True
     priority = True
+
+    @classmethod
+    def label(cls, target: DeckApp) -> str:
+        """By whether anything ends by it."""
+        return N_("Detach") if target.feed.of_others else cls.title
 
     @classmethod
     async def run(cls, target: DeckApp) -> None:
@@ -275,6 +299,7 @@ APP_ACTIONS = (
     ShowDevices,
     ShowPalette,
     CloseSession,
+    EndSession,
     SwitchLanguage,
     SwitchTheme,
     Redraw,

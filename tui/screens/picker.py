@@ -17,6 +17,7 @@ from tui.actions import Acting, Action, bindings
 from tui.i18n import N_, _, ngettext, pick, said
 from tui.orders import WatchOrder
 from tui.screens.base import BREAKPOINTS, HEIGHTS
+from tui.screens.end_session import started
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.title_bar import TitleBar
@@ -157,7 +158,7 @@ class PickerScreen(Screen[None], Acting, Working):
         self.query_one(TitleBar).show((), (title,))
         rows: list[Row] = []
         if self._sessions:
-            rows.append(_heading(_("Running in the background")))
+            rows.append(_heading(_("Running already")))
             rows += [self._running_row(session) for session in self._sessions]
             rows.append(_heading(""))
         if self._domain is not None:
@@ -259,7 +260,8 @@ def _about_session(session: SessionInfo) -> Content:
         [
             Content.styled(_title(session.name, session.title), "bold $accent"),
             Content(""),
-            Content(_("Runs already, started by `deck up`: Enter shows it and leaves it running.")),
+            Content(_("Runs already: Enter shows it and leaves it running.")),
+            Content(started(session)),
             Content(""),
             _field(_("Domain"), str(session.domain)),
             _field(_("Hardware"), plain(session.hardware)),
