@@ -124,6 +124,8 @@ def _on_topics_of(
 ) -> Iterator[Stranger]:
     keeping = {f"/{node.name}": node for node in nodes.values() if node.command == keeper.module}
     for row in rows:
+        if row.name != keeper.topic and keeper.type_name not in row.type_names:
+            continue
         by = Counter(end.node for end in row.published_by)
         if row.name in ours:
             by[OURSELVES] += 1
