@@ -71,6 +71,7 @@ class EmergencyStop:
         self._publisher = node.create_publisher(
             DiagnosticArray, EMERGENCY_STATE, LATCHED, event_callbacks=quiet
         )
+        self._released_s = 0.0
         self._stop = self._memory.recall()
         if self._stop is not None:
             self._tell_remembered(self._stop)
@@ -97,6 +98,7 @@ class EmergencyStop:
     def _release(self) -> None:
         stop, self._stop = self._stop, None
         if stop is not None:
+            self._released_s = time.time()
             self._changed(False)
             self._publish()
         # Also what another node has left that could not hear of it any more.
@@ -146,14 +148,18 @@ class EmergencyStop:
         stop, status = self._stop, self._status
         status.level = DiagnosticStatus.OK if stop is None else DiagnosticStatus.ERROR
         status.message = self._node.say.text(_FREE if stop is None else _HELD)
-        values = {"engaged": "false"} if stop is None else _values(stop)
+        values = _free(self._released_s) if stop is None else _held(stop)
         status.values = [KeyValue(key=key, value=value) for key, value in values.items()]
         message = DiagnosticArray(status=[status])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
 
 
-def _values(stop: Stop) -> dict[str, str]:
+def _free(since_s: float) -> dict[str, str]:
+    return {"engaged": "false", "since": f"{since_s:.3f}"}
+
+
+def _held(stop: Stop) -> dict[str, str]:
     return {
         "engaged": "true",
         "since": f"{stop.since_s:.3f}",

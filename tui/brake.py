@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
+from text.plain import plain
 from tui import clock, emergency
 from tui.emergency import Emergency, listeners
+from tui.emergency_words import shown_of
 from tui.i18n import _
 
 if TYPE_CHECKING:
@@ -16,6 +18,11 @@ if TYPE_CHECKING:
     from tui.app import DeckApp
 
 SENT_WITHIN_S = 2.0
+AGAIN_S = 1.0
+"""So often a release is said again to nodes that hold still."""
+INSIST_S = 10.0
+"""And for so long: a node that takes longer is for a person to look at."""
+ENDED = frozenset({"exited", "failed"})
 WHY_S = 20.0
 """How long it is told what else the stop has ended, and why."""
 
@@ -27,6 +34,8 @@ class Brake:
         """Act on the session of `app`."""
         self._app = app
         self.state = Emergency()
+        self._released_s = self._said_s = 0.0
+        """When a release was first and last said from here, unix time."""
 
     def engage(self) -> None:
         """Stop the wheels: said on the topic, or by stopping the nodes if nobody hears."""
@@ -38,16 +47,33 @@ class Brake:
 
     def release(self) -> None:
         """Let the wheels turn again, and nothing turn them by itself."""
+        ended = self.state.ended
         self._end_publications()
-        self._set(self.state.released(clock.now()))
-        self._app.run_worker(self._reached(self._publish(engaged=False)), group="brake")
+        self._released_s = clock.now()
+        self._set(self.state.released(self._released_s))
+        self._say_released()
+        if ended:
+            self._app.run_worker(self._start_again(ended), group="brake")
 
     def see(self, update: GraphUpdate) -> None:
-        """Take in what others have done."""
-        state = self.state.seen(update)
-        if state.engaged != self.state.engaged:
+        """Take in what others have done, and insist on a release that a node has not heard."""
+        before, state = self.state, self.state.seen(update)
+        if state.engaged != before.engaged:
             self._end_publications()
         self._set(state)
+        if before.engaged and not state.engaged and not state.ours:
+            words = _("Another has released the emergency stop: the wheels may turn.")
+            self._app.notify(words, severity="warning", timeout=WHY_S, markup=False)
+        now_s = clock.now()
+        said_in_vain = any(
+            state.nodes[name].held_s > self._said_s + AGAIN_S for name in state.awaited
+        )
+        if said_in_vain and now_s - self._released_s < INSIST_S:
+            self._say_released()
+
+    def _say_released(self) -> None:
+        self._said_s = clock.now()
+        self._app.run_worker(self._reached(self._publish(engaged=False)), group="brake")
 
     def forget(self) -> None:
         """Start anew with another session."""
@@ -70,12 +96,24 @@ class Brake:
             return
         unheard = emergency.NO_GRAPH if reached else _unheard(feed.update)
         reason = emergency.NOT_OURS if feed.watching else unheard
-        self._set(self.state.fallen_back(reason))
+        ending = [name for name, node in feed.nodes.items() if node.state.value not in ENDED]
+        self._set(self.state.fallen_back(reason, tuple(ending)))
         # The title has room for it on wide terminals only, and forgets it with the release.
         self._app.notify(_(reason), severity="error", timeout=WHY_S, markup=False)
         if feed.link is not None:
             await feed.link.stop()
         await sending
+
+    async def _start_again(self, ended: tuple[str, ...]) -> None:
+        """Start the nodes that were stopped in place of the wheels, as they were."""
+        feed = self._app.feed
+        names = [name for name in ended if name in feed.nodes]
+        if feed.link is None or not names:
+            return
+        words = _("Started again what the stop had ended: {nodes}")
+        told = words.format(nodes=", ".join(map(plain, names)))
+        self._app.notify(told, timeout=WHY_S, markup=False)
+        await feed.link.start(*names)
 
     def _publish(self, *, engaged: bool) -> Future[int] | None:
         """Publish the latched word; None without a graph."""
@@ -112,8 +150,9 @@ class Brake:
         return True
 
     def _set(self, state: Emergency) -> None:
-        if state != self.state:
-            self.state = state
+        shown = shown_of(self.state) != shown_of(state)
+        self.state = state
+        if shown:
             self._app.emergency_changed()
 
 

@@ -16,7 +16,8 @@ from tui.actions.app import (
     ShowLogs,
     ShowTopics,
 )
-from tui.emergency import held_reason, stop_words
+from tui.emergency import held_reason
+from tui.emergency_words import stop_words
 from tui.i18n import _, ngettext, pick, said
 
 if TYPE_CHECKING:
