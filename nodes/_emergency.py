@@ -20,6 +20,8 @@ from nodes._topics import DEPTH, EMERGENCY_STATE, EMERGENCY_STOP, LATCHED
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
+
     from nodes._node import LessonNode
 
 TOPIC, PICO = "topic", "pico"
@@ -72,6 +74,8 @@ class EmergencyStop:
             DiagnosticArray, EMERGENCY_STATE, LATCHED, event_callbacks=quiet
         )
         self._released_s = 0.0
+        self._suspects: set[bytes] = set()
+        """Publishers of the topic when it was stopped whose names are not known yet."""
         self._stop = self._memory.recall()
         if self._stop is not None:
             self._tell_remembered(self._stop)
@@ -91,12 +95,15 @@ class EmergencyStop:
             return
         self._stop = Stop(time.time(), by)
         self._changed(True)
-        self._stop = self._with_publishers(self._stop)
+        if by == TOPIC:
+            self._suspects = {bytes(one.endpoint_gid) for one in self._publishers()}
+            self._name_suspects(self._stop)
         self._publish()
         self._keep(self._stop)
 
     def _release(self) -> None:
         stop, self._stop = self._stop, None
+        self._suspects = set()
         if stop is not None:
             self._released_s = time.time()
             self._changed(False)
@@ -117,20 +124,27 @@ class EmergencyStop:
             self._release()
 
     def _repeat(self) -> None:
-        if self._stop is not None and not self._stop.remembered:
-            self._stop = self._with_publishers(self._stop)
+        if self._stop is not None and self._suspects:
+            self._name_suspects(self._stop)
         self._publish()
         if self._stop is not None and not self._stop.unreadable:
             self._keep(self._stop)
 
-    def _with_publishers(self, stop: Stop) -> Stop:
-        """Add who may have said it on the topic, which of a new node is known a little later."""
-        if stop.by != TOPIC or stop.publishers:
-            return stop
-        found = self._node.get_publishers_info_by_topic(EMERGENCY_STOP)
-        names = {f"{one.node_namespace.rstrip('/')}/{one.node_name}" for one in found}
-        known = sorted(name for name in names if _UNKNOWN not in name)
-        return stop._replace(publishers=" ".join(known))
+    def _name_suspects(self, stop: Stop) -> None:
+        """Tell who may have said it; the name of a new publisher is known a little later."""
+        names = set(stop.publishers.split())
+        unnamed = set()
+        for one in self._publishers():
+            gid = bytes(one.endpoint_gid)
+            if gid in self._suspects and _UNKNOWN in one.node_name:
+                unnamed.add(gid)
+            elif gid in self._suspects:
+                names.add(f"{one.node_namespace.rstrip('/')}/{one.node_name}")
+        self._suspects = unnamed
+        self._stop = stop._replace(publishers=" ".join(sorted(names)))
+
+    def _publishers(self) -> list[TopicEndpointInfo]:
+        return list(self._node.get_publishers_info_by_topic(EMERGENCY_STOP))
 
     def _keep(self, stop: Stop) -> None:
         problem = self._memory.keep(stop)

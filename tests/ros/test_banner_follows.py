@@ -1,0 +1,155 @@
+"""The banner shows what the nodes obey, whoever has said what and has gone again."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import time
+from collections.abc import AsyncIterator, Callable
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+from std_msgs.msg import Bool
+
+from graph.observer import Observer
+from tests.ros.node_process import NodeProcess
+from tests.ros.peer import LATCHED, Peer
+from tui.app import DeckApp
+from tui.brake import Brake
+from tui.emergency import FOLLOWED
+from tui.emergency_words import stop_words
+from tui.inbox import GraphInbox
+
+WITHIN_S = 30.0
+NODE = "/electronic_differential"
+
+
+class Screen:
+    """As much of the app as the brake needs, on a graph that is really observed."""
+
+    def __init__(self, domain: int) -> None:
+        self._inbox = GraphInbox(lambda: None)
+        self.observer = Observer(domain, "localhost")
+        self.feed = SimpleNamespace(
+            graph=self.observer, update=None, link=None, nodes={}, watching=True
+        )
+        self.notes: list[str] = []
+        self.brake = Brake(cast("DeckApp", self))
+        self._workers: list[asyncio.Future[Any]] = []
+        self.observer.start(self._inbox.put)
+        self.observer.follow(FOLLOWED)
+        self.brake.prepare()
+
+    @property
+    def words(self) -> str:
+        """The banner, empty if there is none."""
+        state = self.brake.state
+        return stop_words(state, "^r")[0] if state.engaged else ""
+
+    async def until(self, condition: Callable[[], object], what: str) -> None:
+        """Take in what comes until the condition holds."""
+        end_s = time.monotonic() + WITHIN_S
+        while not condition():
+            assert time.monotonic() < end_s, f"not in time: {what}; {self.brake.state}"
+            update = self._inbox.take()
+            if update is not None:
+                self.feed.update = update
+                self.brake.see(update)
+            await asyncio.sleep(0.02)
+
+    def says(self, engaged: bool) -> bool:
+        """Whether the node has said so."""
+        node = self.brake.state.nodes.get(NODE)
+        return node is not None and node.engaged == engaged
+
+    def run_worker(self, work: Any, group: str) -> None:
+        assert group == "brake"
+        self._workers.append(asyncio.ensure_future(work))
+
+    def notify(self, words: str, **_looks: Any) -> None:
+        self.notes.append(words)
+
+    def emergency_changed(self) -> None:
+        """Nothing is drawn here."""
+
+    async def close(self) -> None:
+        """Let go of the graph."""
+        await asyncio.gather(*self._workers)
+        self.observer.stop()
+
+
+@pytest.fixture
+async def screen(ros_domain: int) -> AsyncIterator[Screen]:
+    """A screen that only watches."""
+    screen = Screen(ros_domain)
+    yield screen
+    await screen.close()
+
+
+async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(
+    screen: Screen, ros_domain: int
+) -> None:
+    """No gate is there to tell of it, and nobody whose word is latched."""
+    with NodeProcess("nodes.electronic_differential", ros_domain):
+        await screen.until(lambda: screen.says(False), "the node's word")
+        screen.brake.engage()
+        await screen.until(lambda: screen.says(True), "the stop")
+        assert screen.words.startswith("■ EMERGENCY STOP since ")
+        with (
+            Peer(ros_domain, "passer_by") as other,
+            other.saying("/emergency_stop", Bool(data=False)),
+        ):
+            await screen.until(lambda: screen.says(False), "the release")
+        await screen.until(lambda: not screen.words, "no banner over wheels that may turn")
+        assert any("Another has released" in note for note in screen.notes)
+        with (
+            Peer(ros_domain, "joy") as other,
+            other.saying("/emergency_stop", Bool(data=True)),
+        ):
+            await screen.until(lambda: "(by joy)" in screen.words, "the foreign stop, by name")
+        screen.brake.release()
+        await screen.until(lambda: not screen.words and screen.says(False), "our release")
+
+
+async def test_who_looks_later_sees_the_stop_and_releases_a_node_that_was_started_anew(
+    screen: Screen, ros_domain: int
+) -> None:
+    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
+        with Peer(ros_domain, "passer_by") as other:
+            await asyncio.to_thread(
+                other.say, "/emergency_stop", Bool(data=True), listeners=2, qos=LATCHED
+            )
+            await screen.until(lambda: screen.says(True), "the stop")
+        node.send(signal.SIGKILL)
+        node.wait()
+    with NodeProcess("nodes.electronic_differential", ros_domain) as node:
+        await asyncio.to_thread(node.wait_for_words, "given before this node was started")
+        late = Screen(ros_domain)
+        try:
+            await late.until(lambda: "(from before) since" in late.words, "the stop")
+            late.brake.release()
+            await late.until(lambda: not late.words and late.says(False), "the release")
+            assert not late.notes
+        finally:
+            await late.close()
+        await screen.until(lambda: not screen.words, "the release on the other screen")
+        assert any("Another has released" in note for note in screen.notes)
+
+
+async def test_a_node_that_hangs_is_named_until_it_has_heard_of_the_release(
+    screen: Screen, ros_domain: int
+) -> None:
+    with (
+        NodeProcess("nodes.electronic_differential", ros_domain) as node,
+        NodeProcess("nodes.safety_stop", ros_domain),
+    ):
+        await screen.until(lambda: len(screen.brake.state.nodes) == 2, "both nodes")
+        screen.brake.engage()
+        await screen.until(lambda: len(screen.brake.state.holders) == 2, "the stop")
+        node.send(signal.SIGSTOP)
+        screen.brake.release()
+        held = "released here, still held by electronic_differential"
+        await screen.until(lambda: held in screen.words, "who has not released it")
+        node.send(signal.SIGCONT)
+        await screen.until(lambda: not screen.words, "the release")
