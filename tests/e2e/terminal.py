@@ -44,11 +44,15 @@ KEYS = {
 """What a terminal sends for the keys that have names; `ctrl+x` is understood besides."""
 
 
+KEPT = 4_000_000
+
+
 class Terminal:
     """One program in a terminal of its own, its output read all the time.
 
     Attributes:
         received: bytes that the program has written to the terminal so far.
+        kept: those bytes, as many as come before the first `KEPT`.
     """
 
     def __init__(
@@ -60,6 +64,7 @@ class Terminal:
         cwd: str | None = None,
     ) -> None:
         self.received = 0
+        self.kept = bytearray()
         self._lock = threading.Lock()
         self._hung_up = threading.Event()
         self._screen = pyte.Screen(columns, rows)
@@ -206,6 +211,8 @@ class Terminal:
                 break
             with self._lock:
                 self.received += len(data)
+                if len(self.kept) < KEPT:
+                    self.kept += data
                 self._stream.feed(self._decoder.decode(data))
 
 
