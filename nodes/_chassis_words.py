@@ -32,6 +32,10 @@ RELEASED = Phrase(
     "The emergency stop is released; waiting for a new command",
     "Аварийная остановка снята; жду новой команды",
 )
+_REFUSED_BY_PICO = Phrase(
+    "The Pico has refused {count} lines: damaged on their way, or more than its config.py allows",
+    "Pico отверг строк: {count}; они повреждены по пути или требуют больше, чем в его config.py",
+)
 STANDS = Phrase("The wheels stand: {reasons}", "Колёса стоят: {reasons}")
 _DRIVES = Phrase("ready to drive", "готово ехать")
 _NO_ANSWER = Phrase("no Pico answers at {port}", "Pico не отвечает на {port}")
@@ -56,11 +60,15 @@ def reasons(say: Speech, flags: Iterable[str]) -> str:
 
 
 class Standing:
-    """Tells in the log why the wheels stand: at once, and again for who looks later."""
+    """Tells in the log why the wheels stand: at once, and again for who looks later.
+
+    And what the Pico refuses, which makes them stand for a moment.
+    """
 
     def __init__(self, say: Speech) -> None:
         self._say = say
         self._flags: frozenset[str] = frozenset()
+        self._refused: int | None = None
 
     def tell(self, telemetry: Telemetry | None) -> None:
         """Take the newest of the Pico, as often as it pleases; None if there is none."""
@@ -69,6 +77,21 @@ class Standing:
             every_s = 0.0 if flags - self._flags else _SAY_EVERY_S
             self._say.error(STANDS, every_s=every_s, reasons=reasons(self._say, flags))
         self._flags = flags
+        self._tell_refused(None if telemetry is None else telemetry.refused)
+
+    def _tell_refused(self, count: int | None) -> None:
+        """Take how many lines the Pico has refused since its start, None if that is not known."""
+        before = self._refused
+        if (
+            count is None
+            or before is None
+            or count < before
+            or (
+                count > before
+                and self._say.warn(_REFUSED_BY_PICO, every_s=_SAY_EVERY_S, count=count - before)
+            )
+        ):
+            self._refused = count
 
 
 def diagnosis(

@@ -59,10 +59,11 @@ class Speech:
         if self._is_due(phrase, every_s):
             self._logger.info(self.text(phrase, **values))
 
-    def warn(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
-        """Log a warning; not more often than every `every_s` seconds."""
-        if self._is_due(phrase, every_s):
+    def warn(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> bool:
+        """Log a warning; not more often than every `every_s` seconds. Tell whether it was."""
+        if is_due := self._is_due(phrase, every_s):
             self._logger.warning(self.text(phrase, **values))
+        return is_due
 
     def error(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
         """Log an error; not more often than every `every_s` seconds."""

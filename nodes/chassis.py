@@ -44,7 +44,7 @@ from nodes._pico_client import PicoClient
 from nodes._refusals import Refusals
 from nodes._topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
-from robot.limits import MOTOR_RAD_S, STEERING, wheel_limits
+from robot.limits import PICO_RAD_S, STEERING, wheel_limits
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -91,8 +91,8 @@ class Chassis(LessonNode):
         ),
         Number(
             "max_wheel_speed",
-            MOTOR_RAD_S,
-            "Of a motor at full power; both wheels are slowed to it",
+            PICO_RAD_S,
+            "As the Pico has it; both wheels are slowed to it",
             low=0.1,
             high=200.0,
             unit="rad/s",

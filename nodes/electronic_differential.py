@@ -37,7 +37,7 @@ from robot.kinematics import (
     WheelSpeeds,
     wheel_speeds,
 )
-from robot.limits import MOTOR_RAD_S, RIM_M_S, SPEED, STEERING, Limits
+from robot.limits import PICO_RAD_S, RIM_M_S, SPEED, STEERING, Limits
 from robot.words import STOP, DriveSetpoint
 
 JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
@@ -108,8 +108,8 @@ class ElectronicDifferential(LessonNode):
         ),
         Number(
             "max_wheel_speed",
-            MOTOR_RAD_S,
-            "Of a motor at full power; both wheels are slowed to it",
+            PICO_RAD_S,
+            "As the Pico has it; both wheels are slowed to it",
             low=0.1,
             high=200.0,
             unit="rad/s",

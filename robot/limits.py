@@ -42,8 +42,8 @@ SPEED = Limits(-0.5, 0.5, "m/s")
 STEERING = Limits(-0.5, 0.5, "rad")
 RIM_M_S = wheel_speeds(SPEED.high, STEERING.high).right_m_s
 """No wheel is driven faster, at its rim: the outer one of the tightest curve at full speed is."""
-MOTOR_RAD_S = 20.0
-"""A wheel at full power, as in firmware/pico2/config.py."""
+PICO_RAD_S = 17.907
+"""What the Pico lets a wheel be asked for, as in firmware/pico2/config.py."""
 
 
 def wheel_limits(radius_m: float = WHEEL_RADIUS_M) -> Limits:

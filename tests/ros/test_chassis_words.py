@@ -13,8 +13,8 @@ from robot.wire_pico import Telemetry
 from tests.ros.test_serial_link import Log
 
 
-def telemetry(flags: str) -> Telemetry:
-    return Telemetry(1, 20, 0, 0.0, 0.0, 0.0, 7.4, 0.0, 0.0, 0, frozenset(flags))
+def telemetry(flags: str, refused: int = 0) -> Telemetry:
+    return Telemetry(1, 20, 0, 0.0, 0.0, 0.0, 7.4, 0.0, 0.0, refused, frozenset(flags))
 
 
 def test_why_the_wheels_stand_is_told_again_while_it_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -39,3 +39,24 @@ def test_why_the_wheels_stand_is_told_again_while_it_lasts(monkeypatch: pytest.M
     assert told("L", 1) == []
     assert told(None, 1) == []
     assert told("L", 1) == [left]
+
+
+def test_what_the_pico_refuses_is_told_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
+    monkeypatch.setattr(_speech, "time", clock)
+    log = Log()
+    standing = Standing(Speech(log, "en"))  # type: ignore[arg-type]
+
+    def told(*counts: int | None) -> list[str]:
+        """How many lines are told of, when these counts come one after the other in 10 s."""
+        log.lines.clear()
+        for count in counts:
+            standing.tell(None if count is None else telemetry("", count))
+            clock.now_s += 10 / len(counts)
+        return [line.partition(" lines")[0].rpartition(" ")[2] for line in log.lines]
+
+    assert told(None, 7, 7) == [], "what was before"
+    assert told(7, 8, 20) == ["1"]
+    assert told(20, 20) == ["12"]
+    assert told(20, 3, 3) == [], "a new start of the Pico"
+    assert told(4) == ["1"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState
 
-from robot.limits import RIM_M_S, wheel_limits
+from robot.limits import PICO_RAD_S, RIM_M_S, wheel_limits
 from tests.ros.devices import mock_robot
 from tests.ros.gate import Gate, drive, values
 from tests.ros.node_process import NodeProcess
@@ -254,6 +255,33 @@ def test_the_chassis_refuses_what_is_beyond_the_limits(
     assert max(abs(one) for told in robot.wheels.told for one in told.effort[:2]) <= 3.0
     robot.wheels.command("/wheel_commands", lambda: wheels(wheel_limits().high))
     robot.wheels.wait_moving()
+
+
+def test_whatever_is_asked_the_pico_is_never_sent_more_than_it_takes(robot: Robot) -> None:
+    """The firmware would refuse it, and count; so would this test."""
+    dice = random.Random(8)
+    kinds = (0.0, 1.0, 17.9, 17.90602, 18.0, 200.0, 1e5, 1e30, 1e308, math.inf, math.nan)
+    angles = (0.0, 0.1, 0.5, 0.50001, 1.57, 1e30, math.nan)
+
+    def extreme() -> JointState:
+        message = wheels(0.0, dice.choice(angles) * dice.choice((-1, 1)))
+        speeds = (dice.choice(kinds) * dice.choice((-1, 1)) for _side in range(2))
+        message.velocity = [*speeds, math.nan]
+        return message
+
+    publisher = robot.peer.publisher("/wheel_commands", JointState)
+    wait_until(publisher.get_subscription_count, "a subscription")
+    seen = len(robot.wheels.told)
+    for _ in range(500):
+        publisher.publish(extreme())
+        time.sleep(0.002)  # the queue is ten long: a pace, and no synchronisation
+    robot.wheels.command("/wheel_commands", lambda: wheels(2.0))
+    robot.wheels.wait_moving()
+    efforts = [abs(one) for told in robot.wheels.told[seen:] for one in told.effort[:2]]
+    assert max(efforts) <= PICO_RAD_S
+    robot.states.clear()
+    wait_until(lambda: robot.states, "its state")
+    assert values(robot.states[-1])["refused_by_pico"] == "0"
 
 
 @pytest.mark.parametrize("robot", [{"max_wheel_speed": 4.0}], indirect=True)
