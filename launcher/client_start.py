@@ -38,7 +38,7 @@ class StartingSupervisor:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._words,
-            env={**os.environ, **room_for_marks()},
+            env={**os.environ, **_without_current_folder(), **room_for_marks()},
             start_new_session=True,
         )
         # It is collected when it ends, however long that takes.
@@ -121,6 +121,17 @@ class StartingSupervisor:
         if not words:
             return say("the supervisor ended without a word")
         return say("the supervisor ended: {words}", words=words.splitlines()[-1])
+
+
+def _without_current_folder() -> dict[str, str]:
+    """Return Python's path as it is from here, for those in other folders.
+
+    An empty part, as `export PYTHONPATH=$PYTHONPATH:/more` leaves behind, would be whatever folder
+    a process is in; nobody means that.
+    """
+    written = os.environ.get("PYTHONPATH")
+    parts = [os.path.abspath(part) for part in (written or "").split(os.pathsep) if part]  # noqa: PTH100
+    return {} if written is None else {"PYTHONPATH": os.pathsep.join(parts)}
 
 
 def _write(fd: int, data: bytes) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.domain import LAST_SAFE_DOMAIN, choose_domain
 from launcher.errors import DomainError, ProfileError, ProfileProblem
-from launcher.profile_check import applies, check_module, check_needs, check_node
+from launcher.profile_check import applies, check_needs, check_node, check_run
 from launcher.profile_devices import with_devices
 from launcher.profile_extends import read_profile
 from launcher.profile_params import flatten
@@ -136,10 +136,9 @@ class _Reader:
             here = ("nodes", name, "cwd")
             message = say("there is no directory {path}", path=shown(cwd))
             self.problems.add(place_of(self.tree, here), here, message)
-        root = None
         if node.run is not None:
-            folders = [cwd or Path.cwd(), self.path.parent]
-            root = check_module(name, node.run, folders, self.tree, self.problems)
+            folders = [self.path.parent, cwd or Path.cwd()]
+            check_run(name, node.run, folders, self.tree, self.problems)
         return NodeSpec(
             name=name,
             run=node.run,
@@ -154,7 +153,6 @@ class _Reader:
             optional=node.optional,
             warm=node.warm,
             cwd=cwd,
-            source_root=root,
         )
 
     def profile(

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from launcher.profile_files import file_of, files_beside, is_file
 from launcher.profile_model import LONGEST_NODE_NAME, NODE_NAME
-from launcher.profile_modules import find_folder, likely_names
+from launcher.profile_modules import is_installed, likely_names
+from launcher.profile_text import shown
 from launcher.profile_tree import did_you_mean, empty, find, place_of
 from launcher.profile_when import WhenError, holds
 from launcher.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
     from launcher.profile_model import NodeDocument
     from launcher.profile_tree import Branch, Problems, Where
@@ -58,18 +61,28 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
             )
 
 
-def check_module(
-    name: str, module: str, folders: Sequence[Path], tree: Branch, problems: Problems
-) -> Path | None:
-    """Return the folder to put on Python's path for a module, if any; a problem if nowhere."""
-    folder = find_folder(module, folders)
-    if folder is None:
-        where = ("nodes", name, "run")
-        hint = did_you_mean(module, likely_names(module, folders))
+def check_run(
+    name: str, run: str, folders: Sequence[Path], tree: Branch, problems: Problems
+) -> None:
+    """Check that what a node runs is there.
+
+    `folders`: that of the profile, and others where people look for modules; Deck does not.
+    """
+    where = ("nodes", name, "run")
+    if is_file(run):
+        # Unlike Path.is_file, this takes a name that no file can have for what it is.
+        if not os.path.isfile(run):  # noqa: PTH113
+            file = Path(run)
+            message = say("there is no file {path}", path=shown(file))
+            hint = did_you_mean(f"./{file.name}", files_beside(file.parent))
+            problems.add(place_of(tree, where), where, message, hint)
+    elif not is_installed(run):
+        message = say("there is no module {module!r}", module=run)
+        own = file_of(run, folders, folders[0])
+        hint = say("for your own file write run: {file}", file=own) if own else ""
         problems.add(
-            place_of(tree, where), where, say("there is no module {module!r}", module=module), hint
+            place_of(tree, where), where, message, hint or did_you_mean(run, likely_names(run))
         )
-    return folder if folder is not None and folder.parts else None
 
 
 def check_needs(

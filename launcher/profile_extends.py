@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from launcher.profile_files import with_own_files
 from launcher.profile_text import SHIPPED, read_text, shown
 from launcher.profile_tree import Branch, Entry, did_you_mean, empty, plain
 from launcher.profile_yaml import read_yaml
@@ -38,7 +39,8 @@ def read_profile(path: Path, problems: Problems) -> Branch | None:
 
 def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | None:
     text = read_text(path, problems)
-    tree = None if text is None else read_yaml(text, shown(path), problems)
+    written = None if text is None else read_yaml(text, shown(path), problems)
+    tree = None if written is None else with_own_files(written, path.parent)
     if tree is None or "extends" not in tree.entries:
         return tree
     entry = tree.entries["extends"]

@@ -13,6 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSche
 from pydantic_core import PydanticCustomError
 
 from launcher.domain import LAST_DOMAIN
+from launcher.profile_files import is_file
 from launcher.serial_choice import KINDS
 from launcher.words import Words, say
 
@@ -37,8 +38,14 @@ def _texts(value: object) -> object:
 
 
 def _module(value: object) -> object:
-    if isinstance(value, str) and not MODULE.fullmatch(value):
-        raise refuse(say("{value!r} is no Python module; write it as nodes.hello", value=value))
+    if isinstance(value, str) and not is_file(value) and not MODULE.fullmatch(value):
+        raise refuse(
+            say(
+                "{value!r} is no Python module; write it as nodes.hello, and a file of your own"
+                " as ./my_node.py",
+                value=value,
+            )
+        )
     return value
 
 
@@ -168,7 +175,9 @@ class NodeDocument(Document):
     """One node: a process, and what it needs."""
 
     run: Annotated[str, BeforeValidator(_module)] | None = Field(
-        None, description="Python module to run as a ROS node, named as its key: `nodes.hello`."
+        None,
+        description="Python module to run as a ROS node, named as its key: `nodes.hello`; or a file"
+        " of your own, relative to the profile: `./my_sonar.py`.",
     )
     exec: Command | None = Field(
         None, strict=False, description="Any command instead: `[ros2, run, package, program]`."

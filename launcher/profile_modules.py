@@ -6,8 +6,9 @@ import os
 import pkgutil
 import sys
 from importlib.machinery import PathFinder
-from pathlib import Path
 from typing import TYPE_CHECKING
+
+from launcher.node_program import INSTALLATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -17,29 +18,28 @@ COURSE = "nodes"
 """The package of the lessons' own nodes."""
 
 
-def find_folder(module: str, folders: Sequence[Path]) -> Path | None:
-    """Return where `python -m MODULE` has to look; None if nowhere has it.
-
-    Python's own path goes first, and counts as the empty path: nothing has to be added to it.
-    Whatever the current directory happens to be is not Python's own path: a node may run in
-    another.
-    """
-    own = [entry for entry in sys.path if entry and Path(entry) != Path.cwd()]
-    if _runnable(module, own):
-        return Path()
-    return next((folder for folder in folders if _runnable(module, [str(folder)])), None)
+def is_installed(module: str) -> bool:
+    """Whether a node can run this module: `launcher.node_program` finds it."""
+    return _runnable(module, _places())
 
 
-def likely_names(module: str, folders: Sequence[Path]) -> list[str]:
+def likely_names(module: str) -> list[str]:
     """Return modules that may have been meant: those beside it, and the course's nodes."""
-    places = [*map(str, folders), *(entry or os.curdir for entry in sys.path)]
     package, _, _ = module.rpartition(".")
-    names = _inside(map(str, folders))
+    names = []
     for parent in {package, COURSE} - {""}:
-        spec = _find(parent, places)
+        spec = _find(parent, _places())
         inner = spec.submodule_search_locations if spec is not None else None
         names += [f"{parent}.{name}" for name in _inside(inner or ())]
     return names
+
+
+def _places() -> list[str]:
+    """Where a node's Python looks: the current folder is no place there, unless it is told to."""
+    here = os.getcwd()  # noqa: PTH109
+    named = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
+    others = (place for place in sys.path if place and place != here)
+    return [INSTALLATION, *map(os.path.abspath, named), *others]
 
 
 def _inside(places: Iterable[str]) -> list[str]:

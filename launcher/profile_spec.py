@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from launcher import node_program
 from launcher.profile_params import as_arguments
 
 if TYPE_CHECKING:
@@ -38,7 +40,7 @@ class NodeSpec:
     name: str
     """Its key in the profile; of a `run` node also its name in the ROS graph."""
     run: str | None = None
-    """A Python module. Either this or `exec` is set."""
+    """A Python module, or the absolute path of a file. Either this or `exec` is set."""
     exec: tuple[str, ...] | None = None
     params: Mapping[str, Param] = field(default_factory=dict)
     """Flat: `{"limits.front": 0.5}`."""
@@ -55,13 +57,13 @@ class NodeSpec:
     warm: bool = True
     cwd: Path | None = None
     """Absolute; None: where the launcher was started."""
-    source_root: Path | None = None
-    """Folder to put first on Python's path so that `run` is found; None if Python finds it."""
 
     @property
     def command(self) -> str:
         """What is run, for people."""
-        return self.run if self.run is not None else " ".join(self.exec or ())
+        if self.run is None:
+            return " ".join(self.exec or ())
+        return f"./{os.path.basename(self.run)}" if "/" in self.run else self.run  # noqa: PTH119
 
     def ros_args(self) -> list[str]:
         """Return `--ros-args` and all that follows; empty for a command without parameters."""
@@ -73,7 +75,7 @@ class NodeSpec:
     def argv(self) -> list[str]:
         """Return the full command line, as it is started without the spawn server."""
         if self.run is not None:
-            return [sys.executable, "-u", "-m", self.run, *self.ros_args()]
+            return [sys.executable, "-u", node_program.__file__, self.run, *self.ros_args()]
         return [*(self.exec or ()), *self.ros_args()]
 
 

@@ -6,21 +6,19 @@ import contextlib
 import importlib
 import io
 import os
-import runpy
+import runpy  # noqa: F401 - ahead, for all nodes that are forked
 import signal
 import sys
-import traceback
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from launcher import node_program
 from launcher.process_marks import show_mark, show_name, show_title
 from launcher.process_table import NODE_MARK
 from launcher.process_ties import die_with_parent, leave_libraries_alone_at_exit
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from launcher.spawn_server_shared import SharedModules
     from launcher.spawn_server_warm import Preload
 
@@ -39,7 +37,7 @@ class Birth:
     name: str
     title: str
     argv: tuple[str, ...]
-    """For `module` the module and its arguments, for `exec` the command line."""
+    """For `module` the module or file with its arguments, for `exec` the command line."""
     env: dict[str, str | None]
     """What differs from the server's environment; None unsets."""
     cwd: str
@@ -56,7 +54,7 @@ class Birth:
         """Read a request; where the imports have failed, modules start cold."""
         kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
         if kind == "module" and preload.broken:
-            kind, argv = "exec", (sys.executable, "-m", *argv)
+            kind, argv = "exec", (sys.executable, node_program.__file__, *argv)
         return cls(
             kind=kind,
             name=request["name"],
@@ -164,20 +162,11 @@ def _unbuffered(fd: int) -> io.TextIOWrapper:
 
 
 def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
-    """Do what `python -m` does."""
+    """Be the program that `launcher.node_program` would start anew."""
     # Python's own defaults at start, undone by `_reset_signals`.
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    sys.argv = ["-m", *argv[1:]]
-    sys.orig_argv = [sys.executable, "-m", *argv]
-    if not getattr(sys.flags, "safe_path", False):
-        sys.path[0] = os.getcwd()  # noqa: PTH109
-    sys.path[1:1] = [
-        folder
-        for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep)
-        if folder and folder not in sys.path
-    ]
-    sys.excepthook = _report
+    node_program.prepare(argv)
     importlib.invalidate_caches()
     shared.renew(argv[0])
     _hear_signals()
@@ -188,18 +177,4 @@ def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
         # `random` reseeds itself after a fork, numpy's old global generator does not.
         sys.modules["numpy.random"].seed()
     leave_libraries_alone_at_exit()
-    runpy.run_module(argv[0], run_name="__main__", alter_sys=True)
-
-
-def _report(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """Print an uncaught exception without the frames that belong to the launcher."""
-    while trace is not None and _is_ours(trace.tb_frame.f_code.co_filename):
-        trace = trace.tb_next
-    traceback.print_exception(kind, error, trace)
-
-
-def _is_ours(file: str) -> bool:
-    return file.startswith("<frozen runpy") or os.path.dirname(file) in _OUR_FOLDERS  # noqa: PTH120
-
-
-_OUR_FOLDERS = frozenset(map(os.path.dirname, (__file__, runpy.__file__)))
+    node_program.run(argv[0])

@@ -50,7 +50,7 @@ class NodePlan:
     argv: tuple[str, ...]
     """The full command line, as it is without the spawn server."""
     module: tuple[str, ...] = ()
-    """The module and its arguments if it is to be forked warm, else empty."""
+    """The module, or file, and its arguments if it is to be forked warm, else empty."""
     env: dict[str, str | None] = field(default_factory=dict)
     """What differs from the supervisor's environment; None unsets."""
     cwd: str = "/"
@@ -99,7 +99,7 @@ class Plan:
     def packages(self) -> set[str]:
         """The packages of the modules that are to be forked warm."""
         modules = (node.module[0] for node in self.nodes if node.module)
-        return {module.rpartition(".")[0] for module in modules} - {""}
+        return {module.rpartition(".")[0] for module in modules if "/" not in module} - {""}
 
     def to_json(self) -> str:
         """Return it as one line."""
@@ -171,10 +171,6 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         env.update(_foreign_env())
     elif node.warm and not any(name.startswith(_COLD_PREFIXES) for name in node.env):
         module = argv[argv.index(node.run) :]
-    if node.source_root is not None:
-        env["PYTHONPATH"] = os.pathsep.join(
-            filter(None, (str(node.source_root), os.environ.get("PYTHONPATH")))
-        )
     ready = node.ready
     return NodePlan(
         name=node.name,

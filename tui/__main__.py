@@ -1,7 +1,12 @@
 """`python -m tui` is `deck`."""
 
+import os
 import sys
 
-from tui.cli import main
+# `-m` has put the current folder first, and what lies there is no part of Deck.
+_HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # noqa: PTH100, PTH120
+sys.path[:] = [_HERE, *(place for place in sys.path if place not in ("", os.getcwd(), _HERE))]  # noqa: PTH109
+
+from tui.cli import main  # noqa: E402
 
 sys.exit(main())

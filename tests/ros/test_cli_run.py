@@ -244,7 +244,7 @@ def test_parameters_reach_the_node_with_their_types(warm: bool, tmp_path: Path) 
         PARAMETERS.replace("NAMES", repr(names)), encoding="utf-8"
     )
     params = dict(VALUES, mixed=[1, 2.5])
-    node = {"run": "tell_parameters", "params": params, "warm": warm, "ready": {"node": "x"}}
+    node = {"run": "./tell_parameters.py", "params": params, "warm": warm, "ready": {"node": "x"}}
     written(tmp_path, json.dumps({"nodes": {"teller": node}}, ensure_ascii=False))
     run = deck("run", str(tmp_path / "lesson.yaml"))
     line = run.said("[teller] teller {")

@@ -189,7 +189,7 @@ async def test_a_start_that_a_spawn_server_dies_over_is_not_lost(
     start: Launch, tmp_path: Path
 ) -> None:
     (tmp_path / "plain_module.py").write_text("print('running'); import time; time.sleep(1000)")
-    client = await start({"node": {"run": "plain_module", "ready": {"topic": "/never"}}})
+    client = await start({"node": {"run": "./plain_module.py", "ready": {"topic": "/never"}}})
     # It is still importing what warm nodes need; the request waits.
     kill(await spawn_server_of(client.session.run_id), signal.SIGKILL)
     await said(client, "node", "running")

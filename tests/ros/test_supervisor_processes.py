@@ -141,7 +141,7 @@ async def test_a_warm_node_that_had_threads_ends_with_its_own_code(
         "print('last word', end='')\n"
         "raise SystemExit(3)\n"
     )
-    client = await start({"node": {"run": "threads", "ready": {"node": "x"}}})
+    client = await start({"node": {"run": "./threads.py", "ready": {"node": "x"}}})
     status = await until_state(client, "node", NodeState.EXITED, NodeState.FAILED)
     assert (status.exit_code, status.signal) == (3, None)
     assert "last word" in [line.text for line in await client.history("node", 5)]
@@ -160,20 +160,20 @@ async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(
     assert "Traceback" not in text
 
 
-async def test_a_module_of_the_users_own_is_interrupted_as_python_has_it(
+async def test_a_file_of_the_users_own_is_interrupted_as_python_has_it(
     start: Launch, tmp_path: Path
 ) -> None:
     (tmp_path / "mine.py").write_text(
         "import signal\n"
         "print('python', signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n"
     )
-    client = await start({"theirs": {"run": "nodes.hello"}, "mine": {"run": "mine"}})
+    client = await start({"theirs": {"run": "nodes.hello"}, "mine": {"run": "./mine.py"}})
     assert await said(client, "mine", "python") == "True"
 
 
 async def test_a_warm_node_collects_its_garbage(start: Launch, tmp_path: Path) -> None:
     (tmp_path / "garbage.py").write_text("import gc; print('collects', gc.isenabled())\n")
-    client = await start({"node": {"run": "garbage", "ready": {"node": "x"}}})
+    client = await start({"node": {"run": "./garbage.py", "ready": {"node": "x"}}})
     assert await said(client, "node", "collects") == "True"
 
 

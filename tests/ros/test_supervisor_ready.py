@@ -62,9 +62,9 @@ if __name__ == "__main__":
 
 
 def module(folder: Path, name: str, text: str) -> dict[str, Any]:
-    """Write a module beside the profile, return a node that runs it."""
+    """Write a file beside the profile, return a node that runs it."""
     (folder / f"{name}.py").write_text(textwrap.dedent(text), encoding="utf-8")
-    return {"run": name}
+    return {"run": f"./{name}.py"}
 
 
 def probes(client: SupervisorClient) -> list[int]:
@@ -117,7 +117,7 @@ async def test_a_warm_node_is_a_process_of_its_own_in_every_respect(
         pids.append(pid)
         process = read_process(pid)
         assert process is not None
-        assert command_line(pid) == f"deck: {name} (talker_module)"
+        assert command_line(pid) == f"deck: {name} (./talker_module.py)"
         assert (process.name, process.parent) == (name, client.session.supervisor_pid)
         assert (process.group, process.session) == (pid, pid)
         marks = read_marks(pid) or {}
@@ -180,7 +180,7 @@ async def test_a_cold_node_is_the_same_but_started_as_any_program(
     for name in client.nodes:
         status = await until_state(client, name, NodeState.READY)
         assert status.pid is not None
-        assert "-m talker_module" in command_line(status.pid)
+        assert "/launcher/node_program.py " in command_line(status.pid)
 
 
 async def test_a_node_that_is_late_says_so_and_becomes_ready_all_the_same(

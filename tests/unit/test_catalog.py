@@ -83,16 +83,6 @@ def test_further_files_and_folders_are_listed(tmp_path: Path) -> None:
     assert entries["one"].nodes == ("b",)
 
 
-def test_a_node_beside_the_profile_is_found(tmp_path: Path) -> None:
-    folder = tmp_path / "robot"
-    folder.mkdir()
-    (folder / "my_node.py").write_text("raise SystemExit('never imported')")
-    written(folder, "nodes: {a: {run: my_node}}", "robot.yaml")
-    from launcher.profile import load_profile
-
-    assert load_profile(folder / "robot.yaml").nodes["a"].source_root == folder
-
-
 def test_a_link_to_itself_is_listed_with_what_is_wrong(tmp_path: Path) -> None:
     (tmp_path / "profiles").mkdir()
     link = tmp_path / "profiles" / "loop.yaml"

@@ -124,7 +124,10 @@ BAD = {
     ),
     "a file name where a module belongs": (
         "nodes: {a: {run: nodes/hello.py}}",
-        "1:18: nodes.a.run: 'nodes/hello.py' is no Python module; write it as nodes.hello",
+        (
+            "1:18: nodes.a.run: 'nodes/hello.py' is no Python module; write it as nodes.hello,"
+            " and a file of your own as ./my_node.py"
+        ),
     ),
     "both run and exec": (
         "nodes:\n  a:\n    run: nodes.hello\n    exec: [x]",

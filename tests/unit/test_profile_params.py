@@ -11,6 +11,7 @@ import yaml
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from launcher import node_program
 from launcher.profile_params import NAME, flatten, written
 from launcher.profile_tree import Branch, Entry, Place, Problems, Scalar
 from launcher.profile_yaml import EXPONENT, read_value
@@ -138,7 +139,7 @@ def test_a_run_node_is_named_remapped_and_given_its_parameters(tmp_path: Path) -
         tmp_path, "nodes: {a: {run: nodes.hello, remap: {/drive: /safe}, params: {rate: 2.0}}}"
     )
     argv = profile.nodes["a"].argv()
-    assert argv[1:4] == ["-u", "-m", "nodes.hello"]
+    assert argv[1:4] == ["-u", node_program.__file__, "nodes.hello"]
     assert argv[4:] == [
         *("--ros-args", "-r", "__node:=a", "-r", "/drive:=/safe"),
         *("-p", "rate:=2.0"),

@@ -6,11 +6,11 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 from dataclasses import dataclass, field
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
+from tui.child_python import python
 from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _
 
@@ -168,7 +168,7 @@ def _probe() -> dict[str, Any]:
     environ.pop("ROS_LOCALHOST_ONLY", None)
     try:
         done = subprocess.run(
-            [sys.executable, "-c", PROBE, *MESSAGES],
+            python(PROBE, *MESSAGES),
             capture_output=True,
             timeout=PROBE_WITHIN_S,
             env=environ,

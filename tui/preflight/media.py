@@ -9,11 +9,11 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.profile_devices import variable
+from tui.child_python import python
 from tui.doctor.finding import Level
 from tui.doctor.serial_ports import permission_mend
 from tui.i18n import _
@@ -122,7 +122,7 @@ def _run(program: str, *arguments: str) -> str:
     """Return what a small program prints, nothing if it fails or takes too long."""
     try:
         done = subprocess.run(
-            [sys.executable, "-c", program, *arguments],
+            python(program, *arguments),
             capture_output=True,
             text=True,
             errors="replace",
