@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.discovery import hurry_discovery
+from launcher.discovery import set_discovery
 from launcher.profile import load_profile
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ LONGEST_S = 60.0
 def environment(domain: int = DOMAIN) -> dict[str, str]:
     """The environment of every process here."""
     env = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
-    hurry_discovery(env, "localhost")
+    set_discovery(env, "localhost")
     return {**env, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.processes import cpu_s, pss_mb
-from launcher.discovery import hurry_discovery
+from launcher.discovery import set_discovery
 from launcher.process_table import processes
 from launcher.profile import load_profile
 from tests.e2e.terminal import Terminal
@@ -76,7 +76,7 @@ def watch(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
     A new one each time: who has seen nodes of the turn before may still believe in them.
     """
     quick = environment()
-    hurry_discovery(quick, "localhost")
+    set_discovery(quick, "localhost")
     process = subprocess.Popen(
         [sys.executable, "-m", "bench.graph_watch", *names],
         env=quick,

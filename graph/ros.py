@@ -23,9 +23,11 @@ ONLY_LISTENING = (f"/{NAME_PREFIX}observer_", f"/{NAME_PREFIX}recorder_")
 DOMAINS = range(233)
 """Fast DDS ends the whole process at a greater one: its ports would be no ports any more."""
 FAST_DDS = Path(__file__).with_name("fastdds.xml")
-"""Settings of Fast DDS for all of Deck's processes: found in tenths of a second, not in three."""
+"""Settings of Fast DDS for all of Deck's processes: found in tenths of a second, by no network."""
 FAST_DDS_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 """The first is the one that Jazzy's Fast DDS reads first."""
+ONLY_THESE = "SKIP_DEFAULT_XML_FILE"
+"""Keeps Fast DDS from reading DEFAULT_FASTRTPS_PROFILES.xml in the current folder as well."""
 LOCALHOST_ONLY = "ROS_LOCALHOST_ONLY"
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 PEERS = "ROS_STATIC_PEERS"
@@ -100,7 +102,9 @@ def announcing(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
     ours = str(FAST_DDS)
     if any(os.environ.get(name, ours) not in ("", ours) for name in FAST_DDS_VARIABLES):
         return {}
-    return dict.fromkeys(FAST_DDS_VARIABLES, ours if discovery == "localhost" else None)
+    if discovery != "localhost":
+        return dict.fromkeys((*FAST_DDS_VARIABLES, ONLY_THESE))
+    return {**dict.fromkeys(FAST_DDS_VARIABLES, ours), ONLY_THESE: "1"}
 
 
 @contextmanager

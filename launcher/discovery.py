@@ -1,4 +1,8 @@
-"""Nodes on one machine find each other in a fraction of a second, not in up to three.
+"""Who hears a session's nodes: on `localhost` no network, and they find each other at once.
+
+ROS's own range LOCALHOST only keeps nodes from looking for others: their sockets are open to every
+network, and whoever names the machine as his peer is let in. So Deck's settings of Fast DDS bind
+them to the loopback interface.
 
 A Fast DDS participant announces itself before it listens, so the answers of those that are there
 already are lost, and it knows of each only after that one's next regular announcement: every 3 s
@@ -11,19 +15,28 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from launcher.words import say
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, MutableMapping
+
+    from launcher.words import Words
 
 PROFILES = Path(__file__).resolve().parents[1] / "graph" / "fastdds.xml"
 
 VARIABLES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
 """Today's name and the one before; whichever the user has set is left alone."""
 
+ONLY_THESE = "SKIP_DEFAULT_XML_FILE"
+"""Keeps Fast DDS from reading DEFAULT_FASTRTPS_PROFILES.xml in the current folder as well."""
 
-def quick_discovery(
+RMW, FAST_RTPS = "RMW_IMPLEMENTATION", ("", "rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp")
+
+
+def settings_of_discovery(
     environ: Mapping[str, str], discovery: str | tuple[str, ...]
 ) -> dict[str, str | None]:
-    """Return the variables that differ for who is to be found, and to find others, quickly.
+    """Return the variables that differ for who is to be found quickly, and from here alone.
 
     Args:
         environ: what is set already, perhaps by this function
@@ -32,15 +45,42 @@ def quick_discovery(
     Returns:
         Names and values; None unsets.
     """
-    ours = str(PROFILES)
-    if any(environ.get(name, ours) not in ("", ours) for name in VARIABLES):
+    if _chosen_by_user(environ):
         return {}
-    return dict.fromkeys(VARIABLES, ours if discovery == "localhost" else None)
+    if discovery != "localhost":
+        return dict.fromkeys((*VARIABLES, ONLY_THESE))
+    return {**dict.fromkeys(VARIABLES, str(PROFILES)), ONLY_THESE: "1"}
 
 
-def hurry_discovery(environ: MutableMapping[str, str], discovery: str | tuple[str, ...]) -> None:
-    """Set in `environ` what `quick_discovery` says; Fast DDS reads it at a process's first node."""
-    for name, value in quick_discovery(environ, discovery).items():
+def why_open(environ: Mapping[str, str], discovery: str | tuple[str, ...]) -> Words | None:
+    """Say what keeps Deck from closing a local session to the network; None if nothing does."""
+    if discovery != "localhost":
+        return None
+    name = _chosen_by_user(environ)
+    if name:
+        return say(
+            "{name} is set, so Deck's own settings of Fast DDS are not in use: it cannot promise"
+            " that nobody on the network hears or drives this robot",
+            name=name,
+        )
+    if environ.get(RMW, "") not in FAST_RTPS:
+        return say(
+            "{name}={value}: only with rmw_fastrtps_cpp can Deck promise that nobody on the"
+            " network hears or drives this robot",
+            name=RMW,
+            value=environ[RMW],
+        )
+    return None
+
+
+def _chosen_by_user(environ: Mapping[str, str]) -> str:
+    ours = str(PROFILES)
+    return next((name for name in VARIABLES if environ.get(name, ours) not in ("", ours)), "")
+
+
+def set_discovery(environ: MutableMapping[str, str], discovery: str | tuple[str, ...]) -> None:
+    """Set what `settings_of_discovery` says; Fast DDS reads it at a process's first node."""
+    for name, value in settings_of_discovery(environ, discovery).items():
         if value is None:
             environ.pop(name, None)
         else:

@@ -12,7 +12,7 @@ import sys
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from launcher.discovery import quick_discovery
+from launcher.discovery import settings_of_discovery
 from launcher.domain import ros_environment
 from launcher.readiness import Condition
 
@@ -152,7 +152,7 @@ def _common_env(profile: Profile, node_lang: str) -> dict[str, str | None]:
         for name in {*wanted, *os.environ}
         if wanted.get(name) != os.environ.get(name)
     }
-    env.update(quick_discovery(os.environ, profile.discovery))
+    env.update(settings_of_discovery(os.environ, profile.discovery))
     # One format of log lines, one that can be read back.
     env["RCUTILS_CONSOLE_OUTPUT_FORMAT"] = None
     env["RCUTILS_COLORIZED_OUTPUT"] = "0"

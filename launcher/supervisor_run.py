@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from launcher.control_protocol import MAX_MESSAGE_BYTES, encode, pack_session, pack_text
 from launcher.control_server import ControlServer
+from launcher.discovery import why_open
 from launcher.logs_book import DECK, LogBook
 from launcher.logs_files import LogFiles
 from launcher.logs_folder import make_log_folder, prune_runs
@@ -169,6 +170,9 @@ class Supervisor:
         scan = ProcessScan(Members(self.info.run_id))
         launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._book)
         self._session = Session(plan, launcher, self._book, self._status_changed)
+        open_because = why_open(os.environ, plan.discovery)
+        if open_because:
+            self._book.say(DECK, Severity.WARN, open_because)
         self._end = asyncio.Event()
         self._hurry = asyncio.Event()
         self._reason = ""

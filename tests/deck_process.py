@@ -16,12 +16,14 @@ from tests.waiting import wait_until
 
 
 class DeckProcess:
-    """`deck ARGUMENTS` without a terminal."""
+    """`deck ARGUMENTS` without a terminal; `within` is what its command begins with."""
 
-    def __init__(self, *arguments: str, cwd: Path | None = None) -> None:
+    def __init__(
+        self, *arguments: str, cwd: Path | None = None, within: tuple[str, ...] = ()
+    ) -> None:
         """Start it."""
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "tui", *arguments],
+            [*within, sys.executable, "-m", "tui", *arguments],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -112,9 +112,9 @@ class LivePad:
         if self._replay is not None:
             return self._replay
         from graph.observer import Observer
-        from launcher.discovery import hurry_discovery
+        from launcher.discovery import set_discovery
 
-        hurry_discovery(os.environ, session.discovery)
+        set_discovery(os.environ, session.discovery)
         return Observer(session.domain, session.discovery)
 
 

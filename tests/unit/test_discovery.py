@@ -7,13 +7,13 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from launcher.discovery import VARIABLES, hurry_discovery, quick_discovery
+from launcher.discovery import ONLY_THESE, VARIABLES, set_discovery, settings_of_discovery, why_open
 
 
 def test_on_one_machine_both_names_lead_to_the_file() -> None:
-    chosen = quick_discovery({}, "localhost")
-    assert set(chosen) == set(VARIABLES)
-    (path,) = set(chosen.values())
+    chosen = settings_of_discovery({}, "localhost")
+    assert set(chosen) == {*VARIABLES, ONLY_THESE}
+    (path,) = {chosen[name] for name in VARIABLES}
     assert path is not None
     period = ET.parse(Path(path)).getroot().findtext(".//{*}leaseAnnouncement/{*}nanosec")
     assert period == "200000000"
@@ -22,12 +22,25 @@ def test_on_one_machine_both_names_lead_to_the_file() -> None:
 @pytest.mark.parametrize("discovery", ["subnet", ("192.168.1.5",)])
 def test_a_network_is_not_flooded(discovery: str | tuple[str, ...]) -> None:
     environ = {"HOME": "/home/me"}
-    hurry_discovery(environ, "localhost")
-    assert set(environ) == {"HOME", *VARIABLES}
-    hurry_discovery(environ, discovery)
+    set_discovery(environ, "localhost")
+    assert set(environ) == {"HOME", *VARIABLES, ONLY_THESE}
+    set_discovery(environ, discovery)
     assert environ == {"HOME": "/home/me"}
 
 
 @pytest.mark.parametrize("name", VARIABLES)
 def test_a_users_own_profiles_stay(name: str) -> None:
-    assert quick_discovery({name: "/mine.xml"}, "localhost") == {}
+    assert settings_of_discovery({name: "/mine.xml"}, "localhost") == {}
+    words = why_open({name: "/mine.xml"}, "localhost")
+    assert words is not None
+    assert words.startswith(f"{name} is set")
+    assert why_open({name: "/mine.xml"}, "subnet") is None
+
+
+def test_another_middleware_is_told_and_decks_own_settings_are_not() -> None:
+    ours = {name: value or "" for name, value in settings_of_discovery({}, "localhost").items()}
+    assert why_open(ours, "localhost") is None
+    assert why_open({**ours, "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}, "localhost") is None
+    words = why_open({**ours, "RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, "localhost")
+    assert words is not None
+    assert "rmw_cyclonedds_cpp" in words

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, announcing
+from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, ONLY_THESE, announcing
 
 
 @pytest.fixture(autouse=True)
@@ -14,7 +14,8 @@ def _nothing_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_on_one_machine_it_is_hurried() -> None:
-    assert announcing("localhost") == dict.fromkeys(FAST_DDS_VARIABLES, str(FAST_DDS))
+    ours = dict.fromkeys(FAST_DDS_VARIABLES, str(FAST_DDS))
+    assert announcing("localhost") == {**ours, ONLY_THESE: "1"}
 
 
 @pytest.mark.parametrize("discovery", ["subnet", ("192.0.2.7",)])
@@ -22,7 +23,7 @@ def test_on_a_network_it_is_not_even_under_a_program_that_is(
     discovery: str | tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(FAST_DDS_VARIABLES[0], str(FAST_DDS))
-    assert announcing(discovery) == dict.fromkeys(FAST_DDS_VARIABLES)
+    assert announcing(discovery) == dict.fromkeys((*FAST_DDS_VARIABLES, ONLY_THESE))
 
 
 def test_what_the_user_has_chosen_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:

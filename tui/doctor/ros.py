@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
+from launcher.discovery import set_discovery
 from tui.child_python import python
 from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _
@@ -165,6 +166,7 @@ def _wheel(rclpy: str) -> str:
 
 def _probe() -> dict[str, Any]:
     environ = dict(os.environ, ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
+    set_discovery(environ, "localhost")
     environ.pop("ROS_LOCALHOST_ONLY", None)
     try:
         done = subprocess.run(

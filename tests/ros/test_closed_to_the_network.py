@@ -1,0 +1,159 @@
+"""Who is in the network, and on no account of this machine, neither sees nor drives the robot."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.deck_process import DeckProcess
+from tests.namespaces import Machine
+from tests.waiting import wait_until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from typing_extensions import Self
+
+ROBOT, NEIGHBOUR = "10.99.0.1", "10.99.0.2"
+WHEELS = "electronic_differential"
+PLANTED = """<?xml version="1.0"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="planted" is_default_profile="true"/>
+</profiles>
+"""
+PORTS_OF_ONE = 3
+JOINS = 3
+"""How often somebody finds the open robot while he has been looking for the closed one."""
+
+
+@pytest.fixture
+def robot() -> Iterator[Machine]:
+    """The machine that a robot runs on."""
+    with Machine(ROBOT) as machine:
+        yield machine
+
+
+@pytest.fixture
+def neighbour(robot: Machine) -> Iterator[Machine]:
+    """Another, with a cable to the robot's."""
+    with Machine(NEIGHBOUR, beside=robot) as machine:
+        yield machine
+
+
+class Seeing:
+    """A stranger on a machine, and what he has seen."""
+
+    def __init__(self, machine: Machine, domain: int, *words: str, **environ: str) -> None:
+        settings = {**os.environ, "ROS_DOMAIN_ID": str(domain), **environ}
+        command = [*machine.inside(), sys.executable, "-m", "tests.ros.stranger", *words]
+        self._process = subprocess.Popen(
+            command, env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
+        )
+        self.seen: dict[str, Any] = {"nodes": [], "fastest": 0.0}
+        self.looks = 0
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.kill()
+        self._process.wait()
+        self._reader.join()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        with self._process.stdout as stream:
+            for line in stream:
+                self.seen = json.loads(line)
+                self.looks += 1
+
+
+def intruder(machine: Machine, domain: int) -> Seeing:
+    """Somebody who knows the robot's address and its domain, and means to drive it."""
+    wide = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": ROBOT}
+    return Seeing(machine, domain, "drive", **wide)
+
+
+def profile(folder: Path, discovery: str) -> str:
+    """Write a robot that obeys /drive at once."""
+    path = folder / f"{discovery}.yaml"
+    nodes = {WHEELS: {"run": f"nodes.{WHEELS}"}}
+    path.write_text(json.dumps({"title": {"en": "T"}, "discovery": discovery, "nodes": nodes}))
+    return str(path)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(180)
+def test_the_network_neither_sees_nor_drives_a_local_robot(
+    robot: Machine, neighbour: Machine, ros_domain: int, other_domain: int, tmp_path: Path
+) -> None:
+    with ExitStack() as stack:
+
+        def run(discovery: str, domain: int) -> Seeing:
+            words = ("run", profile(tmp_path, discovery), "--domain", str(domain))
+            session = DeckProcess(*words, within=robot.inside())
+            stack.callback(session.close)
+            # With the plainest settings, as whoever starts a node by hand has them.
+            friend = stack.enter_context(Seeing(robot, domain))
+            wait_until(lambda: WHEELS in friend.seen["nodes"], f"the robot on {discovery}", 60)
+            return friend
+
+        friend = run("localhost", ros_domain)
+        thief = stack.enter_context(intruder(neighbour, ros_domain))
+        wait_until(lambda: thief.looks, "a first look around", 60)
+        open_friend = run("subnet", other_domain)
+        for _ in range(JOINS):
+            with intruder(neighbour, other_domain) as guest:
+                wait_until(lambda: WHEELS in guest.seen["nodes"], "to see the open one", 60)
+        with intruder(neighbour, other_domain):
+            wait_until(lambda: open_friend.seen["fastest"] > 1, "to drive the open one", 60)
+        assert thief.seen == {"nodes": [], "fastest": 0.0}
+        assert friend.seen["fastest"] == 0
+        with Seeing(robot, ros_domain, "drive"):
+            wait_until(lambda: friend.seen["fastest"] > 1, "to drive from this machine", 60)
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("program", ["run", "record"])
+def test_no_process_of_deck_listens_to_a_cable(
+    robot: Machine, ros_domain: int, tmp_path: Path, program: str
+) -> None:
+    # Fast DDS reads this one of the current folder, too.
+    (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").write_text(PLANTED)
+    words = {"run": (profile(tmp_path, "localhost"),), "record": ("-o", str(tmp_path / "bag"))}
+    session = DeckProcess(
+        program, *words[program], "--domain", str(ros_domain), within=robot.inside(tmp_path)
+    )
+    try:
+        # The first that is in the domain, nodes and the probe, and what they have opened by then.
+        ports = wait_until(lambda: _of_a_participant(robot.listening()), "open ports", 60)
+        assert {port.partition(":")[0] for port in ports} == {"127.0.0.1"}
+    finally:
+        session.close()
+
+
+def _of_a_participant(ports: list[str]) -> list[str]:
+    return ports if len(ports) >= PORTS_OF_ONE else []
+
+
+def test_settings_of_the_users_own_are_told_of(
+    ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = tmp_path / "own.xml"
+    own.write_text(PLANTED)
+    monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(own))
+    session = DeckProcess("run", profile(tmp_path, "localhost"), "--domain", str(ros_domain))
+    try:
+        session.said("FASTRTPS_DEFAULT_PROFILES_FILE is set, so Deck's own settings", 60)
+    finally:
+        session.close()
