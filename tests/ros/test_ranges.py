@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
 from robot.limits import PICO_RAD_S, RIM_M_S, wheel_limits
@@ -197,6 +198,18 @@ def test_the_differential_refuses_stamps_as_the_gate_does(
         peer.say("/drive", stamped(drive(0.1), 0.0))
         wait_until(lambda: turning(heard), "a fresh one")
         assert fastest(heard) < 0.15 / RADIUS_M
+
+
+def test_the_simulated_base_refuses_what_is_beyond_the_limits(ros_domain: int) -> None:
+    params: dict[str, object] = {"simulate": "always"}
+    with Peer(ros_domain) as peer, NodeProcess("nodes.drive_to_point", ros_domain, params=params):
+        heard = peer.hear("/odom", Odometry)
+        for speed, steering in ((1e30, 0.0), (0.8, 0.0), (0.2, 1.2), (math.nan, 0.0)):
+            peer.say("/drive", drive(0.2))
+            wait_until(lambda: heard and heard[-1].twist.twist.linear.x > 0, "motion")
+            peer.say("/drive", drive(speed, steering))
+            wait_until(lambda: heard[-1].twist.twist.linear.x == 0, "a stand")
+        assert max(one.twist.twist.linear.x for one in heard) == pytest.approx(0.2)
 
 
 # ---------------------------------------------------------------- the chassis
