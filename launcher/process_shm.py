@@ -12,6 +12,7 @@ import contextlib
 import fcntl
 import os
 import re
+import stat
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +25,10 @@ NAME = r"fastrtps_(?:[0-9a-f]{16}|port\d+)"
 """What the files of segments and ports are called, as a regular expression."""
 _LOCK = re.compile(f"({NAME})_el")
 _PORT = "fastrtps_port"
+STATES = (b"", b"\0\0\0\0", b"\1\0\0\0", b"\2\0\0\0", b"\3\0\0\0")
+"""The first word of such a file, by which boost.interprocess tells how far its making is:
+uninitialized, initializing, initialized, corrupted."""
+_READ = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
 _ABANDONED_S = 10.0
 """Age at which a lock that nobody holds is not just being taken."""
 
@@ -52,13 +57,23 @@ def sweep(segments: Iterable[str], folder: Path = SHARED_MEMORY) -> list[str]:
     return [name for name in segments if _remove(folder / name)]
 
 
+def is_users_alone(descriptor: int) -> bool:
+    """Whether an open file is a plain one of this user's, and has no other name."""
+    found = os.fstat(descriptor)
+    return stat.S_ISREG(found.st_mode) and found.st_uid == os.geteuid() and found.st_nlink == 1
+
+
 def _remove(segment: Path) -> bool:
     lock = segment.with_name(f"{segment.name}_el")
     try:
-        descriptor = os.open(lock, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
+        descriptor = os.open(lock, _READ)
     except OSError:
         return False
     try:
+        if not (is_users_alone(descriptor) and os.fstat(descriptor).st_size == 0):
+            return False
+        if not _is_of_fast_dds(segment):
+            return False
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         if not os.path.samestat(os.fstat(descriptor), lock.lstat()):
             return False  # Somebody has made it anew meanwhile.
@@ -69,6 +84,18 @@ def _remove(segment: Path) -> bool:
     finally:
         os.close(descriptor)
     return True
+
+
+def _is_of_fast_dds(segment: Path) -> bool:
+    """Whether a segment or port is the user's and holds what its name says, or is gone."""
+    try:
+        descriptor = os.open(segment, _READ)
+    except FileNotFoundError:
+        return True
+    try:
+        return is_users_alone(descriptor) and os.read(descriptor, 4) in STATES
+    finally:
+        os.close(descriptor)
 
 
 def sweep_abandoned(folder: Path = SHARED_MEMORY) -> list[str]:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.process_shm import NAME, SHARED_MEMORY, age_s, names
+from launcher.process_shm import NAME, SHARED_MEMORY, STATES, age_s, is_users_alone, names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,9 +23,8 @@ if TYPE_CHECKING:
 _FILE = re.compile(NAME)
 UNFINISHED_S = 3.0
 """Age at which a file that is still being made has no maker any more: it takes milliseconds."""
-_BEING_MADE = (b"", b"\0\0\0\0", b"\1\0\0\0")
-"""The first word of such a file. Boost calls the values uninitialized and initializing."""
-_CORRUPTED = b"\3\0\0\0"
+_BEING_MADE = STATES[:3]
+_CORRUPTED = STATES[4]
 """Whoever waits for this file gives up, and makes a new one."""
 
 
@@ -36,7 +35,7 @@ class Discarded:
     removed: tuple[str, ...]
     """Names of files."""
     kept: tuple[str, ...]
-    """Those that belong to another user."""
+    """Those that belong to another user, or have another name as well."""
 
 
 def unfinished(folder: Path = SHARED_MEMORY) -> Iterator[Path]:
@@ -62,6 +61,8 @@ def _discard(path: Path) -> bool:
     except OSError as problem:
         return not isinstance(problem, PermissionError)
     try:
+        if not is_users_alone(descriptor):
+            return False
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         if os.path.samestat(os.fstat(descriptor), path.lstat()):
             # First of all: whoever is let go makes a new file of this name at once.

@@ -64,6 +64,23 @@ def test_what_belongs_to_another_user_stays(tmp_path: Path, of_another_user: Pat
     assert of_another_user.exists()
 
 
+def test_the_superuser_removes_nothing_of_other_users(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing but the owner keeps him from it."""
+    path = made(tmp_path / "fastrtps_port7002", b"")
+    monkeypatch.setattr(os, "geteuid", lambda: path.stat().st_uid + 1)
+    assert discard_unfinished(tmp_path) == Discarded((), ("fastrtps_port7002",))
+    assert path.read_bytes() == b""
+
+
+def test_what_has_another_name_as_well_is_somebodys_and_stays(tmp_path: Path) -> None:
+    precious = made(tmp_path / "precious", b"")
+    (tmp_path / "fastrtps_port7002").hardlink_to(precious)
+    assert discard_unfinished(tmp_path) == Discarded((), ("fastrtps_port7002",))
+    assert precious.read_bytes() == b""
+
+
 def test_where_there_is_no_shared_memory_nothing_is_unfinished(tmp_path: Path) -> None:
     assert discard_unfinished(tmp_path / "none") == Discarded((), ())
 
