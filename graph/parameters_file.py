@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from graph.words import say
@@ -13,7 +14,6 @@ from graph.yaml_scalars import quoted, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
-    from pathlib import Path
 
     from graph.data import ParameterRow, Value
 
@@ -60,14 +60,24 @@ def load(text: str, node: str) -> dict[str, Value]:
     return values
 
 
-def save_file(path: Path, node: str, parameters: Iterable[ParameterRow]) -> None:
-    """Write a file that is either the old one or whole. Raises OSError."""
+def save_file(
+    path: Path, node: str, parameters: Iterable[ParameterRow], *, replace: bool = False
+) -> None:
+    """Write a file that is either the old one or whole.
+
+    Raises FileExistsError unless `replace`, and any other OSError of the file system.
+    """
+    path = Path(os.path.realpath(path)) if replace else path
     beside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        beside.write_text(dump(node, parameters), encoding="utf-8")
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
+    with beside.open("x", encoding="utf-8") as file:
+        try:
+            file.write(dump(node, parameters))
+            file.flush()
+            if not replace:
+                path.touch(exist_ok=False)
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
 
 
 def load_file(path: Path, node: str) -> dict[str, Value]:

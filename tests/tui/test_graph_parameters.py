@@ -124,6 +124,20 @@ async def test_they_are_saved_and_loaded_as_yaml(room: Room, tmp_path: Path) -> 
     assert "frame_id" not in values
 
 
+async def test_a_file_that_is_there_is_written_over_only_when_enter_is_pressed_again(
+    room: Room, tmp_path: Path
+) -> None:
+    path = tmp_path / "notes.yaml"
+    path.write_text("precious")
+    await room.press("p", "w")
+    await typed(room, str(path))
+    await room.wait_for("Enter again overwrites it")
+    assert path.read_text() == "precious"
+    await room.press("enter")
+    await room.wait(lambda: room.app.screen is room.screen)
+    assert "rate: 1.0" in path.read_text()
+
+
 async def test_a_file_that_is_wrong_is_told_with_its_line(
     room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

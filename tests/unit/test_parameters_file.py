@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from pathlib import Path
 from typing import Any
 
@@ -156,10 +157,31 @@ def test_any_text_is_read_or_refused_in_words(text: str) -> None:
 
 def test_a_file_is_written_whole_and_read(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
-    path.write_text("old")
     save_file(path, "/robot", rows({"имя": ("string", "Ёж")}))
     assert load_file(path, "/robot") == {"имя": "Ёж"}
     assert [each.name for each in tmp_path.iterdir()] == ["robot.yaml"]
+
+
+def test_a_file_that_is_there_is_replaced_only_on_demand(tmp_path: Path) -> None:
+    path, link = tmp_path / "robot.yaml", tmp_path / "link.yaml"
+    path.write_text("old")
+    link.symlink_to(path)
+    for each in (path, link):
+        with pytest.raises(FileExistsError):
+            save_file(each, "/robot", ())
+    assert path.read_text() == "old"
+    save_file(link, "/robot", rows({"имя": ("string", "Ёж")}), replace=True)
+    assert load_file(path, "/robot") == {"имя": "Ёж"}
+    assert link.is_symlink()
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["link.yaml", "robot.yaml"]
+
+
+def test_what_lies_beside_a_file_is_not_taken_for_its_draft(tmp_path: Path) -> None:
+    beside = tmp_path / f".robot.yaml.{os.getpid()}"
+    beside.write_text("mine")
+    with contextlib.suppress(OSError):
+        save_file(tmp_path / "robot.yaml", "/robot", ())
+    assert beside.read_text() == "mine"
 
 
 @pytest.mark.parametrize(

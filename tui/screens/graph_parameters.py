@@ -44,7 +44,7 @@ def save(app: DeckApp, table: GraphParameters) -> None:
             app.notify(words, markup=False)
 
     words = _("As `ros2 param dump` writes it, and `ros2 run --params-file` reads it.")
-    take = partial(_save, table.node, table.rows)
+    take = _Saving(table.node, table.rows)
     path = f"{table.node.strip('/').replace('/', '__')}.yaml"
     app.push_screen(PathDialog(_("Save parameters"), words, path, take), tell)
 
@@ -85,14 +85,25 @@ async def _set(app: DeckApp, table: GraphParameters, values: Mapping[str, Value]
     return "; ".join(reasons[:SHOWN]) + (_(" and {n} more").format(n=more) if more > 0 else "")
 
 
-async def _save(node: str, rows: tuple[ParameterRow, ...], path: str) -> str:
-    from graph.parameters_file import save_file
+class _Saving:
+    """Writes a file, and one that is there only when its name is given once more."""
 
-    try:
-        await asyncio.to_thread(save_file, _full(path), node, rows)
-    except OSError as error:
-        return _not_opened(path, error)
-    return ""
+    def __init__(self, node: str, rows: tuple[ParameterRow, ...]) -> None:
+        self._node, self._rows = node, rows
+        self._refused = ""
+
+    async def __call__(self, path: str) -> str:
+        from graph.parameters_file import save_file
+
+        replace = path == self._refused
+        try:
+            await asyncio.to_thread(save_file, _full(path), self._node, self._rows, replace=replace)
+        except FileExistsError:
+            self._refused = path
+            return _("There is such a file: Enter again overwrites it.")
+        except OSError as error:
+            return _not_opened(path, error)
+        return ""
 
 
 async def _load(app: DeckApp, table: GraphParameters, path: str) -> str:
