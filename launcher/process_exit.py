@@ -7,6 +7,8 @@ import os
 import signal
 from dataclasses import dataclass
 
+from launcher.process_table import read_process
+
 
 @dataclass(frozen=True)
 class Exit:
@@ -38,14 +40,18 @@ def signal_name(number: int) -> str:
 
 
 class Reaper:
-    """Collects every child that ends, the adopted orphans too, and tells who waits for one."""
+    """Collects every child that ends, the adopted orphans too, and tells who waits for one.
+
+    A child is its number and its start: the number alone may be another's by the time it is
+    asked for.
+    """
 
     _FORGOTTEN = 256
     """Ends kept for children that nobody has asked for yet."""
 
     def __init__(self) -> None:
-        self._awaited: dict[int, asyncio.Future[Exit]] = {}
-        self._early: dict[int, Exit] = {}
+        self._awaited: dict[tuple[int, int], asyncio.Future[Exit]] = {}
+        self._early: dict[tuple[int, int], Exit] = {}
 
     def install(self, loop: asyncio.AbstractEventLoop) -> None:
         """Collect from now on."""
@@ -56,26 +62,31 @@ class Reaper:
         """Collect every child that has ended."""
         while True:
             try:
-                pid, status = os.waitpid(-1, os.WNOHANG)
+                ended = os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
             except ChildProcessError:
                 return
-            if pid == 0:
+            if ended is None:
                 return
-            self._ended(pid, Exit.from_wait_status(status))
+            # Until it is reaped it keeps its number, and /proc tells of it.
+            process = read_process(ended.si_pid)
+            _pid, status = os.waitpid(ended.si_pid, 0)
+            started_ticks = process.started_ticks if process else 0
+            self._ended((ended.si_pid, started_ticks), Exit.from_wait_status(status))
 
-    def exit_of(self, pid: int) -> asyncio.Future[Exit]:
+    def exit_of(self, pid: int, started_ticks: int) -> asyncio.Future[Exit]:
         """Return the future end of a child; ask once for each."""
         future: asyncio.Future[Exit] = asyncio.get_running_loop().create_future()
-        if pid in self._early:
-            future.set_result(self._early.pop(pid))
+        key = (pid, started_ticks)
+        if key in self._early:
+            future.set_result(self._early.pop(key))
         else:
-            self._awaited[pid] = future
+            self._awaited[key] = future
         return future
 
-    def _ended(self, pid: int, end: Exit) -> None:
-        future = self._awaited.pop(pid, None)
+    def _ended(self, key: tuple[int, int], end: Exit) -> None:
+        future = self._awaited.pop(key, None)
         if future is None:
-            self._early[pid] = end
+            self._early[key] = end
             if len(self._early) > self._FORGOTTEN:
                 del self._early[next(iter(self._early))]
         elif not future.done():

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
+import signal
 import time
 from typing import TYPE_CHECKING
 
-from launcher.process_stop import send
+from launcher.process_signal import send
 from launcher.process_table import NODE_MARK, RUN_MARK, TICKS_PER_S, processes, read_marks
 
 if TYPE_CHECKING:
-    import signal
     from collections.abc import Mapping, Sequence
 
+    from launcher.process_signal import Identified
     from launcher.process_spawner import Spawner
     from launcher.process_table import Process
 
@@ -29,22 +30,29 @@ class Members:
         """`run_id`: what their environment carries as `RUN_MARK`."""
         self._run_id = run_id
         self._leaders: dict[int, str] = {}
+        """Of a node: its process, hence its group and session too."""
+        self._starts: dict[int, int] = {}
+        """Of each leader, by which it is told from who has its number later."""
         self._names: set[str] = set()
         self._known: dict[tuple[int, int], str] = {}
         """Process number and start to the node it belongs to, or to `_NOBODY`."""
 
-    def add(self, name: str, leader: int) -> None:
+    def add(self, name: str, leader: Identified) -> None:
         """A node has been started: `leader` is its process, group and session."""
-        self._leaders[leader] = name
+        self._leaders[leader.pid] = name
+        self._starts[leader.pid] = leader.started_ticks
         self._names.add(name)
 
     def remove(self, leader: int) -> None:
         """Nothing is left of the group of this leader."""
         self._leaders.pop(leader, None)
+        self._starts.pop(leader, None)
 
     def scan(self) -> dict[str, list[Process]]:
         """Return the living processes of each node, those that only wait to be reaped left out."""
-        table = {process.pid: process for process in processes() if not process.zombie}
+        everybody = {process.pid: process for process in processes()}
+        self._forget_replaced(everybody)
+        table = {pid: process for pid, process in everybody.items() if not process.zombie}
         settled = time.clock_gettime(time.CLOCK_BOOTTIME) * TICKS_PER_S - _SETTLED_TICKS
         found: dict[str, list[Process]] = {}
         known = {}
@@ -61,6 +69,16 @@ class Members:
                 found.setdefault(name, []).append(process)
         self._known = known
         return found
+
+    def _forget_replaced(self, everybody: Mapping[int, Process]) -> None:
+        """Forget leaders whose number is another's now, and thereby the group's and session's.
+
+        As long as there is a group or a session of a number, the kernel gives it to nobody.
+        """
+        for leader, started_ticks in tuple(self._starts.items()):
+            process = everybody.get(leader)
+            if process is not None and process.started_ticks != started_ticks:
+                self.remove(leader)
 
     def _by_descent(self, process: Process, table: Mapping[int, Process]) -> str | None:
         leaders = self._leaders
@@ -102,9 +120,14 @@ class Orphans:
         ]
 
     def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal."""
-        send(process, number)
+        """Send one of them a signal, and wake it so that it hears it."""
+        send(process, number, signal.SIGCONT)
 
     def _marked(self, process: Process) -> bool:
-        marks = read_marks(process.pid)
-        return marks is not None and marks.get(RUN_MARK) == self._run_id
+        return is_marked(process, self._run_id)
+
+
+def is_marked(process: Process, run_id: str) -> bool:
+    """Whether the environment of a process says that it is of this run."""
+    marks = read_marks(process.pid)
+    return marks is not None and marks.get(RUN_MARK) == run_id

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import os
 import signal
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
@@ -96,11 +94,3 @@ class Stop:
                 self._on_holdup(left, STAGES[stage])
             await self._clock.wait(self._wake, _LOOK_EVERY_S)
             self._wake.clear()
-
-
-def send(process: Process, number: signal.Signals) -> None:
-    """Send a signal, and wake the process, which may be suspended, so that it hears it."""
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.kill(process.pid, number)
-        # Whatever its state was when it was looked at: one that runs does not mind.
-        os.kill(process.pid, signal.SIGCONT)

@@ -26,9 +26,9 @@ def _prctl(option: int, value: int) -> None:
         raise OSError(code, os.strerror(code))
 
 
-def become_subreaper() -> None:
-    """Become the parent of every descendant whose own parent ends."""
-    _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+def become_subreaper(yes: bool = True) -> None:
+    """Become the parent of every descendant whose own parent ends; or be it no longer."""
+    _prctl(_PR_SET_CHILD_SUBREAPER, yes)
 
 
 def die_with_parent(parent: int, within_s: float = 10.0) -> bool:

@@ -14,13 +14,14 @@ import signal
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from launcher.process_signal import send
 from launcher.process_spawner import SpawnError, SpawnRequest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from launcher.process_exit import Reaper
-    from launcher.process_spawner import Spawner
+    from launcher.process_spawner import Born, Spawner
 
 MAX_PROBES = 3
 """So many probes may die in a row before the graph counts as one that cannot be watched."""
@@ -119,10 +120,10 @@ class Readiness:
         """Start a probe and listen to it until it ends."""
         hold_read, hold = os.pipe()
         report, report_write = os.pipe()
-        pid = 0
+        born: Born | None = None
         try:
             try:
-                pid = await self._spawner.spawn(self._request(), (hold_read, report_write, 2))
+                born = await self._spawner.spawn(self._request(), (hold_read, report_write, 2))
             finally:
                 os.close(hold_read)
                 os.close(report_write)
@@ -131,8 +132,8 @@ class Readiness:
             # The probe ends at the end of its stdin, politely: it says goodbye to the graph.
             os.close(hold)
             os.close(report)
-            if pid:
-                _ = asyncio.create_task(self._see_off(pid))  # noqa: RUF006 - ends by itself
+            if born is not None:
+                _ = asyncio.create_task(self._see_off(born))  # noqa: RUF006 - ends by itself
 
     async def _listen(self, fd: int) -> None:
         reader = asyncio.StreamReader()
@@ -155,12 +156,11 @@ class Readiness:
         wanted = json.dumps([[condition.kind, condition.name] for condition in self._conditions])
         return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
 
-    async def _see_off(self, pid: int, within_s: float = 3.0) -> None:
-        ended = self._reaper.exit_of(pid)
+    async def _see_off(self, born: Born, within_s: float = 3.0) -> None:
+        ended = self._reaper.exit_of(born.pid, born.started_ticks)
         try:
             await asyncio.wait_for(asyncio.shield(ended), within_s)
         except asyncio.TimeoutError:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGKILL)
+            send(born, signal.SIGKILL)
             await ended
-        await self._spawner.forget(pid)
+        self._spawner.forget(born.pid)

@@ -4,9 +4,10 @@ The first is forked from the supervisor before that has imported anything, later
 as `python -m launcher.spawn_server FD PID MODE ROOM`: FD is its end of a seqpacket socket, PID the
 supervisor, MODE `warm` or `cold`, and ROOM mere length for titles (`launcher.process_marks`).
 
-One request is one JSON packet with the file descriptors of the new process's stdin (optional),
-stdout and stderr; the answer is `{"id": ..., "pid": ...}` or `{"id": ..., "error": ...}`. A node
-is forked through an intermediate that exits, so that it becomes the supervisor's own child.
+One message is one packet of descriptors: first that of a memory file with a JSON object, then, of
+a request, the new process's stdin (optional), stdout and stderr. The answer is a packet of JSON,
+`{"id": ..., "pid": ..., "started": ...}`, its start in ticks, or `{"id": ..., "error": ...}`. A
+node is forked through an intermediate that exits, so that it becomes the supervisor's own child.
 
 At the end of the socket the supervisor is gone, and this process, which outlives it, ends
 whatever it has left running (`launcher.spawn_server_undertaker`).
@@ -23,7 +24,7 @@ import socket
 import sys
 from typing import TYPE_CHECKING, Any
 
-from launcher.process_table import RUN_MARK
+from launcher.process_table import RUN_MARK, read_process
 from launcher.spawn_server_node import ENDING, Birth, become
 from launcher.spawn_server_undertaker import undertake
 from launcher.spawn_server_warm import Preload
@@ -31,8 +32,7 @@ from launcher.spawn_server_warm import Preload
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-MAX_REQUEST = 1 << 20
-MAX_FDS = 3
+MAX_FDS = 4
 COLLECT_EVERY_S = 0.05
 """While there are intermediates that have not been seen to exit."""
 
@@ -59,10 +59,10 @@ class SpawnServer:
             if self._preload.done and self._waiting:
                 task = self._fork(*self._waiting.pop(0))
             elif self._request_is_there():
-                packet, fds, _flags, _address = socket.recv_fds(self._link, MAX_REQUEST, MAX_FDS)
+                packet, fds, _flags, _address = socket.recv_fds(self._link, 1, MAX_FDS)
                 if not packet:
                     return None
-                task = self._take(json.loads(packet), fds)
+                task = self._take(_read(fds[0]), fds[1:])
             else:
                 self._preload.step()
                 task = None
@@ -84,8 +84,6 @@ class SpawnServer:
         if request["kind"] == "preload":
             self._preload.also(request["packages"])
             return None
-        if request["kind"] == "dismiss":
-            os._exit(0)
         if request["kind"] == "forget":
             self.groups.difference_update(request["groups"])
             return None
@@ -115,6 +113,13 @@ class SpawnServer:
                 self._intermediates.remove(pid)
 
 
+def _read(fd: int) -> dict[str, Any]:
+    with open(fd, "rb") as file:
+        file.seek(0)
+        message: dict[str, Any] = json.load(file)
+    return message
+
+
 def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[], None]:
     """Fork the node, answer for it, and exit: what comes after runs in the node alone.
 
@@ -126,7 +131,9 @@ def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[],
         _answer(link, {"id": request_id, "error": problem.strerror})
         os._exit(1)
     if pid:
-        _answer(link, {"id": request_id, "pid": pid})
+        node = read_process(pid)
+        assert node is not None, "nobody but this process can reap it"
+        _answer(link, {"id": request_id, "pid": pid, "started": node.started_ticks})
         os._exit(0)
     return lambda: become(birth)
 

@@ -9,7 +9,7 @@ import sys
 from dataclasses import dataclass
 
 from launcher.process_marks import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
-from launcher.process_table import RUN_MARK
+from launcher.process_table import RUN_MARK, read_process
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,7 @@ class SpawnServerHandle:
 
     link: socket.socket
     pid: int
+    started_ticks: int
     warm: bool
 
 
@@ -32,8 +33,7 @@ def fork_spawn_server(run_id: str) -> SpawnServerHandle:
     pid = os.fork()
     if pid:
         theirs.close()
-        ours.setblocking(False)
-        return SpawnServerHandle(ours, pid, warm=True)
+        return _handle(ours, pid, warm=True)
     ours.close()
     os.setsid()
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
@@ -67,5 +67,11 @@ def start_spawn_server(run_id: str, *, warm: bool) -> SpawnServerHandle:
         setsigdef=(signal.SIGCHLD, signal.SIGPIPE),
     )
     theirs.close()
-    ours.setblocking(False)
-    return SpawnServerHandle(ours, pid, warm)
+    return _handle(ours, pid, warm=warm)
+
+
+def _handle(link: socket.socket, pid: int, *, warm: bool) -> SpawnServerHandle:
+    link.setblocking(False)
+    process = read_process(pid)
+    assert process is not None, "a child of ours that nobody has reaped"
+    return SpawnServerHandle(link, pid, process.started_ticks, warm)

@@ -6,16 +6,18 @@ the nodes' groups, did not.
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import time
 from typing import TYPE_CHECKING
 
+from launcher.process_signal import send
 from launcher.process_table import RUN_MARK, processes, read_marks
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from launcher.process_table import Process
 
 GRACE_S = 0.7
 """From SIGINT to SIGKILL: with the search around it less than the 2 s of the promise."""
@@ -33,20 +35,19 @@ def undertake(run_id: str, groups: Iterable[int]) -> None:
         elapsed = time.monotonic() - started
         if not left or elapsed > PATIENCE_S:
             return
-        for pid in left:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                if elapsed >= GRACE_S:
-                    os.kill(pid, signal.SIGKILL)
-                elif pid not in told:
-                    os.kill(pid, signal.SIGINT)
-        told.update(left)
+        for process in left:
+            if elapsed >= GRACE_S:
+                send(process, signal.SIGKILL)
+            elif process.pid not in told:
+                send(process, signal.SIGINT)
+        told.update(process.pid for process in left)
         time.sleep(0.05)
 
 
-def survivors(run_id: str, groups: frozenset[int]) -> list[int]:
+def survivors(run_id: str, groups: frozenset[int]) -> list[Process]:
     """Return the processes that are left of a run, without this one."""
     return [
-        process.pid
+        process
         for process in processes()
         if process.pid != os.getpid()
         and not process.zombie

@@ -7,12 +7,12 @@ ended only if somebody asks for it.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import os
 import signal
 import time
 from typing import TYPE_CHECKING
 
+from launcher.process_signal import send
 from launcher.process_table import (
     NODE_MARK,
     RUN_MARK,
@@ -79,11 +79,17 @@ def _marked(process: Process) -> tuple[str, str]:
 
 def still_there(stray: Stray) -> bool:
     """Whether this very process is alive, and not another with its number."""
+    return _found(stray) is not None
+
+
+def _found(stray: Stray) -> Process | None:
     process = read_process(stray.pid)
     if process is None or process.zombie:
-        return False
+        return None
     started_s = boot_time_s() + process.started_ticks / TICKS_PER_S
-    return abs(started_s - stray.started_s) <= _SAME_START_S and not supervisor_runs(stray.run_id)
+    if abs(started_s - stray.started_s) > _SAME_START_S or supervisor_runs(stray.run_id):
+        return None
+    return process
 
 
 async def end_strays(strays: Iterable[Stray]) -> None:
@@ -99,8 +105,9 @@ async def end_strays(strays: Iterable[Stray]) -> None:
 
 def _signal(strays: Iterable[Stray], number: signal.Signals) -> None:
     for stray in strays:
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.kill(stray.pid, number)
+        process = _found(stray)
+        if process is not None:
+            send(process, number)
 
 
 def forget_ended_runs(run_dir: Path, strays: Iterable[Stray]) -> None:

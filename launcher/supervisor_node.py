@@ -194,18 +194,32 @@ class Node:
         """Start a process and see it to its end; return whether to start another."""
         self._become(NodeState.STARTING)
         try:
-            process = await self._around.launch(self.plan)
+            process = await self._launched()
         except SpawnError as problem:
             end = Exit(None)
             lasted = 0.0
-            why: str = say("cannot be started: {reason}", reason=problem)
+            why: str = say("cannot be started: {reason}", reason=problem.args[0])
             self._around.say(self.plan.name, Severity.ERROR, why)
         else:
+            if process is None:
+                return False
             end, lasted = await self._see_through(process)
             why = self._end_words(end)
         if self._down:
             return False
         return await self._after(end, lasted, why)
+
+    async def _launched(self) -> RunningProcess | None:
+        """Start a process; None if it is to go down before there is one."""
+        launching = asyncio.ensure_future(self._around.launch(self.plan))
+        launching.add_done_callback(lambda _launched: self._nudge.set())
+        while not launching.done() and not self._down:
+            self._nudge.clear()
+            await self._nudge.wait()
+        if not launching.done():
+            launching.cancel()
+            await asyncio.wait([launching])
+        return None if launching.cancelled() else launching.result()
 
     async def _see_through(self, process: RunningProcess) -> tuple[Exit, float]:
         clock = self._around.clock

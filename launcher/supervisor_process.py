@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import time
 from typing import TYPE_CHECKING
 
@@ -10,18 +11,16 @@ from launcher.logs_reader import PipeReader, node_pipe
 from launcher.process_members import Members
 from launcher.process_ports import BurntPorts
 from launcher.process_shm import held_segments, port_numbers, sweep
+from launcher.process_signal import send
 from launcher.process_spawner import SpawnRequest
-from launcher.process_stop import send
-from launcher.process_table import read_process
 
 if TYPE_CHECKING:
     import asyncio
-    import signal
     from collections.abc import Iterable, Mapping, Sequence
 
     from launcher.logs_book import LogBook
     from launcher.process_exit import Exit, Reaper
-    from launcher.process_spawner import Spawner
+    from launcher.process_spawner import Born, Spawner
     from launcher.process_table import Process
     from launcher.supervisor_plan import NodePlan, Plan
 
@@ -53,14 +52,13 @@ class NodeProcess:
     """One process that was started for a node; fits `RunningProcess`."""
 
     def __init__(
-        self, name: str, pid: int, launcher: ProcessLauncher, readers: Sequence[PipeReader]
+        self, name: str, born: Born, launcher: ProcessLauncher, readers: Sequence[PipeReader]
     ) -> None:
         """`readers` read its stdout and stderr."""
         self.name = name
-        self.pid = pid
-        found = read_process(pid)
-        self.started_ticks = found.started_ticks if found else 0
-        self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(pid)
+        self.pid = born.pid
+        self.started_ticks = born.started_ticks
+        self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(born.pid, born.started_ticks)
         self.ended.add_done_callback(self._on_end)
         self._launcher = launcher
         self._readers = readers
@@ -70,8 +68,8 @@ class NodeProcess:
         return self._launcher.scan.look().get(self.name, ())
 
     def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal."""
-        send(process, number)
+        """Send one of them a signal, and wake it, which may be suspended, so that it hears it."""
+        send(process, number, signal.SIGCONT)
 
     async def close(self) -> None:
         """Read what it has still written, and forget it."""
@@ -79,7 +77,7 @@ class NodeProcess:
             reader.close()
         self._launcher.sweep_segments(self.name)
         self._launcher.scan.members.remove(self.pid)
-        await self._launcher.spawner.forget(self.pid)
+        self._launcher.spawner.forget(self.pid)
 
     def _on_end(self, _ended: object) -> None:
         self._launcher.scan.forget()
@@ -127,7 +125,7 @@ class ProcessLauncher:
             self._book.read(node.name, err, "stderr"),
         ]
         try:
-            pid = await self.spawner.spawn(request, (out_write, err_write))
+            born = await self.spawner.spawn(request, (out_write, err_write))
         except BaseException:
             for reader in readers:
                 reader.close()
@@ -135,6 +133,6 @@ class ProcessLauncher:
         finally:
             os.close(out_write)
             os.close(err_write)
-        self.scan.members.add(node.name, pid)
+        self.scan.members.add(node.name, born)
         self.scan.forget()
-        return NodeProcess(node.name, pid, self, readers)
+        return NodeProcess(node.name, born, self, readers)

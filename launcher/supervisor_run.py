@@ -31,6 +31,7 @@ from launcher.supervisor_plan import Plan
 from launcher.supervisor_process import ProcessLauncher, ProcessScan
 from launcher.supervisor_record import RunRecord, exclusively
 from launcher.supervisor_session import Session
+from launcher.supervisor_words import who
 from launcher.who import who_runs, who_words
 from launcher.words import Words, say
 
@@ -44,6 +45,8 @@ if TYPE_CHECKING:
 
 LAST_WORDS = "supervisor"
 """Name of the log of what the supervisor prints, its tracebacks above all."""
+HURRIED_S = 5.0
+"""What outlives SIGKILL for so long is stuck in the kernel, and is waited for no longer."""
 STRAYS_AGAIN_S = 3.0
 """What is left of a run that ended a moment ago may just be ending."""
 
@@ -158,7 +161,7 @@ class Supervisor:
         self._home = home
         self._loop = asyncio.get_running_loop()
         self._reaper = Reaper()
-        self._spawner = Spawner(self.info.run_id, spawn_server, self._spawn_server_died)
+        self._spawner = Spawner(self.info.run_id, spawn_server, self._warn)
         if not plan.warm:
             self._spawner.go_cold()
         self._spawner.preload(plan.packages)
@@ -188,7 +191,7 @@ class Supervisor:
         helpers = [
             asyncio.create_task(self._session.measure()),
             asyncio.create_task(self._look_for_strays()),
-            asyncio.create_task(self._home.keep(self.control.serve, self._home_moved)),
+            asyncio.create_task(self._home.keep(self.control.serve, self._warn)),
             asyncio.create_task(self._watch_owner(stdin)),
         ]
         await self._end.wait()
@@ -252,16 +255,23 @@ class Supervisor:
             self._hurry.set()
 
     async def _stop_all(self) -> None:
-        stopping = asyncio.create_task(self._session.stop(now=self._hurry.is_set()))
+        """Stop every node and what they have left; in a hurry, whatever hangs, within bounds."""
+        stopping = [asyncio.create_task(self._session.stop(now=self._hurry.is_set()))]
         hurry = asyncio.create_task(self._hurry.wait())
-        await asyncio.wait([stopping, hurry], return_when=asyncio.FIRST_COMPLETED)
-        if not stopping.done():
-            await self._session.stop(now=True)
-        await stopping
+        await asyncio.wait([*stopping, hurry], return_when=asyncio.FIRST_COMPLETED)
+        if not stopping[0].done():
+            stopping.append(asyncio.create_task(self._session.stop(now=True)))
+            await asyncio.wait(stopping, timeout=HURRIED_S)
         hurry.cancel()
         # What has left its node behind so well that it could not be told whose it was.
         orphans = Orphans(self.info.run_id, self._spawner)
-        await Stop(orphans, self._session.clock, _say_nothing, QUICK).run()
+        ending = asyncio.create_task(Stop(orphans, self._session.clock, _say_nothing, QUICK).run())
+        await asyncio.wait([ending], timeout=HURRIED_S)
+        left = orphans.left()
+        if left:
+            words = say("{reason}; still running: {who}", reason=self._reason, who=who(left))
+            self._reason = words
+            self._book.say(DECK, Severity.ERROR, words)
 
     def _install_signals(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -294,15 +304,8 @@ class Supervisor:
         except OSError as problem:
             self._book.say(DECK, Severity.ERROR, _no_room(self._home.record.folder, problem))
 
-    def _home_moved(self, story: Words) -> None:
-        self._book.say(DECK, Severity.WARN, story)
-
-    def _spawn_server_died(self, pid: int) -> None:
-        self._book.say(
-            DECK,
-            Severity.WARN,
-            say("the spawn server (pid {pid}) ended; the next starts use a new one", pid=pid),
-        )
+    def _warn(self, words: Words) -> None:
+        self._book.say(DECK, Severity.WARN, words)
 
     def _log_failed(self, reason: str) -> None:
         words = say("{folder}: {reason}", folder=self.info.log_dir, reason=reason)

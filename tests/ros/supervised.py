@@ -36,7 +36,9 @@ DEAF = "import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN); "
 def write_profile(folder: Path, nodes: dict[str, Any], name: str = "test") -> Path:
     """Write a profile; JSON is YAML."""
     path = folder / f"{name}.yaml"
-    path.write_text(json.dumps({"title": {"en": "Test"}, "nodes": nodes}), encoding="utf-8")
+    path.write_text(
+        json.dumps({"title": {"en": "Test"}, "nodes": nodes}, ensure_ascii=False), "utf-8"
+    )
     return path
 
 

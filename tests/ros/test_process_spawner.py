@@ -1,0 +1,168 @@
+"""The supervisor's way to processes, with real spawn servers that hang or die."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from collections.abc import AsyncIterator, Callable, Iterator
+
+import pytest
+
+from launcher.process_signal import lives, send
+from launcher.process_spawner import Born, Spawner, SpawnError, SpawnRequest
+from launcher.process_table import RUN_MARK, Process, processes, read_marks, read_process
+from launcher.process_ties import become_subreaper
+from launcher.spawn_server_start import start_spawn_server
+from tests.waiting import until
+
+Make = Callable[..., Spawner]
+
+SLEEP = SpawnRequest("exec", "node", "deck: node", ("sleep", "1000"), "/")
+
+
+@pytest.fixture
+def run_id(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return f"test-{tmp_path_factory.getbasetemp().name}-{os.getpid()}"
+
+
+@pytest.fixture
+def nowhere() -> Iterator[tuple[int, int]]:
+    fd = os.open(os.devnull, os.O_WRONLY)
+    yield fd, fd
+    os.close(fd)
+
+
+@pytest.fixture
+async def make(run_id: str) -> AsyncIterator[Make]:
+    """Make spawners; what they have started ends with the test."""
+    become_subreaper()
+    made: list[Spawner] = []
+
+    def begin(told: list[str], answer_within_s: float = 20.0, *, warm: bool = False) -> Spawner:
+        server = start_spawn_server(run_id, warm=warm)
+        made.append(Spawner(run_id, server, told.append, answer_within_s))
+        return made[-1]
+
+    yield begin
+    for spawner in made:
+        spawner.close()
+    for process in of_run(run_id):
+        send(process, signal.SIGKILL)
+    await until(lambda: not of_run(run_id), "the end of all that was started")
+    become_subreaper(False)
+
+
+def of_run(run_id: str) -> list[Process]:
+    return [
+        process
+        for process in processes()
+        if not process.zombie and (read_marks(process.pid) or {}).get(RUN_MARK) == run_id
+    ]
+
+
+def stop(pid: int | None) -> None:
+    assert pid is not None
+    os.kill(pid, signal.SIGSTOP)
+
+
+async def test_what_is_started_is_known_by_its_start_too(
+    make: Make, nowhere: tuple[int, int]
+) -> None:
+    born = await make([]).spawn(SLEEP, nowhere)
+    process = read_process(born.pid)
+    assert process is not None
+    assert born == Born(process.pid, process.started_ticks)
+
+
+async def test_a_spawn_server_that_does_not_answer_is_replaced(
+    make: Make, nowhere: tuple[int, int]
+) -> None:
+    told: list[str] = []
+    spawner = make(told, 2.0)
+    await spawner.spawn(SLEEP, nowhere)
+    hung = spawner.server_pid
+    stop(hung)
+    born = await asyncio.wait_for(spawner.spawn(SLEEP, nowhere), 60)
+    assert lives(born)
+    assert spawner.server_pid not in (hung, None)
+    (words,) = told
+    assert words.startswith(f"the spawn server (pid {hung}) gave no answer for 2 s and was killed")
+
+
+async def test_two_that_do_not_answer_are_a_reason(
+    make: Make, nowhere: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+
+    def start_a_stopped_one(run_id: str, *, warm: bool) -> object:
+        server = start_spawn_server(run_id, warm=warm)
+        stop(server.pid)
+        return server
+
+    monkeypatch.setattr("launcher.process_spawner.start_spawn_server", start_a_stopped_one)
+    spawner = make(told, 0.5)
+    stop(spawner.server_pid)
+    with pytest.raises(SpawnError, match="the spawn server does not answer"):
+        await asyncio.wait_for(spawner.spawn(SLEEP, nowhere), 60)
+    assert len(told) == 2
+
+
+async def test_a_process_that_nobody_waits_for_any_more_is_ended(
+    make: Make, nowhere: tuple[int, int], run_id: str
+) -> None:
+    spawner = make([])
+    await spawner.spawn(SLEEP, nowhere)
+    server = spawner.server_pid
+    stop(server)
+    with pytest.raises(asyncio.TimeoutError):
+        await asyncio.wait_for(spawner.spawn(SLEEP, nowhere), 0.05)
+    assert server is not None
+    os.kill(server, signal.SIGCONT)
+    # Answers come in order: with this one, that of the other has come.
+    await spawner.spawn(SLEEP, nowhere)
+    await until(lambda: len(of_run(run_id)) == 3, "the spawn server and the two that are known")
+
+
+async def test_a_full_queue_keeps_nobody_waiting(make: Make, nowhere: tuple[int, int]) -> None:
+    spawner = make([])
+    born = await spawner.spawn(SLEEP, nowhere)
+    stop(spawner.server_pid)
+    for _ in range(400):
+        spawner.preload(["x" * 1000])
+    spawner.forget(born.pid)
+
+
+async def test_a_spawn_server_that_dies_at_once_is_replaced(
+    make: Make, nowhere: tuple[int, int]
+) -> None:
+    told: list[str] = []
+    spawner = make(told, warm=True)
+    dead = spawner.server_pid
+    assert dead is not None
+    os.kill(dead, signal.SIGKILL)
+    await until(lambda: (found := read_process(dead)) is None or found.zombie, "its end")
+    spawner.preload(["nodes"])
+    assert lives(await spawner.spawn(SLEEP, nowhere))
+    assert told == [f"the spawn server (pid {dead}) ended; the next starts use a new one"]
+
+
+async def test_where_no_spawn_server_can_be_started_it_is_said(
+    make: Make, nowhere: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    spawner = make(told)
+    await spawner.spawn(SLEEP, nowhere)
+
+    def refuse(*_: object, **_kinds: object) -> object:
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("launcher.process_spawner.start_spawn_server", refuse)
+        assert spawner.server_pid is not None
+        os.kill(spawner.server_pid, signal.SIGKILL)
+        await until(lambda: spawner.server_pid is None, "its end")
+        with pytest.raises(SpawnError, match="there is no spawn server"):
+            await spawner.spawn(SLEEP, nowhere)
+    assert "no spawn server can be started: Resource temporarily unavailable" in told
+    assert lives(await spawner.spawn(SLEEP, nowhere))
