@@ -9,6 +9,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from launcher.client_inbox import Inbox
+from launcher.client_parting import kill_supervisor
 from launcher.client_past import newer
 from launcher.client_start import StartingSupervisor
 from launcher.control_protocol import (
@@ -23,11 +24,17 @@ from launcher.control_protocol import (
     unpack_text,
 )
 from launcher.control_socket import connect
-from launcher.errors import ConnectionLostError, ProtocolError, UnknownNodeError
+from launcher.errors import (
+    ConnectionLostError,
+    ProtocolError,
+    SilentSupervisorError,
+    UnknownNodeError,
+)
 from launcher.events import LogEvent
 from launcher.rundir import log_dir, run_dir
 from launcher.running import find_running, running_records
 from launcher.serial_ports import serial_ports
+from launcher.supervisor_id import supervisor_of
 from launcher.supervisor_plan import plan_of
 from launcher.words import say
 
@@ -38,8 +45,15 @@ if TYPE_CHECKING:
     from launcher.events import Event
     from launcher.profile import Profile
     from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from launcher.words import Words
 
 HELLO_WITHIN_S = 10.0
+HEARD_WITHIN_S = 30.0
+"""A supervisor that does not say for so long that it has heard of its end hangs."""
+HEARD_IN_A_HURRY_S = 5.0
+ENDED_IN_A_HURRY_S = 20.0
+"""The supervisor's own limits, together with what it takes to say goodbye."""
+UNSENT_WITHIN_S = 1.0
 
 
 async def launch(
@@ -83,9 +97,11 @@ async def launch(
         lifeline = -1
     try:
         return await _connect(folder, lifeline)
-    except BaseException:
+    except BaseException as problem:
         if lifeline >= 0:
             os.close(lifeline)
+            if isinstance(problem, SilentSupervisorError):
+                raise SilentSupervisorError(await kill_supervisor(folder.name)) from None
         raise
 
 
@@ -95,7 +111,8 @@ async def attach(name: str | None = None) -> SupervisorClient:
     Raises:
         NotRunningError: if there is none.
         SeveralRunningError: if there are several to choose from.
-        ConnectionLostError: if it has ended just now, or does not answer.
+        ConnectionLostError: if it has ended just now.
+        SilentSupervisorError: if it hangs.
         ProtocolError: if it is of another version.
     """
     record = await asyncio.to_thread(find_running, name)
@@ -119,6 +136,10 @@ def _read(
     )
 
 
+def _silent(pid: int) -> Words:
+    return say("the supervisor (pid {pid}) does not answer; kill -9 {pid} ends it", pid=pid)
+
+
 async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
     try:
         connection = await asyncio.to_thread(connect, folder)
@@ -127,7 +148,9 @@ async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
         )
         writer.write(encode({"deck": VERSION}))
         hello = json.loads(await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S))
-    except (OSError, ValueError, asyncio.TimeoutError) as problem:
+    except asyncio.TimeoutError as problem:
+        raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
+    except (OSError, ValueError) as problem:
         raise ConnectionLostError(say("the supervisor does not answer")) from problem
     if hello.get("deck") != VERSION:
         writer.close()
@@ -167,6 +190,7 @@ class SupervisorClient:
         self._replies: dict[int, asyncio.Future[Any]] = {}
         self._next_id = 1
         self._closed = asyncio.Event()
+        self._parting: asyncio.Task[Words] | None = None
         self._hear({"event": "status", "nodes": hello["nodes"]})
         self._hear({"event": "strays", "strays": hello["strays"]})
         self._listening = asyncio.create_task(self._listen())
@@ -222,11 +246,35 @@ class SupervisorClient:
         """Stop all nodes, dependants first, and the supervisor; return when it has ended.
 
         `now`, or asking a second time, skips the waiting, also that of a call under way.
+
+        Raises:
+            SilentSupervisorError: if it hangs. One that this client has started is no more then,
+                nor are its nodes.
         """
-        with contextlib.suppress(ConnectionLostError):
-            await self._ask("shutdown", now=now)
-        await self._closed.wait()
+        if self._closed.is_set():
+            await self.aclose()
+            return
+        asked = self._ask("shutdown", now=now)
+        try:
+            with contextlib.suppress(ConnectionLostError):
+                await asyncio.wait_for(asked, HEARD_IN_A_HURRY_S if now else HEARD_WITHIN_S)
+            await asyncio.wait_for(self._closed.wait(), ENDED_IN_A_HURRY_S if now else None)
+        except asyncio.TimeoutError:
+            self._parting = self._parting or asyncio.create_task(self._part_with_silent())
+        if self._parting is not None:
+            # Whoever has asked before and still waits hears of it as well.
+            raise SilentSupervisorError(await asyncio.shield(self._parting))
         await self.aclose()
+
+    async def _part_with_silent(self) -> Words:
+        """End a supervisor of our own that hangs, let go of another's; tell what is left."""
+        try:
+            if self._lifeline >= 0:
+                return await kill_supervisor(self.session.run_id)
+            return _silent(self.session.supervisor_pid)
+        finally:
+            self._end()
+            await self.aclose()
 
     async def aclose(self) -> None:
         """Disconnect. A foreground session ends if this is the client that started it."""
@@ -237,8 +285,10 @@ class SupervisorClient:
         with contextlib.suppress(asyncio.CancelledError):
             await self._listening
         self._writer.close()
-        with contextlib.suppress(OSError):
-            await self._writer.wait_closed()
+        try:
+            await asyncio.wait_for(self._writer.wait_closed(), UNSENT_WITHIN_S)
+        except (OSError, asyncio.TimeoutError):
+            self._writer.transport.abort()
 
     async def _ask(self, op: str, **arguments: object) -> Any:  # noqa: ANN401 - JSON
         if self._closed.is_set():

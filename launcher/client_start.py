@@ -7,6 +7,7 @@ module imports little itself.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from launcher.supervisor_plan import Plan
 
 ANSWER_WITHIN_S = 30.0
+END_WITHIN_S = 4.0
+"""For so long one that is not wanted any more may stop what it has begun."""
+_LOOK_EVERY_S = 0.05
 
 
 class StartingSupervisor:
@@ -30,6 +34,7 @@ class StartingSupervisor:
 
     def __init__(self) -> None:
         """Start it."""
+        self._begun = False
         self._words = os.memfd_create("supervisor")
         self._process = subprocess.Popen(
             [sys.executable, "-m", "launcher.supervisor", ROOM_ARGUMENT],
@@ -56,7 +61,9 @@ class StartingSupervisor:
         return self._words >= 0 and self._process.poll() is None
 
     def give_up(self) -> None:
-        """Let go of it: if it has not begun anything, it ends."""
+        """Let go of it: if it has not begun anything, that is its end."""
+        if not self._begun:
+            self._process.kill()
         if self._words >= 0:
             os.close(self._words)
             self._words = -1
@@ -80,14 +87,22 @@ class StartingSupervisor:
 
         from launcher.control_protocol import unpack_session, unpack_text
         from launcher.errors import AlreadyRunningError, RunDirError, StartError
+        from launcher.words import say
 
         stdin = self._process.stdin
         assert stdin is not None
+        self._begun = True
         try:
             try:
-                await asyncio.to_thread(_write, stdin.fileno(), plan.to_json().encode() + b"\n")
-                answer = await asyncio.wait_for(self._answer(), ANSWER_WITHIN_S)
-            except (OSError, ValueError, asyncio.TimeoutError) as problem:
+                answer = await asyncio.wait_for(self._give(plan), ANSWER_WITHIN_S)
+            except asyncio.TimeoutError:
+                await self._end()
+                words = say("the supervisor gave no answer for {s:g} s", s=ANSWER_WITHIN_S)
+                raise StartError(words) from None
+            except asyncio.CancelledError:
+                await self._end()
+                raise
+            except (OSError, ValueError) as problem:
                 raise StartError(self._last_words()) from problem
             if "no_room" in answer:
                 raise RunDirError(unpack_text(answer["no_room"]))
@@ -99,6 +114,25 @@ class StartingSupervisor:
             return Path(answer["folder"]), os.dup(stdin.fileno())
         finally:
             self.give_up()
+
+    async def _end(self) -> None:
+        """Have it end, if need be by force: it got a plan that nobody wants any more."""
+        import asyncio
+
+        self.give_up()
+        try:
+            for _look in range(round(END_WITHIN_S / _LOOK_EVERY_S)):
+                if self._process.poll() is not None:
+                    return
+                await asyncio.sleep(_LOOK_EVERY_S)
+        finally:
+            self._process.kill()
+
+    async def _give(self, plan: Plan) -> dict[str, Any]:
+        stdin = self._process.stdin
+        assert stdin is not None
+        await _write(stdin.fileno(), plan.to_json().encode() + b"\n")
+        return await self._answer()
 
     async def _answer(self) -> dict[str, Any]:
         import asyncio
@@ -134,6 +168,19 @@ def _without_current_folder() -> dict[str, str]:
     return {} if written is None else {"PYTHONPATH": os.pathsep.join(parts)}
 
 
-def _write(fd: int, data: bytes) -> None:
-    while data:
-        data = data[os.write(fd, data) :]
+async def _write(fd: int, data: bytes) -> None:
+    """Write to a pipe whose reader may hang; never a thread that would then hang as well."""
+    import asyncio
+
+    loop, room = asyncio.get_running_loop(), asyncio.Event()
+    os.set_blocking(fd, False)
+    loop.add_writer(fd, room.set)
+    try:
+        while data:
+            room.clear()
+            with contextlib.suppress(BlockingIOError):
+                data = data[os.write(fd, data) :]
+            if data:
+                await room.wait()
+    finally:
+        loop.remove_writer(fd)

@@ -15,6 +15,7 @@
         ├── AlreadyRunningError     the same profile runs there already; `.session` (exit 2)
         ├── StartError              the supervisor ended before it answered (exit 2)
         ├── ConnectionLostError     the supervisor has gone, or does not answer
+        ├── SilentSupervisorError   it does not answer, and was left alone or killed
         └── ProtocolError           the other end speaks another version of the protocol
 """
 
@@ -205,6 +206,10 @@ class StartError(SessionError):
 
 class ConnectionLostError(SessionError):
     """The supervisor has gone, or does not answer."""
+
+
+class SilentSupervisorError(SessionError):
+    """The supervisor does not answer; whoever asked has left it alone, or has killed it."""
 
 
 class ProtocolError(SessionError):

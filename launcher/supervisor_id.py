@@ -7,8 +7,12 @@ from __future__ import annotations
 
 import os
 import time
+from typing import TYPE_CHECKING
 
 from launcher.process_table import read_process
+
+if TYPE_CHECKING:
+    from launcher.process_table import Process
 
 
 def new_run_id() -> str:
@@ -23,11 +27,18 @@ def supervisor_of(run_id: str) -> int:
     return _process_of(run_id)[0]
 
 
-def supervisor_runs(run_id: str) -> bool:
-    """Whether the supervisor of this run is alive."""
+def living_supervisor(run_id: str) -> Process | None:
+    """Return the supervisor of this run; None if it is not alive."""
     pid, started = _process_of(run_id)
     process = read_process(pid) if pid > 0 else None
-    return process is not None and process.started_ticks == started and not process.zombie
+    if process is None or process.started_ticks != started or process.zombie:
+        return None
+    return process
+
+
+def supervisor_runs(run_id: str) -> bool:
+    """Whether the supervisor of this run is alive."""
+    return living_supervisor(run_id) is not None
 
 
 def _process_of(run_id: str) -> tuple[int, int]:

@@ -159,8 +159,11 @@ class Sessions:
         if link is None or link is not self._app.feed.link:
             self._app.exit(return_code=self._code)
             return
-        with contextlib.suppress(LauncherError):
+        try:
             await link.shutdown(now=True)
+        except LauncherError as error:
+            # It hangs; what came of that is worth knowing when there is no screen any more.
+            self.parting_words = words_of(error)
 
     async def _back_to_picker(self) -> None:
         """Go back to the list; the screens of the session go with it."""
@@ -189,7 +192,9 @@ class Sessions:
         ending = [asyncio.ensure_future(link.shutdown())]
         if graph is not None:
             ending.append(asyncio.ensure_future(asyncio.to_thread(graph.stop)))
-        await asyncio.gather(*ending, return_exceptions=True)
+        for problem in await asyncio.gather(*ending, return_exceptions=True):
+            if isinstance(problem, LauncherError):
+                self.parting_words = words_of(problem)
         await app.feed.disconnect()
         self._stopping = None
         if dialog.is_running and app.screen is dialog:

@@ -83,3 +83,19 @@ def test_interrupting_twice_does_not_wait_for_anybody(line: Line, deck: Deck) ->
     assert process.wait(30) == 128 + signal.SIGINT
     wait_until(lambda: not marked.alive(deck.mark), "every process gone")
     os.close(own)
+
+
+def test_leaving_twice_ends_the_screen_of_a_supervisor_that_hangs(line: Line, deck: Deck) -> None:
+    own, _program, process = line
+    read_until(own, "1/1")
+    (supervisor,) = (
+        pid for pid, command in marked.alive(deck.mark).items() if "launcher.supervisor" in command
+    )
+    os.kill(supervisor, signal.SIGSTOP)
+    os.write(own, b"q")
+    read_until(own, "Stopping")
+    os.write(own, b"q")
+    read_until(own, f"the supervisor (pid {supervisor}) gave no answer; it was killed")
+    assert process.wait(30) == 0
+    wait_until(lambda: not marked.alive(deck.mark), "every process gone")
+    os.close(own)

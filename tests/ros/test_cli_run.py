@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -13,6 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from launcher.client import running
 from tests.deck_process import DeckProcess, alive, deck
 from tests.unit.profile_files import written
 from tests.waiting import wait_until
@@ -253,3 +255,55 @@ def test_parameters_reach_the_node_with_their_types(warm: bool, tmp_path: Path) 
     assert {name: type(value) for name, value in got.items()} == {
         name: type(value) for name, value in VALUES.items()
     }
+
+
+def test_interrupting_twice_ends_a_run_whose_supervisor_hangs(tmp_path: Path) -> None:
+    path = written(tmp_path, "nodes: {a: {exec: [sh, -c, echo up; sleep 100]}}")
+    run = DeckProcess("run", str(path))
+    try:
+        run.said("[a]    up")
+        (session,) = running()
+        os.kill(session.supervisor_pid, signal.SIGSTOP)
+        run.signal(signal.SIGINT)
+        run.said("stopping")
+        run.signal(signal.SIGINT)
+        run.finish()
+        run.said(f"the supervisor (pid {session.supervisor_pid}) gave no answer; it was killed")
+        assert not alive(session.supervisor_pid)
+    finally:
+        run.close()
+
+
+def supervisors(owner: psutil.Process) -> list[psutil.Process]:
+    """Its children that are what they are to be: until then it waits for them itself."""
+    with contextlib.suppress(psutil.NoSuchProcess):
+        return [each for each in owner.children() if "launcher.supervisor" in each.cmdline()]
+    return []
+
+
+def hears_hangups(pid: int) -> bool:
+    """Whether a process has a handler of its own for SIGHUP, as no Python has by itself."""
+    status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+    caught = int(status.partition("SigCgt:")[2].split()[0], 16)
+    return bool(caught >> (signal.SIGHUP - 1) & 1)
+
+
+def test_interrupting_twice_ends_a_run_whose_supervisor_hangs_at_its_start(tmp_path: Path) -> None:
+    # More than a pipe holds.
+    words = ", ".join(["x" * 1000] * 200)
+    path = written(tmp_path, f"nodes: {{a: {{exec: [sleep, 100, {words}]}}}}")
+    run = DeckProcess("run", str(path))
+    try:
+        deck_itself = psutil.Process(run.process.pid)
+        children = wait_until(lambda: supervisors(deck_itself), "the supervisor")
+        for child in children:
+            child.suspend()
+        wait_until(lambda: hears_hangups(run.process.pid), "a run that hears signals")
+        run.signal(signal.SIGINT)
+        run.said("stopping")
+        run.signal(signal.SIGINT)
+        run.finish()
+        for child in children:
+            wait_until(lambda child=child: not alive(child.pid), "the end of the supervisor")
+    finally:
+        run.close()

@@ -9,6 +9,7 @@ import time
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile
+from launcher.errors import SilentSupervisorError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.profile import load_profile
 from launcher.serial_ports import serial_ports
@@ -17,7 +18,7 @@ from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
 from tui.cli.output import Paint, drop_output
 from tui.cli.report import JsonReport, Summary, TextReport
-from tui.i18n import _, language, ngettext
+from tui.i18n import _, language, ngettext, said
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -120,8 +121,11 @@ class Run:
                 reason = event.reason
             else:
                 self._tell(event)
-        await asyncio.gather(*self._stopping, return_exceptions=True)
+        partings = await asyncio.gather(*self._stopping, return_exceptions=True)
         await client.aclose()
+        silent = (each for each in partings if isinstance(each, SilentSupervisorError))
+        for problem in (*silent,)[:1]:
+            self.report.note(said(problem.args[0]))
         return self._summary(client, reason, time.monotonic() - began)
 
     def interrupt(self) -> None:
@@ -159,6 +163,8 @@ class Run:
                 supervisor=self._supervisor,
             )
         )
+        if self._asked_to_stop:
+            self._starting.cancel()
         self._client = await self._starting
         return self._client
 

@@ -1,0 +1,186 @@
+"""Whatever hangs, a stop goes on and a session comes to its end."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from launcher.client import attach
+from launcher.errors import SilentSupervisorError
+from launcher.process_table import NODE_MARK, RUN_MARK, processes, read_marks
+from launcher.status import NodeState
+from tests.ros.supervised import (
+    SLEEPER,
+    Launch,
+    alive,
+    kill,
+    running_pid,
+    said,
+    script,
+    until_state,
+)
+from tests.waiting import until
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from launcher.client import SupervisorClient
+
+SOON_S = 15.0
+"""Much less than what a spawn server is given to answer, much more than a stop takes."""
+
+
+async def soon(asked: Any) -> None:
+    await asyncio.wait_for(asked, SOON_S)
+
+
+async def spawn_server_of(run_id: str) -> int:
+    """Return the number of the run's spawn server once there is but one."""
+
+    def there() -> list[int]:
+        marked = ((each.pid, read_marks(each.pid) or {}) for each in processes())
+        return [
+            pid
+            for pid, marks in marked
+            if marks.get(RUN_MARK) == run_id and marks.get(NODE_MARK, "").startswith("--")
+        ]
+
+    (pid,) = await until(lambda: len(found := there()) == 1 and found, "one spawn server")
+    return int(pid)
+
+
+@pytest.fixture
+async def stuck(start: Launch) -> tuple[SupervisorClient, int]:
+    """A session whose spawn server has been suspended, with a node that is starting."""
+    client = await start({"node": {"exec": SLEEPER}, "other": {"exec": SLEEPER}})
+    await running_pid(client, "node")
+    await running_pid(client, "other")
+    server = await spawn_server_of(client.session.run_id)
+    kill(server, signal.SIGSTOP)
+    await client.restart("node")
+    await until_state(client, "node", NodeState.STARTING)
+    return client, server
+
+
+async def test_a_start_that_hangs_can_be_stopped(stuck: tuple[SupervisorClient, int]) -> None:
+    client, server = stuck
+    await soon(client.stop("node"))
+    assert client.nodes["node"].state is NodeState.EXITED
+    assert client.nodes["other"].state is NodeState.RUNNING
+    # What was asked for comes now, and must not stay.
+    kill(server, signal.SIGCONT)
+    await client.start("node")
+    pid = await running_pid(client, "node")
+
+    def of_the_node() -> list[int]:
+        marked = ((each, read_marks(each.pid) or {}) for each in processes() if not each.zombie)
+        return [
+            each.pid
+            for each, marks in marked
+            if marks.get(RUN_MARK) == client.session.run_id and marks.get(NODE_MARK) == "node"
+        ]
+
+    await until(lambda: of_the_node() == [pid], "no process but the one that is known")
+
+
+@pytest.mark.parametrize("now", [False, True])
+async def test_a_session_ends_though_a_start_hangs(
+    stuck: tuple[SupervisorClient, int], now: bool
+) -> None:
+    client, server = stuck
+    await soon(client.shutdown(now=now))
+    await until(lambda: not alive(server), "the end of the spawn server that hung")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+async def test_a_signal_ends_a_session_though_a_start_hangs(
+    stuck: tuple[SupervisorClient, int], number: signal.Signals
+) -> None:
+    client, server = stuck
+    kill(client.session.supervisor_pid, number)
+
+    async def end() -> list[Any]:
+        return [event async for event in client.events()]
+
+    events = await asyncio.wait_for(end(), SOON_S)
+    assert events[-1].reason == f"{number.name} received"
+    await until(lambda: not alive(server), "the end of the spawn server that hung")
+
+
+async def test_a_command_line_may_be_longer_than_a_packet(start: Launch) -> None:
+    word = "ж" * 45_000
+    client = await start(
+        {"node": {"exec": script("import sys; print('n', len(sys.argv[1]))", word)}}
+    )
+    assert await said(client, "node", "n") == "45000"
+
+
+@pytest.fixture
+async def stopped(
+    start: Launch, monkeypatch: pytest.MonkeyPatch
+) -> AsyncIterator[SupervisorClient]:
+    """A session whose supervisor has been suspended."""
+    monkeypatch.setattr("launcher.client.HEARD_IN_A_HURRY_S", 0.5)
+    client = await start({"node": {"exec": SLEEPER}})
+    await running_pid(client, "node")
+    kill(client.session.supervisor_pid, signal.SIGSTOP)
+    yield client
+    with contextlib.suppress(ProcessLookupError):
+        kill(client.session.supervisor_pid, signal.SIGKILL)
+
+
+async def test_a_supervisor_that_hangs_is_killed_with_all_its_nodes(
+    stopped: SupervisorClient,
+) -> None:
+    supervisor, node = stopped.session.supervisor_pid, stopped.nodes["node"].pid
+    first = asyncio.ensure_future(stopped.shutdown())
+    await asyncio.sleep(0)
+    with pytest.raises(SilentSupervisorError) as error:
+        await soon(stopped.shutdown(now=True))
+    assert str(error.value) == (
+        f"the supervisor (pid {supervisor}) gave no answer; it was killed with all its nodes"
+    )
+    with pytest.raises(SilentSupervisorError):
+        await soon(first)
+    assert node is not None
+    assert not alive(node)
+    assert not alive(supervisor)
+
+
+async def test_what_a_killed_supervisor_has_left_is_named(
+    stopped: SupervisorClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("launcher.client_parting.GONE_WITHIN_S", 0.5)
+    mark = {**os.environ, RUN_MARK: stopped.session.run_id}
+    # One that nobody can find by its parents: it stands for another user's.
+    left = await asyncio.create_subprocess_exec("sleep", "1000", env=mark, start_new_session=True)
+    left.send_signal(signal.SIGSTOP)
+    with pytest.raises(SilentSupervisorError, match=rf"still running: .*{left.pid} \(sleep\)"):
+        await soon(stopped.shutdown(now=True))
+    left.kill()
+    await left.wait()
+
+
+async def test_anothers_supervisor_that_hangs_is_left_alone(stopped: SupervisorClient) -> None:
+    pid = stopped.session.supervisor_pid
+    kill(pid, signal.SIGCONT)
+    other = await attach()
+    kill(pid, signal.SIGSTOP)
+    with pytest.raises(SilentSupervisorError) as error:
+        await soon(other.shutdown(now=True))
+    assert str(error.value) == f"the supervisor (pid {pid}) does not answer; kill -9 {pid} ends it"
+    assert alive(pid)
+
+
+async def test_whoever_attaches_to_one_that_hangs_is_told_how_to_end_it(
+    stopped: SupervisorClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("launcher.client.HELLO_WITHIN_S", 0.5)
+    pid = stopped.session.supervisor_pid
+    with pytest.raises(SilentSupervisorError, match=f"kill -9 {pid} ends it"):
+        await soon(attach())
