@@ -61,7 +61,12 @@ class Brake:
         if state.engaged != before.engaged:
             self._end_publications()
         self._set(state)
-        if before.engaged and not state.engaged and not state.ours:
+        if (
+            before.engaged
+            and not state.engaged
+            and not state.ours
+            and self._app.feed.replay is None
+        ):
             words = _("Another has released the emergency stop: the wheels may turn.")
             self._app.notify(words, severity="warning", timeout=WHY_S, markup=False)
         now_s = clock.now()

@@ -32,7 +32,7 @@ class Screen:
         self._inbox = GraphInbox(lambda: None)
         self.observer = Observer(domain, "localhost")
         self.feed = SimpleNamespace(
-            graph=self.observer, update=None, link=None, nodes={}, watching=True
+            graph=self.observer, update=None, link=None, nodes={}, watching=True, replay=None
         )
         self.notes: list[str] = []
         self.brake = Brake(cast("DeckApp", self))
