@@ -19,7 +19,7 @@ ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 
-.PHONY: help setup run test lint clean
+.PHONY: help setup run test lint lock clean
 .DEFAULT_GOAL := help
 
 help:
@@ -27,11 +27,12 @@ help:
 	@echo 'make test   set up if needed, then run the tests; ARGS="-k sonar"'
 	@echo 'make lint   style, types and who may import whom'
 	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
+	@echo 'make lock   ask for newer libraries and write down which, with their hashes'
 	@echo 'make clean  remove what the others made'
 
 setup: .venv/.ready
 
-.venv/.ready: pyproject.toml $(shell find interfaces)
+.venv/.ready: pyproject.toml $(shell find interfaces locked)
 	@python=$$(sh scripts/find-python.sh) && exec "$$python" scripts/environment.py .venv
 
 run: .venv/.ready
@@ -46,6 +47,9 @@ lint: .venv/.ready
 	@.venv/bin/ruff format --check .
 	@.venv/bin/mypy
 	@.venv/bin/lint-imports
+
+lock: .venv/.ready
+	@exec .venv/bin/python scripts/lock.py
 
 clean:
 	rm -rf .venv build .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache

@@ -1,6 +1,7 @@
 """Make or bring up to date the virtual environment that `make` works in.
 
-Usage: environment.py VENV, run by the Python that the environment is to be made of.
+Usage: environment.py VENV, run by the Python that the environment is to be made of; it calls itself
+as environment.py --build-interfaces FOLDER. What comes from a package index is in locked/.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import fcntl
 import hashlib
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -21,7 +23,11 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 WORK = ROOT / "build" / "setup"
+LOCKED = ROOT / "locked"
 TAIL = 25
+BUILD = "--build-interfaces"
+REQUIRE = ("install", "--require-hashes", "--requirement")
+"""What follows is installed at its locked version only, if it is the very file that was locked."""
 
 
 class StepError(Exception):
@@ -70,12 +76,18 @@ class Step:
                 stdout=log,
                 stderr=log,
                 close_fds=False,
+                # A group of its own, which can be ended with all that it has started.
+                start_new_session=True,
             )
 
     def finish(self) -> None:
         """Wait for the command and say how long it took."""
         say(f"  {self.what} ... ", end="")
-        code = self.process.wait()
+        try:
+            code = self.process.wait()
+        except KeyboardInterrupt:
+            self.abandon()
+            raise
         say(f"{time.monotonic() - self.started:.0f} s" if code == 0 else "failed")
         if code < 0:
             raise ChildProcessError(f"{self.what}: killed by signal {-code}")
@@ -83,9 +95,10 @@ class Step:
             raise StepError(self.what, self.log)
 
     def abandon(self) -> None:
-        """Stop the command, if it is still under way."""
-        self.process.kill()
-        self.process.wait()
+        """Stop the command and what it has started, if it is still under way."""
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.wait()
 
 
 def fingerprint(folder: Path) -> str:
@@ -140,20 +153,14 @@ class Environment:
 
     def install(self) -> None:
         """Install Deck with all it needs, and the message types if they have changed."""
-        wanted = fingerprint(ROOT / "interfaces")
+        wanted = fingerprint(ROOT / "interfaces") + fingerprint(LOCKED)
         if read(self.interfaces) == wanted.encode():
             self.install_deck()
             return
         wheels = WORK / "wheels"
         shutil.rmtree(wheels, ignore_errors=True)
         # The build has a Python environment of its own and need not wait for this one.
-        # It starts Pythons of this one, though, which must not load what is half there.
-        build = Step(
-            "Message types, meanwhile",
-            *self.pip("wheel", "--no-deps", "--wheel-dir", wheels, "./interfaces"),
-            _ROS_WHEELS_BOOTSTRAP_COMPLETE="1",
-            PIP_NO_COMPILE="1",
-        )
+        build = Step("Message types, meanwhile", sys.executable, __file__, BUILD, wheels)
         try:
             self.install_deck()
             build.finish()
@@ -161,18 +168,38 @@ class Environment:
             build.abandon()
         self.interfaces.unlink(missing_ok=True)
         force = ("--force-reinstall", "--no-deps", "--no-index")
-        Step("Installing them", *self.pip("install", *force, *wheels.iterdir())).finish()
+        Step("Installing them", *pip(self.python, "install", *force, *wheels.iterdir())).finish()
         self.interfaces.write_text(wanted)
 
     def install_deck(self) -> None:
-        """Install Deck itself, editable, with ROS 2 and the tools of the tests."""
-        Step(
-            "Libraries of Deck and ROS 2", *self.pip("install", "--editable", ".[ros,test]")
-        ).finish()
+        """Install Deck itself, editable, after ROS 2, its libraries and the tools of the tests."""
+        locked = LOCKED / "deck.txt"
+        Step("Libraries of Deck and ROS 2", *pip(self.python, *REQUIRE, locked)).finish()
+        bare = ("install", "--no-deps", "--no-build-isolation", "--editable", ".")
+        Step("Deck itself", *pip(self.python, *bare)).finish()
 
-    def pip(self, *words: str | Path) -> tuple[str | Path, ...]:
-        """Return the command that runs this environment's pip."""
-        return (self.python, "-m", "pip", "--disable-pip-version-check", *words)
+
+def pip(python: Path, *words: str | Path) -> tuple[str | Path, ...]:
+    """Return the command that runs the pip of an environment."""
+    return (python, "-m", "pip", "--disable-pip-version-check", *words)
+
+
+def build_interfaces(wheels: Path) -> None:
+    """Build the wheel of the message types, in an environment of what is locked for it."""
+    folder = WORK / "build-environment"
+    python = folder / "bin" / "python"
+    environ = os.environ | {"PIP_NO_COMPILE": "1"}
+    # Pythons that a build starts must not load what is half there.
+    environ["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
+    environ["PATH"] = f"{python.parent}{os.pathsep}{environ.get('PATH', os.defpath)}"
+    made = ("wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, "./interfaces")
+    for command in (
+        (sys.executable, "-m", "venv", "--clear", folder),
+        pip(python, *REQUIRE, LOCKED / "interfaces.txt"),
+        pip(python, *made),
+    ):
+        subprocess.run(command, cwd=ROOT, env=environ, check=True, close_fds=False)
+    shutil.rmtree(folder)
 
 
 def read(path: Path) -> bytes:
@@ -210,4 +237,10 @@ def main(folder: str) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    if sys.argv[1] == BUILD:
+        try:
+            build_interfaces(Path(sys.argv[2]))
+        except subprocess.CalledProcessError as failed:
+            sys.exit(failed.returncode)
+    else:
+        sys.exit(main(sys.argv[1]))

@@ -9,9 +9,11 @@ import time
 from pathlib import Path
 from types import SimpleNamespace
 
+import psutil
 import pytest
 
 from tests.unit.scripts_of_setup import ROOT, load
+from tests.waiting import wait_until
 
 environment = load("environment")
 LOG = Path("/dev/null")
@@ -180,3 +182,48 @@ def test_a_second_make_waits_and_finds_the_work_done(
     environment.set_up(made.subject)
     thread.join()
     assert made.steps == ["Virtual environment", "install"]
+
+
+def test_what_comes_from_an_index_is_the_very_file_that_was_locked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Everything else is this tree, which needs no index."""
+    commands: list[list[str]] = []
+
+    def step(_what: str, *command: str | Path, **_environ: str) -> SimpleNamespace:
+        commands.append([str(word) for word in command])
+        return SimpleNamespace(finish=lambda: None, abandon=lambda: None)
+
+    def run(command: tuple[str | Path, ...], **_options: object) -> None:
+        commands.append([str(word) for word in command])
+        if "venv" in command:
+            Path(command[-1]).mkdir(parents=True)
+
+    monkeypatch.setattr(environment, "WORK", tmp_path / "work")
+    monkeypatch.setattr(environment, "Step", step)
+    monkeypatch.setattr(environment.subprocess, "run", run)
+    (tmp_path / "work" / "wheels").mkdir(parents=True)
+    environment.Environment(tmp_path).install_deck()
+    environment.build_interfaces(tmp_path / "work" / "wheels")
+    installs = [words for words in commands if "install" in words or "wheel" in words]
+    assert len(installs) == 4
+    for words in installs:
+        assert "--require-hashes" in words or {"--no-deps", "--no-build-isolation"} <= {*words}
+    files = [Path(words[-1]).name for words in installs if "--require-hashes" in words]
+    assert files == ["deck.txt", "interfaces.txt"]
+
+
+def test_what_is_abandoned_ends_with_all_that_it_has_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(environment, "WORK", tmp_path)
+    monkeypatch.setattr(environment, "ROOT", tmp_path)
+    step = environment.Step("Build", "/bin/sh", "-c", "sleep 60 & echo $!; wait")
+    log = tmp_path / "build.log"
+    wait_until(lambda: log.read_text().endswith("\n"), "the child to be started")
+    child = psutil.Process(int(log.read_text()))
+    step.abandon()
+    wait_until(
+        lambda: not child.is_running() or child.status() == psutil.STATUS_ZOMBIE,
+        "the child to end",
+    )

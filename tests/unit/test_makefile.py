@@ -47,6 +47,7 @@ def tree(tmp_path: Path) -> Path:
         (tree / name).symlink_to(ROOT / name)
     (tree / "scripts").symlink_to(ROOT / "scripts")
     (tree / "interfaces").mkdir()
+    (tree / "locked").mkdir()
     program(tree / ".venv/bin/deck", DECK)
     python = program(tree / ".venv/bin/python", PYTHON)
     (tree / ".venv/.ready").write_text(f"{(tree / '.venv').resolve()} {python.resolve()}\n")
