@@ -158,7 +158,8 @@ def run_live(order: Order, lang: str | None) -> int:
     if app.sessions.parting_words:
         return _refused(app.sessions.parting_words, app.return_code or 0)
     if app.crashed:
-        return _refused(_("Deck has failed; what is known is in {path}").format(path=stray.path), 1)
+        words = _("Deck has failed; what is known is in {path}")
+        return _refused(words.format(path=plain(str(stray.path))), 1)
     return app.return_code or 0
 
 
