@@ -26,6 +26,9 @@ def short(value: float) -> str:
 
 def whole(value: float) -> str:
     """`45`, the nearest whole number; written as by `figure` where that is no use."""
-    if not math.isfinite(value) or abs(value) >= PLAIN_BELOW:
-        return figure(value)
-    return str(round(value))
+    return str(round(value)) if abs(value) < PLAIN_BELOW else figure(value, 0)
+
+
+def elapsed(value: float) -> str:
+    """`45`, the whole seconds, minutes, ... that have passed; written as by `figure` else."""
+    return str(int(value)) if abs(value) < PLAIN_BELOW else figure(value, 0)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from text.plain import plain
+from tui.figures import figure
 from tui.i18n import N_, _
 
 if TYPE_CHECKING:
@@ -163,7 +164,7 @@ def _sight(gate: Gate, place: str, sight: str) -> str:
     if metres is not None and math.isinf(metres) and sight in ("free", "close"):
         return _((NOTHING_NEAR if sight == "free" else TOO_CLOSE)[place])
     words = PLACES[place].get(sight, "{metres}")
-    return _(words).format(metres="?" if metres is None else f"{metres:.2f}")
+    return _(words).format(metres="?" if metres is None else figure(metres))
 
 
 def _number(text: str) -> float | None:

@@ -6,6 +6,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from graph.images import ImageError, to_rgb
+from tui.figures import whole
 from tui.i18n import N_, _
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.image_view import ImageView
@@ -65,5 +66,5 @@ class CameraFeed(Panel):
 
     def _caption(self, update: GraphUpdate, width: int, height: int) -> str:
         row = row_of(update, TOPIC)
-        hz = "" if row is None or row.hz is None else _(" · {hz:.0f} Hz").format(hz=row.hz)
+        hz = "" if row is None or row.hz is None else _(" · {hz} Hz").format(hz=whole(row.hz))
         return f"{width}×{height}{hz}"

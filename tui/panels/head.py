@@ -58,7 +58,7 @@ class HeadFeed(Panel):
                     drawing.answer(str(said["error"]))
                 else:
                     drawing.answer(_("done") if said.get("sum") == 1 else _("refused"))
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             # Anybody may publish there; what is not ours is not shown.
             return
 

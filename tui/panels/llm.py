@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING, cast
 
 from tui import clock
@@ -70,7 +69,7 @@ class LlmFeed(Panel):
             key = cast("DeckApp", self.app).keys_of(ShowComposer)[0]
             trail.show(_("Nothing has come yet; {key} opens the Composer.").format(key=key), ())
             return
-        at = time.strftime("%H:%M:%S", time.localtime(self._story.sent_s))
+        at = clock.time_of_day(self._story.sent_s)
         entries = self._story.entries(clock.now())
         trail.show(_("Came at {time}").format(time=at), entries)
 

@@ -119,7 +119,7 @@ class MapFeed(Panel):
             hint = _("Its log says what it waits for.")
             detail = f"{detail}. {hint}"
         # The age is told in whole seconds, and drawn anew no more often.
-        return trouble, detail, None if age_s is None else float(int(age_s))
+        return trouble, detail, None if age_s is None else age_s // 1
 
     def words_changed(self) -> None:
         """Draw anew in another language."""

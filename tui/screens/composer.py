@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
@@ -260,7 +259,7 @@ class ComposerScreen(DeckScreen):
             hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
             self.outcome.show(f"{_('Nothing was sent yet.')} {hint}", ())
             return
-        at = time.strftime("%H:%M:%S", time.localtime(story.sent_s))
+        at = clock.time_of_day(story.sent_s)
         self.outcome.show(_("Sent at {time}").format(time=at), story.entries(now_s))
 
     def _title(self, selector: str, words: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
@@ -11,6 +10,7 @@ from textual.style import Style
 from textual.widgets import Static
 
 from text.plain import plain
+from tui import clock
 from tui.actions import bindings
 from tui.actions.deck import WriteCommand
 from tui.actions.flow import FLOW_ACTIONS
@@ -232,7 +232,7 @@ class FlowScreen(DeckScreen):
     def _lay(self, width: int) -> list[Line]:
         found: list[Line] = []
         for chain in self.chains:
-            at = time.strftime("%H:%M:%S", time.localtime(chain.start_s))
+            at = clock.time_of_day(chain.start_s)
             found += lines(
                 chain,
                 at,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from text.plain import plain
 from tui.device_reading import STALE_S, Device, Level
+from tui.figures import whole
 from tui.i18n import N_, _
 from tui.widgets.rows import Cell, Column, Row, Rows
 
@@ -86,7 +87,7 @@ def state(device: Device, now_s: float) -> Cell:
     """How it says that it is, as long as what it says is new enough."""
     age_s = device.age_s(now_s)
     if age_s > STALE_S:
-        return Cell(_("○ stale {seconds} s").format(seconds=min(round(age_s), 9999)), "dim")
+        return Cell(_("○ stale {seconds} s").format(seconds=round(min(age_s, 9999.0))), "dim")
     words, meaning = _STATES[device.level]
     return Cell(_(words), meaning)
 
@@ -120,7 +121,7 @@ def errors(device: Device) -> Cell:
         return NOTHING
     if not rate:
         return Cell(grouped(total))
-    return Cell(f"{grouped(total)} +{rate:.0f}" if rate >= 1 else f"{grouped(total)} +", "bad")
+    return Cell(f"{grouped(total)} +{whole(rate)}" if rate >= 1 else f"{grouped(total)} +", "bad")
 
 
 def grouped(value: float) -> str:

@@ -9,6 +9,7 @@ from rich.cells import cell_len
 
 from text.plain import plain
 from tui.device_reading import STALE_S, TOPIC, Device
+from tui.figures import elapsed
 from tui.i18n import _
 from tui.widgets.devices_table import grouped, state
 
@@ -63,7 +64,7 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
         words = _(
             "{name} has said nothing for {seconds} s: has it ended? See Deck (1) or Logs (4)."
         )
-        return words.format(name=name, seconds=round(age_s))
+        return words.format(name=name, seconds=elapsed(age_s))
     if topic is None:
         words = _(
             "{name} tells how it is, but publishes no {topic}: it has no serial port, or it is a "

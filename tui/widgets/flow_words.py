@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from tui.figures import figure
 from tui.flow import Kind, Lane
 from tui.flow_reading import COMMAND, JSON, MIC
 from tui.i18n import N_, _, ngettext
@@ -40,7 +41,7 @@ def _once(step: Step) -> str:
         return outcome_words.drive_words(*step.figures)
     if step.kind is Kind.WHEELS:
         left, right = step.figures
-        return _("left {left:.2f}, right {right:.2f} rad/s").format(left=left, right=right)
+        return _("left {left}, right {right} rad/s").format(left=figure(left), right=figure(right))
     if step.kind is Kind.HEAD_MOVES:
         return _("begins to turn")
     if step.kind is Kind.HEAD_THERE:
@@ -59,8 +60,7 @@ def said_by(step: Step, chain: Chain) -> str:
 def delay(delay_s: float) -> str:
     """A delay in milliseconds, with tenths where it is short."""
     milliseconds = delay_s * SECOND_MS
-    figure = f"{milliseconds:.1f}" if milliseconds < 100 else f"{milliseconds:.0f}"
-    return _("{n} ms").format(n=figure)
+    return _("{n} ms").format(n=figure(milliseconds, 1 if abs(milliseconds) < 100 else 0))
 
 
 def headline(chain: Chain, shown: Sequence[Step]) -> str:

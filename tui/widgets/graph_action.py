@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from graph.data import GoalStatus
 from text.plain import plain
+from tui.figures import figure
 from tui.i18n import N_, _, ngettext, said
 from tui.widgets.graph_ask import AskPane
 from tui.widgets.graph_links import heading, link, node_links
@@ -175,7 +176,7 @@ def _row(goal: Goal) -> Row:
     cells = (
         Cell(f"#{goal.number}"),
         Cell(_words(goal), STATES[goal.status][2]),
-        Cell(_("{n} s").format(n=f"{goal.elapsed_s:.1f}"), "dim"),
+        Cell(_("{n} s").format(n=figure(goal.elapsed_s, 1)), "dim"),
         Cell(told, "dim"),
     )
     return Row(str(goal.number), cells)

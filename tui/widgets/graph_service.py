@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from graph.data import CallResult
 from text.plain import plain
+from tui.clock import time_of_day
 from tui.i18n import N_, _, said
 from tui.widgets.graph_ask import AskPane, now_s
 from tui.widgets.graph_links import heading, link, node_links
@@ -165,7 +165,7 @@ class ServicePane(AskPane):
 
 
 def _at(call: Call) -> str:
-    return time.strftime("%H:%M:%S", time.localtime(call.asked_s))
+    return time_of_day(call.asked_s)
 
 
 def _sign(call: Call) -> Cell:

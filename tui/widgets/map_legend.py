@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from text.plain import plain
+from tui.figures import figure
 from tui.i18n import _
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
 from tui.widgets.map_field import bar_length_m
@@ -48,11 +49,11 @@ def entries(scene: Scene, view: Field, driven_m: float, remarks: Sequence[str]) 
     said = [Entry(0, [Ink(plain(words, 200), "alert")]) for words in remarks if words]
     said += _robot(scene.pose)
     if driven_m >= 0.05:
-        words = _("path {metres} m").format(metres=f"{driven_m:.1f}")
+        words = _("path {metres} m").format(metres=figure(driven_m, 1))
         said.append(Entry(7, [Ink("─ ", PATH), Ink(words)]))
     if scene.goal is not None:
         metres = scene.pose.distance_to(scene.goal)
-        words = _("goal {metres} m away").format(metres=f"{metres:.1f}")
+        words = _("goal {metres} m away").format(metres=figure(metres, 1))
         said.append(Entry(3, [Ink(f"{GOAL_SIGN} ", GOAL), Ink(words)]))
     said += [Entry(4, _ray(place, metres)) for place, metres in scene.rays.items()]
     if scene.truth is not None:
@@ -78,7 +79,7 @@ def _robot(pose: Pose) -> list[Entry]:
 
 def _ray(place: str, metres: float) -> Line:
     name = _("front") if place == FRONT else _("rear")
-    words = remark(metres) or _("{metres} m").format(metres=f"{metres:.1f}")
+    words = remark(metres) or _("{metres} m").format(metres=figure(metres, 1))
     sign = BLIND_SIGN if math.isnan(metres) else FREE_SIGN if metres == math.inf else HIT_SIGN
     return [Ink(f"{sign} ", ink_of(metres, STOP_BELOW_M)), Ink(f"{name} {words}")]
 

@@ -31,6 +31,8 @@ FIELD_FROM = (16, 3)
 AROUND_M = 1.0
 """Floor that is shown around what is known, without a room."""
 MARGIN_M = 0.1
+FARTHEST_SEEN_M = 100.0
+"""No sonar sees farther: a wall beyond it is not made room for."""
 STEADY_M = 0.03
 """A distance that changes by less has not changed: sonars tremble."""
 APART_M, APART_RAD = 0.05, math.radians(5)
@@ -157,7 +159,7 @@ class RoomMap(Drawing):
         seen = [
             along(*ray_origin(scene.pose, place), metres)
             for place, metres in scene.rays.items()
-            if math.isfinite(metres)
+            if abs(metres) <= FARTHEST_SEEN_M
         ]
         self._seen = (self._seen or here).holding(*seen) if seen else self._seen
         known = here if self._seen is None else here.joined(self._seen)

@@ -25,6 +25,8 @@ FRONT, REAR = "front", "rear"
 BODY = Body()
 MAX_RANGE_M = Sonar().farthest_m
 """Where a cone ends in which nothing was found."""
+LONGEST_RAY_M = 1e4
+"""A longer one is drawn so long: its end is beyond every edge."""
 CONE_RAD = 0.06
 """Half of its angle; wider than the real one, to be seen as a cone."""
 BROKEN_M = 0.6
@@ -141,7 +143,7 @@ def _draw_ray(canvas: Canvas, view: Field, pose: Pose, place: str, metres: float
         for one, other in pairwise(ends):
             canvas.line(one, other, look)
     else:
-        end = view.place(*along(start, heading, max(0.0, metres)))
+        end = view.place(*along(start, heading, min(max(0.0, metres), LONGEST_RAY_M)))
         canvas.line(begin, end, look)
         canvas.sign(end, HIT_SIGN, look)
 

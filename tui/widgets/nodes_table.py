@@ -9,6 +9,7 @@ from rich.cells import cell_len
 
 from launcher.status import NodeState
 from text.plain import plain
+from tui.figures import figure, whole
 from tui.i18n import N_, _, said
 from tui.widgets.rows import Cell, Column, Row, Rows
 
@@ -30,6 +31,8 @@ STATES = {
 FULL, TOLD = 42, 66
 """Cells besides the names from which on there are columns for the process, and for a word more."""
 MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
+LONGEST_S = 1000.0 * DAY_S
+"""A longer time, or one before all, is no time that a node can have run."""
 
 
 class NodesTable(Rows):
@@ -105,6 +108,8 @@ def duration(seconds: float | None) -> str:
     """Return a time in the two greatest units, five cells at most: `7s`, `1m23`, `2h05`, `3d04`."""
     if seconds is None:
         return ""
+    if not 0 <= seconds < LONGEST_S:
+        return _("{n}s").format(n=figure(seconds, 0))
     whole = int(seconds)
     if whole < MINUTE_S:
         return _("{n}s").format(n=whole)
@@ -117,7 +122,7 @@ def duration(seconds: float | None) -> str:
 
 def percent(value: float | None) -> str:
     """Return a share of one core."""
-    return "" if value is None else f"{value:.0f} %"
+    return "" if value is None else f"{whole(value)} %"
 
 
 def memory(size: int | None) -> str:

@@ -11,6 +11,7 @@ from textual.geometry import Size
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
+from tui.figures import whole
 from tui.i18n import _
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ def delay_text(delay_s: float | None) -> str:
     """A delay, in milliseconds where it is short."""
     if delay_s is None:
         return "…"
-    milliseconds = round(delay_s * SECOND_MS)
-    if milliseconds < 10 * SECOND_MS:
-        return _("{n} ms").format(n=milliseconds)
-    return _("{n} s").format(n=round(delay_s))
+    milliseconds = delay_s * SECOND_MS
+    if abs(milliseconds) < 10 * SECOND_MS:
+        return _("{n} ms").format(n=whole(milliseconds))
+    return _("{n} s").format(n=whole(delay_s))

@@ -129,7 +129,7 @@ class Story:
         kind: Any = event.get("event")
         if kind == "accepted":
             count = words.number(event.get("commands"))
-            whole = 0 if math.isnan(count) else int(count)
+            whole = int(count) if math.isfinite(count) else 0
             commands = ngettext("{n} command", "{n} commands", whole).format(n=whole)
             thought = plain(str(event.get("thought", "")), words.LONGEST)
             text = _("accepted: {commands} “{thought}”").format(commands=commands, thought=thought)

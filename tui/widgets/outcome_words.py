@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from text.plain import plain
+from tui.figures import figure, whole
 from tui.i18n import _
 
 if TYPE_CHECKING:
@@ -26,26 +27,26 @@ def setpoint(value: Mapping[str, Value]) -> tuple[float, float]:
 
 def drive_words(speed_m_s: float, steering_rad: float) -> str:
     """A setpoint with the side it steers to."""
-    words = _("{speed:.2f} m/s, {steering:.2f} rad, straight on")
+    words = _("{speed} m/s, {steering} rad, straight on")
     if steering_rad > 0:
-        words = _("{speed:.2f} m/s, {steering:.2f} rad, to the left")
+        words = _("{speed} m/s, {steering} rad, to the left")
     elif steering_rad < 0:
-        words = _("{speed:.2f} m/s, {steering:.2f} rad, to the right")
-    return words.format(speed=speed_m_s, steering=steering_rad)
+        words = _("{speed} m/s, {steering} rad, to the right")
+    return words.format(speed=figure(speed_m_s), steering=figure(steering_rad))
 
 
 def wheel_words(value: Mapping[str, Value]) -> str:
     """The speeds of the rear wheels of a JointState."""
-    return _("left {left:.2f}, right {right:.2f} rad/s").format(
-        left=joint(value, "rear_left_wheel_joint", "velocity"),
-        right=joint(value, "rear_right_wheel_joint", "velocity"),
+    return _("left {left}, right {right} rad/s").format(
+        left=figure(joint(value, "rear_left_wheel_joint", "velocity")),
+        right=figure(joint(value, "rear_right_wheel_joint", "velocity")),
     )
 
 
 def head_words(pan_rad: float, tilt_rad: float) -> str:
     """Where the head looks."""
-    return _("pan {pan:.0f}°, tilt {tilt:.0f}°").format(
-        pan=math.degrees(pan_rad), tilt=math.degrees(tilt_rad)
+    return _("pan {pan}°, tilt {tilt}°").format(
+        pan=whole(math.degrees(pan_rad)), tilt=whole(math.degrees(tilt_rad))
     )
 
 
@@ -83,4 +84,8 @@ def event_of(value: Mapping[str, Value]) -> dict[str, Any]:
 
 def number(value: object) -> float:
     """A number from outside, nan if it is none."""
-    return float(value) if isinstance(value, (int, float)) else math.nan
+    try:
+        return float(value) if isinstance(value, (int, float)) else math.nan
+    except OverflowError:
+        # JSON has whole numbers of any length.
+        return math.nan

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from textual.containers import Container
 
 from graph.data import Trouble
+from tui.figures import whole
 from tui.i18n import N_, _
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of
 from tui.widgets.sonar_bar import bar, big, ink_of, scale, trend
@@ -119,7 +120,7 @@ class Sonar(Drawing):
         """How far back the trend reaches."""
         first = max(0, len(self._times) - width)
         seconds = self._times[-1] - self._times[first]
-        words = _("last {seconds} s").format(seconds=round(seconds))
+        words = _("last {seconds} s").format(seconds=whole(seconds))
         return beside([Ink(words, "muted")], [Ink(_("now"), "muted")], width)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from enum import Enum
 
+from tui.figures import figure
 from tui.i18n import N_, _
 
 STOP_BELOW_M = 0.5
@@ -49,7 +50,7 @@ def number(metres: float) -> str:
         return "---"
     if math.isinf(metres):
         return "∞" if metres > 0 else "0"
-    return f"{metres:.2f}"
+    return figure(metres)
 
 
 def remark(metres: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tui.figures import figure, whole
 from tui.i18n import _
 
 UNKNOWN = "–"
@@ -20,7 +21,7 @@ def seconds_text(seconds: float | None) -> str:
         return _("{n} s").format(n=_figures(seconds))
     if size >= MICRO * 99.95:
         return _("{n} ms").format(n=_figures(seconds / MILLI))
-    return _("{n} µs").format(n=f"{seconds / MICRO:.0f}")
+    return _("{n} µs").format(n=whole(seconds / MICRO))
 
 
 def count_text(count: int | None) -> str:
@@ -29,8 +30,8 @@ def count_text(count: int | None) -> str:
         return UNKNOWN
     if count < 100_000:
         return str(count)
-    return f"{count / 1000:.0f}k" if count < 10_000_000 else f"{count / 1_000_000:.0f}M"
+    return f"{count / 1000:.0f}k" if count < 10_000_000 else f"{whole(count / 1_000_000)}M"
 
 
 def _figures(value: float) -> str:
-    return f"{value:.0f}" if abs(value) >= WHOLE_FROM - 0.05 else f"{value:.1f}"
+    return figure(value, 0 if abs(value) >= WHOLE_FROM - 0.05 else 1)

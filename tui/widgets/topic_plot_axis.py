@@ -13,6 +13,8 @@ NEAR = 1e-6
 FINER = 4
 """Steps of the ends in one of the ticks: no more than that is left blank above and below."""
 HUGE = 1e15
+TINIEST = 1e-290
+"""Below that there is nothing left to divide."""
 PLACES_MOST = 6
 
 
@@ -60,7 +62,7 @@ def axis_for(low: float, high: float, ticks: int) -> Axis:
     span = high - low
     if span <= LEAST_SPAN * max(1.0, abs(low), abs(high)):
         # A straight line stands in the middle, and its axis is of its own order of magnitude.
-        half = 0.5 * 10.0 ** math.floor(math.log10(abs(low))) if low else 0.5
+        half = 0.5 * 10.0 ** math.floor(math.log10(abs(low))) if abs(low) > TINIEST else 0.5
         low, high = low - half, high + half
         span = high - low
     fine = round_step(span, FINER * ticks)

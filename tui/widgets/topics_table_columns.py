@@ -10,6 +10,7 @@ from rich.cells import cell_len, set_cell_size
 
 from graph.data import TopicRow, Trouble
 from text.plain import plain
+from tui.figures import elapsed, figure
 from tui.i18n import N_, _
 from tui.widgets.topic_figures import UNKNOWN, count_text, seconds_text
 
@@ -47,8 +48,8 @@ def hz_text(hz: float | None) -> str:
     if hz is None:
         return UNKNOWN
     if hz >= WHOLE_FROM:
-        return f"{hz:.0f}"
-    return f"{hz:.1f}" if hz >= 1 or not hz else f"{hz:.2f}"
+        return figure(hz, 0)
+    return figure(hz, 1 if hz >= 1 or not hz else 2)
 
 
 def bandwidth_text(bytes_per_s: float | None) -> str:
@@ -56,9 +57,9 @@ def bandwidth_text(bytes_per_s: float | None) -> str:
     if bytes_per_s is None:
         return UNKNOWN
     value, step = bytes_per_s, 0
-    while round(value) >= STEP and step < len(UNITS) - 1:
+    while value >= STEP - 0.5 and step < len(UNITS) - 1:
         value, step = value / STEP, step + 1
-    shown = f"{value:.0f}" if not step or value >= WHOLE_FROM else f"{value:.1f}"
+    shown = figure(value, 0 if not step or value >= WHOLE_FROM else 1)
     return f"{shown} {_(UNITS[step])}"
 
 
@@ -69,10 +70,10 @@ def age_text(age_s: float | None) -> str:
     if age_s < SOON_S:
         return _("<1 s")
     if age_s < MINUTE_S:
-        return _("{n} s").format(n=int(age_s))
+        return _("{n} s").format(n=elapsed(age_s))
     if age_s < HOUR_S:
-        return _("{n} min").format(n=int(age_s / MINUTE_S))
-    return _("{n} h").format(n=int(age_s / HOUR_S))
+        return _("{n} min").format(n=elapsed(age_s / MINUTE_S))
+    return _("{n} h").format(n=elapsed(age_s / HOUR_S))
 
 
 def type_text(row: TopicRow) -> str:
@@ -158,7 +159,7 @@ COLUMNS = (
         N_("Age"),
         7,
         lambda row: age_text(row.age_s),
-        lambda row: (float("inf") if row.age_s is None else int(row.age_s), ""),
+        lambda row: (float("inf") if row.age_s is None else row.age_s // 1, ""),
         right=True,
     ),
     Column(

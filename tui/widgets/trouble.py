@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from graph.data import Trouble
+from tui.figures import elapsed
 from tui.i18n import N_, _
 
 _HEADLINES = {
@@ -23,5 +24,5 @@ def trouble_words(trouble: Trouble, age_s: float | None = None) -> str:
 def no_data_words(age_s: float) -> str:
     """Say for how long nothing has come: whole seconds, minutes from two of them on."""
     if age_s < 120:
-        return _("no data for {seconds} s").format(seconds=int(age_s))
-    return _("no data for {minutes} min").format(minutes=int(age_s / 60))
+        return _("no data for {seconds} s").format(seconds=elapsed(age_s))
+    return _("no data for {minutes} min").format(minutes=elapsed(age_s / 60))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.cells import cell_len
 
 from robot.sound import SILENCE_DBFS
+from tui.figures import whole
 from tui.i18n import _
 from tui.widgets.drawing import Ink, Line, cells_of, fit
 from tui.widgets.sonar_bar import EIGHTHS
@@ -28,7 +29,9 @@ def level_line(dbfs: float | None, width: int) -> Line:
     room = width - aside - cells_of(lead)
     if room < LEAST_BAR:
         return [Ink(fit(number, width).rstrip(), look)]
-    share = (min(max(dbfs, QUIETEST_DB), LOUDEST_DB) - QUIETEST_DB) / (LOUDEST_DB - QUIETEST_DB)
+    # In this order not a number counts as the quietest.
+    heard_db = min(LOUDEST_DB, max(QUIETEST_DB, dbfs))
+    share = (heard_db - QUIETEST_DB) / (LOUDEST_DB - QUIETEST_DB)
     full, part = divmod(round(8 * room * share), 8)
     filled = "█" * full + (EIGHTHS[part] if part else "")
     rest = "·" * (room - len(filled)) + " " * (aside - cell_len(number))
@@ -36,7 +39,7 @@ def level_line(dbfs: float | None, width: int) -> Line:
 
 
 def _number(dbfs: float) -> str:
-    return _("{level} dB").format(level=f"{dbfs:.0f}")
+    return _("{level} dB").format(level=whole(dbfs))
 
 
 def _look(dbfs: float) -> str:

@@ -1,0 +1,254 @@
+"""Whatever is sent is shown somehow: no number or text ends a panel, a screen or the stop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from graph.data import GraphUpdate, Sample
+from launcher.events import LogEvent, StatusEvent
+from launcher.status import LogLine, NodeStatus
+from robot.odometry import yaw_from_quaternion
+from tests.tui import hostile
+from tests.tui.app_runs import opened
+from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSession
+from tui.clock import time_of_day
+from tui.figures import elapsed, figure, short, whole
+from tui.panels.wheels import would_be
+from tui.widgets.drawing import Drawing
+from tui.widgets.head import HeadPanel
+from tui.widgets.head_reading import Pose, head_in
+from tui.widgets.map_panel import RoomMap
+from tui.widgets.map_reading import goal_in, ground_in, pose_in
+from tui.widgets.nodes_table import duration, memory, percent
+from tui.widgets.outcome import delay_text
+from tui.widgets.sonar import Sonar
+from tui.widgets.topic_figures import count_text, seconds_text
+from tui.widgets.topic_plot import TopicPlot
+from tui.widgets.topic_plot_field import PlotField
+from tui.widgets.topic_plot_legend import number_text
+from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text
+from tui.widgets.trouble import no_data_words
+from tui.widgets.voice import VoicePanel
+from tui.widgets.wheels import WheelsPanel, angle_words, radius_words, speed_words
+from tui.widgets.wheels_reading import wheels_in
+
+Said = tuple[GraphUpdate, tuple[NodeStatus, ...], tuple[LogLine, ...]]
+SIZES = ((1, 1), (12, 2), (34, 5), (44, 14), (120, 40))
+ALL_PANELS = ("sonar", "wheels", "map", "camera", "head", "voice", "composer")
+SCREENS = ("deck", "topics", "composer", "logs", "graph", "flow", "devices")
+LOOKS = 16
+LONGEST = 24
+"""Cells of a figure with its unit, whatever it is."""
+
+quick = settings(max_examples=60, deadline=None, derandomize=True, database=None)
+
+
+def drawn(panel: Drawing) -> None:
+    """Draw it as the screen would, at every size that it has another drawing for."""
+    for width, height in SIZES:
+        for line in panel.draw(width, height):
+            assert all(isinstance(ink.text, str) for ink in line)
+
+
+def message(topic: str) -> st.SearchStrategy[Any]:
+    return hostile.MESSAGES[topic][1]
+
+
+@quick
+@given(message("/wheel_commands"), message("/drive"))
+def test_wheels_are_drawn(joints: Any, drive: Any) -> None:
+    for wheels in (wheels_in(joints), would_be(drive)):
+        panel = WheelsPanel()
+        if wheels is not None:
+            panel.show(wheels)
+        drawn(panel)
+
+
+@quick
+@given(st.lists(st.tuples(hostile.doubles, hostile.doubles), min_size=1, max_size=5))
+def test_distances_are_drawn(readings: list[tuple[float, float]]) -> None:
+    panel = Sonar("front")
+    for metres, time_s in readings:
+        panel.show(metres, time_s)
+        drawn(panel)
+
+
+@quick
+@given(message("/head_state"), st.builds(Pose, hostile.doubles, hostile.doubles), hostile.texts)
+def test_heads_are_drawn(state: Any, told: Pose, answer: str) -> None:
+    panel = HeadPanel()
+    pose = head_in(state)
+    for one in filter(None, (pose, told, pose)):
+        panel.show(one)
+        panel.command(told)
+        panel.answer(answer)
+        drawn(panel)
+
+
+places = hostile.pose_stamped | hostile.odometry
+"""Anywhere."""
+near = st.floats(-20, 20) | hostile.doubles
+
+
+@quick
+@given(
+    st.lists(places, max_size=3),
+    message("/map"),
+    message("/goal_pose"),
+    st.lists(near, min_size=2, max_size=4),
+)
+def test_maps_are_drawn(poses: list[Any], room: Any, goal: Any, rays: list[float]) -> None:
+    panel = RoomMap()
+    usual = {"position": {"x": 1.0, "y": 2.0, "z": 0.0}, "orientation": dict.fromkeys("xyzw", 0.5)}
+    for pose in ({"header": {"frame_id": "odom"}, "pose": usual}, *poses):
+        found = pose_in(pose)
+        if found is not None:
+            panel.show_pose(*found)
+            panel.show_truth(found[0])
+        ground = ground_in(room)
+        if ground is not None:
+            panel.show_ground(ground)
+        panel.show_goal(goal_in(goal))
+        for place, metres in zip(("front", "rear"), rays, strict=False):
+            panel.show_ray(place, metres)
+        panel.settle()
+        drawn(panel)
+
+
+def test_one_reading_of_a_sonar_does_not_make_the_map_useless() -> None:
+    panel = RoomMap()
+    found = pose_in(
+        {
+            "header": {"frame_id": "odom"},
+            "pose": {
+                "position": {"x": 0.0, "y": 0.0, "z": 0.0},
+                "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
+            },
+        }
+    )
+    assert found is not None
+    panel.show_pose(*found)
+    panel.show_ray("front", 3.4e38)
+    panel.settle()
+    panel.draw(60, 20)
+    assert panel._view is not None
+    assert panel._view.columns / panel._view.dots_per_m < 100
+
+
+@quick
+@given(hostile.turn)
+def test_a_heading_is_a_number_or_none(turn: dict[str, float]) -> None:
+    heading = yaw_from_quaternion(*(turn[axis] for axis in "xyzw"))
+    assert math.isnan(heading) or abs(heading) <= math.pi
+
+
+@quick
+@given(st.lists(st.tuples(message("/audio/mic_raw"), hostile.doubles), max_size=4), hostile.maybe)
+def test_voices_are_drawn(said: list[tuple[Any, float]], level: float | None) -> None:
+    panel = VoicePanel()
+    for one, time_s in said:
+        panel.hear("human", one["data"], time_s)
+        panel.show_level(level)
+        drawn(panel)
+
+
+@quick
+@given(st.lists(st.tuples(hostile.doubles, near), min_size=1, max_size=12), st.integers(0, 3))
+def test_plots_are_drawn(points: list[tuple[float, float]], windows: int) -> None:
+    plot = TopicPlot()
+    plot.toggle(PlotField("/number", ("data",)))
+    now_s = 1_767_225_600.0
+    for number, ahead_s in points:
+        now_s += abs(ahead_s) if abs(ahead_s) < 1e6 else 0.1
+        sample = Sample("/number", "std_msgs/msg/Float64", now_s, 0.0, 8, {"data": number})
+        plot.take(GraphUpdate(now_s, samples={"/number": (sample,)}))
+    for _each in range(windows):
+        plot.next_window()
+    drawn(plot)
+
+
+WORDS: Sequence[Callable[[float], str]] = (
+    age_text,
+    angle_words,
+    bandwidth_text,
+    delay_text,
+    duration,
+    elapsed,
+    figure,
+    hz_text,
+    no_data_words,
+    number_text,
+    percent,
+    radius_words,
+    seconds_text,
+    short,
+    speed_words,
+    time_of_day,
+    whole,
+)
+
+
+@pytest.mark.parametrize("words", WORDS, ids=lambda words: words.__name__)
+def test_a_figure_is_short_whatever_it_is(words: Callable[[float], str]) -> None:
+    @quick
+    @given(hostile.doubles)
+    def check(value: float) -> None:
+        assert 0 < len(words(value)) <= LONGEST + 8
+
+    check()
+
+
+@quick
+@given(hostile.counts)
+def test_a_count_is_short_whatever_it_is(count: int) -> None:
+    assert len(count_text(count)) <= LONGEST
+    assert len(memory(count)) <= LONGEST
+
+
+async def shown(screen: str, said: list[Said]) -> None:
+    """Show all of it on a screen that lets every exception out; the stop works to the end."""
+    graph = RecordedGraph()
+    session = RecordedSession(replace(SESSION, panels=ALL_PANELS))
+    async with opened(RecordedPad(session, graph), screen) as (app, pilot):
+        for number, (update, statuses, lines) in enumerate(said):
+            session.say(StatusEvent(statuses))
+            session.say(LogEvent(lines))
+            graph.show(update)
+            await pilot.pause()
+            if number == 2:
+                await pilot.resize_terminal(80, 24)
+        assert app.screen.tab == screen
+        assert any(strip.text.strip() for strip in app.screen._compositor.render_strips())
+        graph.published.clear()
+        await pilot.press("ctrl+x")
+        await pilot.pause()
+        assert ("/emergency_stop", {"data": True}) in [(one[0], one[2]) for one in graph.published]
+
+
+@cache
+def everything_said() -> list[Said]:
+    """A few looks at the graph and the session: an app for each of them would take a minute."""
+    said: list[Said] = []
+
+    @settings(quick, max_examples=LOOKS, suppress_health_check=list(HealthCheck))
+    @given(hostile.updates(), hostile.statuses(), hostile.lines)
+    def collect(
+        update: GraphUpdate, statuses: tuple[NodeStatus, ...], lines: tuple[LogLine, ...]
+    ) -> None:
+        said.append((update, statuses, lines))
+
+    collect()
+    return said
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+async def test_a_screen_shows_it_and_the_stop_works(screen: str) -> None:
+    await shown(screen, everything_said())
