@@ -101,12 +101,18 @@ class Emergency:
         """Release it from here, which every node that holds has yet to confirm."""
         awaited = {name: self.nodes[name].since_s for name in self.holders}
         state = self.said(False, now_s, now_s)
-        return replace(state, ours=True, since_s=now_s, awaited=awaited, ended=())
+        return replace(state, ours=True, since_s=now_s, awaited=awaited)
 
     def said(self, engaged: bool, heard_s: float, said_s: float) -> Emergency:
         """Take it that somebody has said so on the topic."""
         return replace(
-            self, asked=engaged, by_gate=False, heard_s=heard_s, said_s=said_s, fallback=""
+            self,
+            asked=engaged,
+            by_gate=False,
+            heard_s=heard_s,
+            said_s=said_s,
+            fallback="",
+            ended=self.ended if engaged else (),
         )
 
     def fallen_back(self, reason: str, ended: tuple[str, ...] = ()) -> Emergency:

@@ -285,6 +285,13 @@ def test_a_stop_by_somebody_else_is_told_apart_also_where_the_gate_tells_of_it_f
     assert state.seen(gate_says("free", NOW_S + 9)).engaged
 
 
+def test_what_a_stop_has_ended_is_forgotten_with_it() -> None:
+    state = NOTHING.pressed(NOW_S).fallen_back("why", ("hello",)).pressed(NOW_S + 1)
+    assert state.ended == ("hello",)
+    assert not state.seen(said(False, NOW_S + 2)).ended
+    assert not state.released(NOW_S + 2).ended
+
+
 def test_listeners_are_those_that_the_graph_knows() -> None:
     assert listeners(None) == 0
     assert listeners(lesson_update(topics=())) == 0
