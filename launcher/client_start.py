@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -17,6 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 import launcher
 from launcher.process_marks import ROOM_ARGUMENT, room_for_marks
+from launcher.process_signal import send
+from launcher.process_table import processes
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -63,7 +66,7 @@ class StartingSupervisor:
     def give_up(self) -> None:
         """Let go of it: if it has not begun anything, that is its end."""
         if not self._begun:
-            self._process.kill()
+            self._kill()
         if self._words >= 0:
             os.close(self._words)
             self._words = -1
@@ -126,6 +129,16 @@ class StartingSupervisor:
                     return
                 await asyncio.sleep(_LOOK_EVERY_S)
         finally:
+            self._kill()
+
+    def _kill(self) -> None:
+        """Kill the supervisor; its guardian, which is what was started here, ends the rest."""
+        supervisors = [each for each in processes() if each.parent == self._process.pid]
+        for supervisor in supervisors:
+            send(supervisor, signal.SIGKILL)
+        if supervisors:
+            self._process.send_signal(signal.SIGCONT)
+        else:
             self._process.kill()
 
     async def _give(self, plan: Plan) -> dict[str, Any]:

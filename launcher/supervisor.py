@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from launcher.process_ties import become_subreaper
 from launcher.spawn_server_start import fork_spawn_server
+from launcher.supervisor_guardian import fork_under_guardian
 from launcher.supervisor_id import new_run_id
 
 
 def main() -> None:
     """Run one session."""
+    fork_under_guardian()
     become_subreaper()
     run_id = new_run_id()
     # First of all: what it imports takes longer than all that is done here meanwhile.

@@ -185,6 +185,7 @@ class Supervisor:
         """Run the session to its end."""
         self._reaper.install(self._loop)
         self._install_signals()
+        self._watch_guardian()
         await self.control.serve(self._home.listen())
         self._session.start()
         _answer({"folder": str(self._home.record.folder)})
@@ -279,6 +280,22 @@ class Supervisor:
                 signal.signal(number, signal.SIG_IGN)
             else:
                 self._loop.add_signal_handler(number, self._on_signal, number)
+
+    def _watch_guardian(self) -> None:
+        with contextlib.suppress(OSError):
+            guardian = os.getppid()
+            held = os.pidfd_open(guardian)
+            self._loop.add_reader(held, self._guardian_gone, guardian, held)
+
+    def _guardian_gone(self, guardian: int, held: int) -> None:
+        self._loop.remove_reader(held)
+        os.close(held)
+        words = say(
+            "the guardian (pid {pid}) ended: if the supervisor is killed now, what nodes have sent"
+            " into the background may go on",
+            pid=guardian,
+        )
+        self._warn(words)
 
     def _on_signal(self, number: signal.Signals) -> None:
         self._finish(say("{signal} received", signal=number.name), now=self._end.is_set())

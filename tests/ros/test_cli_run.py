@@ -275,9 +275,11 @@ def test_interrupting_twice_ends_a_run_whose_supervisor_hangs(tmp_path: Path) ->
 
 
 def supervisors(owner: psutil.Process) -> list[psutil.Process]:
-    """Its children that are what they are to be: until then it waits for them itself."""
+    """The supervisor that it has started, once it is under its guardian."""
     with contextlib.suppress(psutil.NoSuchProcess):
-        return [each for each in owner.children() if "launcher.supervisor" in each.cmdline()]
+        for child in owner.children():
+            if " ".join(child.cmdline()).startswith("deck: guardian"):
+                return child.children()
     return []
 
 

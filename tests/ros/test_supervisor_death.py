@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from launcher.client import attach, running
-from launcher.process_table import NODE_MARK, RUN_MARK, processes, read_marks
+from launcher.process_table import (
+    NODE_MARK,
+    RUN_MARK,
+    command_line,
+    processes,
+    read_marks,
+    read_process,
+)
 from launcher.rundir import OWN_RUN_DIR
 from launcher.status import NodeState, Stray
 from launcher.strays import find_strays
@@ -207,14 +214,61 @@ async def test_a_new_spawn_server_is_an_undertaker_too(start: Launch) -> None:
     assert await all_gone(run_id) < PROMISED_S + 1
 
 
+UNMARKED_DAEMON = """
+    import os, time
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork(): os._exit(0)
+        command = "trap '' INT TERM; echo daemon $$; while :; do sleep 1; done"
+        os.execve("/bin/sh", ["sh", "-c", command], {"PATH": os.environ["PATH"]})
+    time.sleep(1000)
+"""
+
+
+async def test_a_daemon_without_a_mark_does_not_outlive_a_killed_supervisor(start: Launch) -> None:
+    """In a session of its own, nobody's child, with an empty environment, deaf to signals."""
+    client = await start({"node": {"exec": script(UNMARKED_DAEMON)}})
+    daemon = int(await said(client, "node", "daemon"))
+    kill(client.session.supervisor_pid, signal.SIGKILL)
+    began = time.monotonic()
+    await until(lambda: not alive(daemon), "the end of the daemon")
+    assert time.monotonic() - began < PROMISED_S + 1
+    assert await all_gone(client.session.run_id) < PROMISED_S + 1
+
+
+async def test_a_guardian_that_is_killed_is_told_of_and_ends_nothing(start: Launch) -> None:
+    client = await start({"node": {"exec": SLEEPER}})
+    pid = await running_pid(client, "node")
+    guardian = guardian_of(client.session.supervisor_pid)
+    assert command_line(guardian) == "deck: guardian"
+    kill(guardian, signal.SIGTERM)
+    kill(guardian, signal.SIGKILL)
+    await said(client, "deck", f"the guardian (pid {guardian}) ended")
+    assert await running_pid(client, "node") == pid
+
+
+async def test_a_guardian_ends_with_its_supervisor(start: Launch) -> None:
+    client = await start({"node": {"exec": SLEEPER}})
+    guardian = guardian_of(client.session.supervisor_pid)
+    await client.shutdown()
+    await until(lambda: not alive(guardian), "its end")
+
+
+def guardian_of(supervisor: int) -> int:
+    process = read_process(supervisor)
+    assert process is not None
+    return process.parent
+
+
 async def test_what_an_earlier_run_left_is_told_of_and_ended_on_demand(start: Launch) -> None:
-    """Supervisor and spawn server killed together: a child of the node is left."""
+    """Supervisor, spawn server and guardian killed together: a child of the node is left."""
     client = await start({"deaf": {"exec": script(DEAF_FAMILY)}}, name="earlier")
     run_id = client.session.run_id
     await until(lambda: len(of_run(run_id)) == 4, "the deaf node and its children")
-    both = (await spawn_server_of(run_id), client.session.supervisor_pid)
+    supervisor = client.session.supervisor_pid
+    every = (guardian_of(supervisor), await spawn_server_of(run_id), supervisor)
     for number in (signal.SIGSTOP, signal.SIGKILL):
-        for pid in both:
+        for pid in every:
             kill(pid, number)
     # The node itself dies with the supervisor, though on a busy machine not at the same moment.
     await until(lambda: len(of_run(run_id)) == 2, "the end of all but the node's children")
