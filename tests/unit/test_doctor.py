@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from launcher.discovery import PROFILES
 from launcher.serial_ports import SerialPort
 from tui.cli import main
 from tui.doctor import Finding, Level
@@ -151,6 +152,9 @@ def test_missing_messages(package: str, level: str) -> None:
         ({"ROS_LOCALHOST_ONLY": "1"}, [("ros.localhost_only", "warn")]),
         ({"ROS_LOCALHOST_ONLY": "0"}, []),
         ({"ROS_DISCOVERY_SERVER": "10.0.0.1:11811"}, [("ros.discovery", "warn")]),
+        ({"FASTDDS_DEFAULT_PROFILES_FILE": "/mine.xml"}, [("ros.open", "warn")]),
+        ({"FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILES)}, []),
+        ({"RMW_IMPLEMENTATION": "rmw_cyclonedds_cpp"}, [("ros.open", "warn")]),
     ],
 )
 def test_domains_and_discovery(environ: dict[str, str], verdict: list[tuple[str, str]]) -> None:

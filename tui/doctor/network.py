@@ -6,6 +6,8 @@ import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from launcher.discovery import RMW, why_open
+from launcher.discovery import VARIABLES as FAST_DDS_VARIABLES
 from launcher.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
 from launcher.errors import DomainError
 from tui.doctor.finding import fail, ok, warn
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 VARIABLES = (
     *("ROS_DOMAIN_ID", "ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"),
-    *("ROS_DISCOVERY_SERVER", "FASTRTPS_DEFAULT_PROFILES_FILE", "CYCLONEDDS_URI"),
+    *("ROS_DISCOVERY_SERVER", "CYCLONEDDS_URI", RMW, *FAST_DDS_VARIABLES),
 )
 
 
@@ -64,10 +66,13 @@ def _oddities(facts: NetworkFacts) -> list[Finding]:
                 _("unset it; Deck does so for its own nodes"),
             )
         )
-    for name in ("ROS_DISCOVERY_SERVER", "FASTRTPS_DEFAULT_PROFILES_FILE", "CYCLONEDDS_URI"):
+    for name in ("ROS_DISCOVERY_SERVER", "CYCLONEDDS_URI"):
         if name in facts.environ:
             text = _("{name}={value} changes who hears whom").format(
                 name=name, value=facts.environ[name]
             )
             found.append(warn("ros.discovery", text, _("unset it if topics stay empty")))
+    open_because = why_open(facts.environ, "localhost")
+    if open_because:
+        found.append(warn("ros.open", said(open_because), _("unset it, if you need no other")))
     return found
