@@ -19,6 +19,8 @@ ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 
+ROOMS := bench graph launcher nodes robot scripts tests text tui
+
 .PHONY: help setup run test lint lock clean
 .DEFAULT_GOAL := help
 
@@ -51,6 +53,12 @@ lint: .venv/.ready
 lock: .venv/.ready
 	@exec .venv/bin/python scripts/lock.py
 
+# What carries no mark of scripts/environment.py is somebody's own.
 clean:
-	rm -rf .venv build .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
-	find bench graph launcher nodes robot scripts tests text tui -name __pycache__ -exec rm -rf {} +
+	@if [ ! -e .venv ] || [ -e .venv/.ready ] || [ -e .venv/.unfinished ]; then rm -rf .venv; \
+	else echo '.venv is not of this make'"'"'s making: it stays'; fi
+	rm -rf build/setup .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	@if [ -d build ]; then rmdir --ignore-fail-on-non-empty build; fi
+	@for room in $(ROOMS); do \
+	if [ -d $$room ]; then find $$room -path '*/__pycache__/*.pyc' -type f -delete; \
+	find $$room -name __pycache__ -type d -empty -delete; fi; done

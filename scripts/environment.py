@@ -137,9 +137,8 @@ class Environment:
     def update(self) -> None:
         """Bring the environment to what pyproject.toml and interfaces/ ask for."""
         if not self.is_sound():
-            Step(
-                "Virtual environment", sys.executable, "-m", "venv", "--clear", self.folder
-            ).finish()
+            self.begin()
+            Step("Virtual environment", sys.executable, "-m", "venv", self.folder).finish()
         # What pip left half done looks whole to the next pip. When pip itself gives
         # up it undoes its work; when it is killed, this mark stays behind.
         self.unfinished.touch()
@@ -150,6 +149,21 @@ class Environment:
             raise
         self.unfinished.unlink()
         self.ready.write_bytes(self.identity())
+
+    def begin(self) -> None:
+        """Make the folder, or empty it if it is one that was made here; else leave it alone."""
+        self.folder.mkdir(exist_ok=True)
+        if any(self.folder.iterdir()) and not (self.ready.exists() or self.unfinished.exists()):
+            raise FileExistsError(
+                f"{self.folder} is there already, and was not made by `make`; move it away"
+            )
+        # The mark stays: whatever happens now, the folder is known as one that was made here.
+        self.unfinished.touch()
+        for entry in self.folder.iterdir():
+            if entry.is_dir() and not entry.is_symlink():
+                shutil.rmtree(entry)
+            elif entry != self.unfinished:
+                entry.unlink()
 
     def install(self) -> None:
         """Install Deck with all it needs, and the message types if they have changed."""

@@ -23,17 +23,21 @@ LOG = Path("/dev/null")
 def made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     """A tree with a blank in its name, an environment in it, and nothing installed for real."""
     tree = tmp_path / "a tree"
-    (tree / ".venv" / "bin").mkdir(parents=True)
-    (tree / ".venv" / "bin" / "python").symlink_to(sys.executable)
+    tree.mkdir()
     (tree / "scripts").symlink_to(ROOT / "scripts")
     subject = environment.Environment(tree / ".venv")
     steps: list[str] = []
     monkeypatch.delenv("PYTHON", raising=False)
-    monkeypatch.setattr(
-        environment,
-        "Step",
-        lambda what, *_command, **_environ: SimpleNamespace(finish=lambda: steps.append(what)),
-    )
+
+    def step(what: str, *_command: object, **_environ: str) -> SimpleNamespace:
+        def finish() -> None:
+            steps.append(what)
+            (tree / ".venv" / "bin").mkdir()
+            subject.python.symlink_to(sys.executable)
+
+        return SimpleNamespace(finish=finish)
+
+    monkeypatch.setattr(environment, "Step", step)
     monkeypatch.setattr(environment.Environment, "install", lambda _self: steps.append("install"))
     return SimpleNamespace(tree=tree, subject=subject, steps=steps)
 
@@ -55,6 +59,33 @@ def test_an_environment_is_sound_when_its_set_up_has_ended(made: SimpleNamespace
     made.subject.update()
     assert made.steps == ["Virtual environment", "install"]
     assert both_say_sound(made)
+
+
+def test_an_environment_that_somebody_else_has_made_stays(
+    made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    precious = made.subject.folder / "lib" / "precious.py"
+    precious.parent.mkdir(parents=True)
+    precious.write_text("mine")
+    monkeypatch.setattr(environment, "WORK", made.tree / "build")
+    assert environment.main(str(made.subject.folder)) == 1
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert said.startswith(f"deck: cannot set up here: {made.subject.folder} is there already")
+    assert precious.read_text() == "mine"
+    assert made.steps == []
+
+
+def test_what_is_left_of_an_earlier_environment_goes(made: SimpleNamespace, tmp_path: Path) -> None:
+    """Without what its links lead to."""
+    made.subject.update()
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "precious").touch()
+    (made.subject.folder / "lib64").symlink_to(tmp_path / "elsewhere")
+    (made.subject.folder / "stale").mkdir()
+    made.subject.ready.write_text("of another place")
+    made.subject.update()
+    assert sorted(path.name for path in made.subject.folder.iterdir()) == [".ready", "bin"]
+    assert (tmp_path / "elsewhere" / "precious").exists()
 
 
 def test_a_sound_environment_is_brought_up_to_date_in_place(made: SimpleNamespace) -> None:

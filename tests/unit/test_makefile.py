@@ -146,3 +146,29 @@ def test_another_python_is_set_up_again(tree: Path, tmp_path: Path, make: Make) 
     other = shutil.copy(tree / ".venv/bin/python", tmp_path / "python")
     assert make("setup").returncode == 0
     assert "set-up with" in make("setup", f"PYTHON={other}").stdout
+
+
+def test_clean_removes_what_make_has_made_and_nothing_else(make: Make, tree: Path) -> None:
+    rooms = ("bench", "graph", "launcher", "nodes", "robot", "tests", "text", "tui")
+    for room in rooms:
+        (tree / room / "__pycache__").mkdir(parents=True)
+        (tree / room / "__pycache__" / "a.cpython-311.pyc").touch()
+    (tree / "tui" / "__pycache__" / "notes.txt").touch()
+    for name in ("build/setup/pip.log", "build/colcon/mine", ".mypy_cache/x"):
+        (tree / name).parent.mkdir(parents=True)
+        (tree / name).touch()
+    assert make("clean").returncode == 0
+    left = {str(path.relative_to(tree)) for path in tree.rglob("*") if not path.is_dir()}
+    assert {"tui/__pycache__/notes.txt", "build/colcon/mine", "Makefile"} <= left
+    assert not [name for name in left if name.endswith(".pyc") or name.startswith(".")]
+    assert not (tree / ".venv").exists()
+    assert not (tree / "nodes" / "__pycache__").exists()
+    assert not (tree / "build" / "setup").exists()
+
+
+def test_clean_leaves_an_environment_that_somebody_else_has_made(make: Make, tree: Path) -> None:
+    (tree / ".venv" / ".ready").unlink()
+    said = make("clean")
+    assert said.returncode == 0
+    assert "is not of this make's making" in said.stdout
+    assert (tree / ".venv" / "bin" / "deck").exists()
