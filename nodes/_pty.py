@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _MOST = 4096
+_TERMINALS = "/dev/pts/"
 
 
 class PseudoSerial:
@@ -38,13 +39,16 @@ class PseudoSerial:
         # Keeping the other end open spares an error whenever a program closes it.
         self._ends = ours, theirs
         fresh = self.path.with_name(f".{self.path.name}.{os.getpid()}")
-        with contextlib.suppress(FileNotFoundError):
-            fresh.unlink()
-        fresh.symlink_to(os.ttyname(theirs))
-        if self.path.exists() and not self.path.is_symlink():
-            fresh.unlink()
+        for path in (self.path, fresh):
+            if not _is_free(path):
+                self.unplug()
+                raise FileExistsError(f"{path} is there already, and no device of ours")
+        try:
+            fresh.unlink(missing_ok=True)
+            fresh.symlink_to(os.ttyname(theirs))
+        except OSError:
             self.unplug()
-            raise FileExistsError(f"{self.path} is there already, and no device of ours")
+            raise
         fresh.replace(self.path)
 
     def unplug(self) -> None:
@@ -73,3 +77,13 @@ class PseudoSerial:
         if self._ends is not None and data:
             with contextlib.suppress(OSError):
                 os.write(self._ends[0], data)
+
+
+def _is_free(path: Path) -> bool:
+    """Whether there is nothing by this name, or the link of a pseudo-terminal."""
+    try:
+        return str(path.readlink()).startswith(_TERMINALS)
+    except FileNotFoundError:
+        return True
+    except OSError:
+        return False
