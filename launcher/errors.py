@@ -7,6 +7,7 @@
     │   ├── ProfileError            a profile that cannot be used; `.problems`, all of them
     │   ├── ProfileNotFoundError    no profile of that name; `.near` has the likely ones
     │   ├── DomainError             no ROS domain: not a number from 0 to 232
+    │   ├── DomainTakenError        another session is in the domain; `.free` is one without
     │   └── UnknownNodeError        the running profile has no node of that name
     ├── RunDirError                 no run or log directory, or it is not ours, or full (exit 2)
     └── SessionError                about a running supervisor (exit 1)
@@ -109,6 +110,40 @@ class ProfileNotFoundError(UsageError):
 
 class DomainError(UsageError):
     """No ROS domain."""
+
+
+class DomainTakenError(UsageError):
+    """Another session of this user is in the domain."""
+
+    def __init__(
+        self, domain: int, sessions: Sequence[Words], free: int, *, can_share: bool
+    ) -> None:
+        """`sessions`: what there is in it; `free`: a domain without any.
+
+        `can_share`: whether both could be in it, and would only hear each other.
+        """
+        self.domain = domain
+        self.sessions = tuple(sessions)
+        self.free = free
+        self.can_share = can_share
+        first, more = sessions[0], len(sessions) - 1
+        super().__init__(
+            say(
+                "in domain {domain} there is already {first} (and {more} more);"
+                " `--domain {free}` is free",
+                domain=domain,
+                first=first,
+                more=more,
+                free=free,
+            )
+            if more
+            else say(
+                "in domain {domain} there is already {first}; `--domain {free}` is free",
+                domain=domain,
+                first=first,
+                free=free,
+            )
+        )
 
 
 class UnknownNodeError(UsageError):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from launcher.supervisor_record import RunRecord
 
-MADE_AGAIN_WITHIN_S = 3.0
+MADE_AGAIN_WITHIN_S = 10.0
 """A supervisor whose folder has gone makes it again meanwhile."""
 _LOOK_AGAIN_S = 0.05
 
@@ -37,6 +37,7 @@ class FoundSupervisor:
     run_id: str
     folder: Path
     """The folder of its run, by way of /proc."""
+    domain: int
     purpose: str
     """Its `DECK_RUN_DIR`, by which somebody keeps runs apart; empty for most."""
 
@@ -48,14 +49,19 @@ class FoundSupervisor:
         except OSError:
             return "?"
 
+    @property
+    def holds(self) -> bool:
+        """Whether it holds its folder still; one that is about to end has let go of it."""
+        return os.path.lexists(self.folder)
+
     def record(self) -> RunRecord | None:
         """Return its record, waited for if it is just being made again; None if there is none."""
         deadline = time.monotonic() + MADE_AGAIN_WITHIN_S
         while True:
             record = read_record(self.folder)
-            if record is not None or not supervisor_runs(self.run_id):
+            if record is not None or time.monotonic() > deadline:
                 return record
-            if time.monotonic() > deadline:
+            if not self.holds:
                 return None
             time.sleep(_LOOK_AGAIN_S)
 
@@ -64,7 +70,7 @@ def supervisors() -> Iterator[FoundSupervisor]:
     """Yield this user's supervisors that run a session."""
     us = os.getuid()
     for pid in process_numbers():
-        with suppress(OSError):
+        with suppress(OSError, ValueError):
             # The superuser could read those of others.
             if Path(f"/proc/{pid}").stat().st_uid != us:
                 continue
@@ -75,9 +81,10 @@ def supervisors() -> Iterator[FoundSupervisor]:
 
 def _supervisor(pid: int) -> FoundSupervisor | None:
     marks = read_marks(pid) or {}
-    run_id, _, descriptor = marks.get(SUPERVISOR_MARK, "").rpartition("/")
+    run_id, *numbers = marks.get(SUPERVISOR_MARK, "").split("/")
     # What a supervisor starts may have copies of its environment.
-    if supervisor_of(run_id) != pid or not supervisor_runs(run_id) or not descriptor.isdigit():
+    if supervisor_of(run_id) != pid or not supervisor_runs(run_id):
         return None
+    domain, descriptor = map(int, numbers)
     folder = Path(f"/proc/{pid}/fd/{descriptor}")
-    return FoundSupervisor(run_id, folder, marks.get(OWN_RUN_DIR, ""))
+    return FoundSupervisor(run_id, folder, domain, marks.get(OWN_RUN_DIR, ""))

@@ -93,8 +93,11 @@ class Home:
                 complained = False
 
     def remove(self) -> None:
-        """Take the folder away."""
+        """Take the folder away, and let nobody look for it any more."""
         self.record.remove()
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1
 
     def _is_in_place(self) -> bool:
         """Whether what is held open is still the folder at this path."""
@@ -138,7 +141,8 @@ class Home:
         descriptor = os.open(self.record.folder, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
         if self._descriptor < 0:
             self._descriptor = descriptor
-            show_mark(SUPERVISOR_MARK, f"{self.record.session.run_id}/{descriptor}")
+            session = self.record.session
+            show_mark(SUPERVISOR_MARK, f"{session.run_id}/{session.domain}/{descriptor}")
         else:
             os.dup2(descriptor, self._descriptor, inheritable=False)
             os.close(descriptor)

@@ -88,7 +88,7 @@ class Plan:
     @property
     def drives(self) -> bool:
         """Whether anything gives orders to the wheels."""
-        return any(node.command in _DRIVERS for node in self.nodes)
+        return any(drives(node.command) for node in self.nodes)
 
     @property
     def warm(self) -> bool:
@@ -114,6 +114,11 @@ class Plan:
         if not isinstance(fields["discovery"], str):
             fields["discovery"] = tuple(fields["discovery"])
         return cls(**fields)
+
+
+def drives(command: str) -> bool:
+    """Whether a node that is run by this gives orders to the wheels."""
+    return command in _DRIVERS
 
 
 def _node_from(fields: dict[str, Any]) -> NodePlan:

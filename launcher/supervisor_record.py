@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 RECORD_NAME = "session.json"
 _DRAFT_NAME = f"{RECORD_NAME}.new"
 _LOCK_NAME = "lock"
-_LOCKED_WITHIN_S = 5.0
+_LOCKED_WITHIN_S = 20.0
 """Whoever holds the lock for longer has been stopped in the middle of it."""
 
 
@@ -48,9 +48,10 @@ class RunRecord:
         """Whether its supervisor is alive."""
         return supervisor_runs(self.session.run_id)
 
-    def collides(self, other: RunRecord) -> bool:
-        """Whether the two would get in each other's way in one domain."""
-        return bool(set(self.nodes) & set(other.nodes)) or (self.drives and other.drives)
+    def collides(self, nodes: set[str], drives: bool) -> bool:
+        """Whether it and a run of these nodes would get in each other's way in one domain."""
+        unknown = not self.nodes
+        return unknown or not nodes.isdisjoint(self.nodes) or (self.drives and drives)
 
     def write(self) -> None:
         """Write it, all or nothing."""
@@ -98,12 +99,12 @@ def read_record(folder: Path) -> RunRecord | None:
 
 
 @contextlib.contextmanager
-def exclusively(run_dir: Path) -> Iterator[None]:
-    """Keep this user's other supervisors from looking and writing at the same time."""
+def exclusively(run_dir: Path, domain: int) -> Iterator[None]:
+    """Keep this user's other supervisors out of the domain, while one looks and settles there."""
     descriptor = _lock_file(run_dir)
     try:
         deadline = time.monotonic() + _LOCKED_WITHIN_S
-        while not _locked(descriptor) and time.monotonic() < deadline:
+        while not _locked(descriptor, domain) and time.monotonic() < deadline:
             time.sleep(0.005)
         yield
     finally:
@@ -122,9 +123,10 @@ def _lock_file(run_dir: Path) -> int:
     return open_file(run_dir / _LOCK_NAME, flags)
 
 
-def _locked(descriptor: int) -> bool:
+def _locked(descriptor: int, domain: int) -> bool:
+    """Lock the byte of the file that stands for this domain."""
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
+        fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, domain)
+    except (BlockingIOError, PermissionError):
         return False
     return True

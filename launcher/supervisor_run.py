@@ -25,7 +25,8 @@ from launcher.process_stop import QUICK, Stop
 from launcher.rundir import OWN_RUN_DIR
 from launcher.status import SessionInfo, Severity, Stray
 from launcher.strays import end_strays, find_strays, forget_ended_runs
-from launcher.supervisor_beside import free_domain, neighbours, rival
+from launcher.supervisor_beside import free_domain, rival
+from launcher.supervisor_found import supervisors
 from launcher.supervisor_home import Home
 from launcher.supervisor_plan import Plan
 from launcher.supervisor_process import ProcessLauncher, ProcessScan
@@ -100,11 +101,11 @@ def _claim(home: Home, plan: Plan) -> bool:
     """Make room for this run, unless another has these nodes in this domain."""
     folder = home.run_dir
     try:
-        with exclusively(folder):
-            others = neighbours()
-            other = rival(others, home.record)
+        with exclusively(folder, plan.domain):
+            everyone = list(supervisors())
+            other = rival(everyone, home.record)
             if other is not None:
-                _answer(_refusal(other, free_domain(others, plan.domain)))
+                _answer(_refusal(other, free_domain(everyone, plan.domain)))
                 return False
             home.settle()
         folder = Path(home.record.session.log_dir)

@@ -317,7 +317,7 @@ def every_action() -> frozenset[str]:
     """Return the binding id of every action there is; it takes every screen to know them."""
     for module, _made in SCREENS.values():
         import_module(module)
-    for dialog in ("end_session", "help", "refused", "stopping", "strays"):
+    for dialog in ("domain_taken", "end_session", "help", "refused", "stopping", "strays"):
         import_module(f"tui.screens.{dialog}")
     return frozenset(REGISTRY)
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from launcher.catalog import ProfileEntry
     from launcher.client import SupervisorClient
     from launcher.client_start import StartingSupervisor
+    from launcher.profile import Profile
     from launcher.status import SessionInfo
     from tui.orders import Order, ReplayOrder
     from tui.replay import ReplayLink
@@ -96,12 +97,10 @@ class LivePad:
     async def _launch(self, profile: Path, order: Order) -> SupervisorClient:
         from launcher import client
 
+        read = await asyncio.to_thread(_read, profile, order)
         ahead, self._ahead = self._ahead, None
         return await client.launch(
-            profile,
-            hardware=order.hardware,
-            overrides=order.overrides,
-            domain=order.domain,
+            read,
             foreground=True,
             node_lang=language(),
             supervisor=ahead,
@@ -116,6 +115,24 @@ class LivePad:
 
         set_discovery(os.environ, session.discovery)
         return Observer(session.domain, session.discovery)
+
+
+def _read(path: Path, order: Order) -> Profile:
+    """Read the profile, and see that nobody else is in its domain."""
+    from launcher.profile import load_profile
+    from launcher.serial_ports import serial_ports
+    from launcher.supervisor_beside import refuse_company
+
+    profile = load_profile(
+        path,
+        hardware=order.hardware,
+        overrides=order.overrides,
+        domain=order.domain,
+        ports=serial_ports,
+    )
+    if not order.beside:
+        refuse_company(profile)
+    return profile
 
 
 def _opened_bag(order: ReplayOrder) -> ReplayLink:

@@ -51,3 +51,5 @@ class Order(NamedTuple):
     domain: int | None = None
     replay: ReplayOrder | None = None
     watch: WatchOrder | None = None
+    beside: bool = False
+    """Whether it may be started beside other sessions in its domain."""

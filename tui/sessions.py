@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from launcher.errors import LauncherError
+from launcher.errors import DomainTakenError, LauncherError
 from text.plain import plain
 from tui.i18n import _, said
 from tui.watching import WATCH
@@ -97,6 +97,9 @@ class Sessions:
             if self.picking:
                 await app.show_screen("deck")
             link = await self.pad.open(order)
+        except DomainTakenError as error:
+            await self._ask_for_domain(order, error)
+            return
         except LauncherError as error:
             await self._refuse(error)
             return
@@ -132,6 +135,20 @@ class Sessions:
 
         await self._back_to_picker()
         self._app.push_screen(RefusedScreen(reason))
+
+    async def _ask_for_domain(self, order: Order, error: DomainTakenError) -> None:
+        """Offer a domain in which there is no other session."""
+        from tui.screens.domain_taken import Answer, DomainTakenScreen
+
+        answer = await self._app.push_screen_wait(DomainTakenScreen(_name_of(order), error))
+        if answer is Answer.APART:
+            self.open(order._replace(domain=error.free))
+        elif answer is Answer.TOGETHER:
+            self.open(order._replace(beside=True))
+        elif self.picking:
+            await self._back_to_picker()
+        else:
+            await self._refuse(error)
 
     async def _ask_about(self, strays: tuple[Stray, ...]) -> None:
         from tui.screens.strays import StraysScreen

@@ -31,6 +31,26 @@ def test_leaving_anothers_session_leaves_it_alone_and_ending_it_says_who(deck: D
     assert owner.wait_exit() == 0
 
 
+def test_a_second_lesson_in_the_domain_is_asked_about_before_it_starts(deck: Deck) -> None:
+    first = deck.open("01", "--lang", "en")
+    first.wait_for("1/1")
+    second = deck.open("08", "--lang", "en")
+    asked = second.wait_for("Running there already:")
+    assert "01-hello: " in asked
+    second.press("b")
+    second.wait_for("08-audio")
+    second.wait_for("1/1")
+    again = deck.open("01", "--lang", "en")
+    asked = again.wait_for("one domain is not enough")
+    assert "Start beside it" not in asked
+    again.press("escape")
+    assert again.wait_exit() == 2
+    assert "is free" in again.text()
+    for terminal in (first, second):
+        terminal.press("q")
+        assert terminal.wait_exit() == 0
+
+
 def test_down_is_told_to_the_screen_whose_session_it_ends(deck: Deck) -> None:
     owner = deck.open("01", "--lang", "en")
     owner.wait_for("1/1")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -103,6 +104,40 @@ def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -
     assert missing.errors == ["'three' does not run; running: one, two"]
     assert deck("down", "one").lines == ["one stopped, 2 nodes"]
     assert deck("down").lines == ["two stopped, 2 nodes"]
+
+
+def test_a_second_one_in_the_same_domain_is_refused_where_the_two_collide(
+    tmp_path: Path, ros_domain: int
+) -> None:
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    for command in ("up", "run"):
+        second = deck(command, str(written(tmp_path, TWO, "two.yaml")))
+        assert second.process.returncode == 2
+        assert len(second.errors) == 1
+        assert f"one runs already in domain {ros_domain}" in second.errors[0]
+        assert re.search(r"`--domain \d+` starts another beside it", second.errors[0])
+    assert [session.name for session in running()] == ["one"]
+
+
+def test_two_that_drive_are_not_started_in_one_domain(ros_domain: int) -> None:
+    assert deck("up", "04-ackermann").process.returncode == 0
+    second = deck("up", "03b-drive-to-point")
+    assert second.process.returncode == 2
+    assert f"04-ackermann runs already in domain {ros_domain}" in second.errors[0]
+
+
+def test_a_second_one_that_only_hears_the_first_is_told_of_it(
+    tmp_path: Path, ros_domain: int
+) -> None:
+    deck("up", str(written(tmp_path, ONE, "one.yaml")))
+    (first,) = running()
+    alone = "nodes: {alone: {exec: [sleep, 100]}}"
+    second = deck("up", str(written(tmp_path, alone, "alone.yaml")))
+    assert second.process.returncode == 0
+    assert f"in domain {ros_domain} there is already one: " in second.errors[0]
+    assert f"supervisor {first.supervisor_pid}" in second.errors[0]
+    assert re.search(r"`--domain \d+` is free", second.errors[0])
+    assert [session.name for session in running()] == ["one", "alone"]
 
 
 def test_what_runs_is_named_as_it_was_to_start_it(tmp_path: Path) -> None:

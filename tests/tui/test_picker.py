@@ -10,13 +10,14 @@ from pathlib import Path
 import pytest
 from textual.widgets import Static
 
-from launcher.errors import ProfileError, ProfileProblem
+from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
 from launcher.status import Who
 from launcher.words import say
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.orders import Order
+from tui.screens.domain_taken import DomainTakenScreen
 from tui.screens.picker import PickerScreen
 from tui.screens.refused import RefusedScreen
 from tui.widgets.rows import Rows
@@ -113,6 +114,71 @@ async def test_what_runs_in_the_background_is_attached_to() -> None:
         await pilot.press("enter")
         await pilot.pause()
         assert pad.orders == [PICK._replace(attach="02-sonar-safety")]
+
+
+def taken(*, can_share: bool) -> DomainTakenError:
+    who = say("{name}: {who}, supervisor {pid}", name="01-hello", who="ann on pts/2", pid=4100)
+    return DomainTakenError(42, [who], 43, can_share=can_share)
+
+
+async def test_a_domain_that_is_taken_is_told_before_and_another_is_offered() -> None:
+    pad = RecordedPad(refusal=taken(can_share=True))
+    async with opened(pad, order=PICK) as (app, pilot):
+        await pilot.press("enter")
+        await settle(pilot)
+        assert isinstance(app.screen, DomainTakenScreen)
+        words = str(app.screen.words())
+        assert "01-hello: ann on pts/2, supervisor 4100" in words
+        assert "Domain 43 is free: 09-brain can start in it." in words
+        pad.refusal = None
+        await pilot.press("enter")
+        await settle(pilot)
+        assert [order.domain for order in pad.orders] == [42, 43]
+        assert app.feed.session is SESSION
+
+
+async def test_it_may_be_started_beside_the_other() -> None:
+    pad = RecordedPad(refusal=taken(can_share=True))
+    async with opened(pad, order=PICK) as (app, pilot):
+        await pilot.press("enter")
+        await settle(pilot)
+        pad.refusal = None
+        await pilot.press("b")
+        await settle(pilot)
+        assert [(order.domain, order.beside) for order in pad.orders] == [(42, False), (42, True)]
+        assert app.feed.session is SESSION
+
+
+async def test_it_may_not_where_both_have_the_same_nodes_and_need_not_be_started() -> None:
+    pad = RecordedPad(refusal=taken(can_share=False))
+    async with opened(pad, order=PICK) as (app, pilot):
+        await pilot.press("enter")
+        await settle(pilot)
+        await pilot.press("b")
+        await settle(pilot)
+        assert isinstance(app.screen, DomainTakenScreen)
+        assert "one domain is not enough" in str(app.screen.words())
+        assert len(pad.orders) == 1
+        await pilot.press("escape")
+        await settle(pilot)
+        assert isinstance(app.screen, PickerScreen)
+
+
+async def test_one_that_was_named_and_is_not_to_start_ends_with_words() -> None:
+    pad = RecordedPad(refusal=taken(can_share=True))
+    async with opened(pad) as (app, pilot):
+        assert isinstance(app.screen, DomainTakenScreen)
+        await pilot.press("escape")
+        await settle(pilot)
+        assert app.return_code == 2
+        assert "`--domain 43` is free" in app.sessions.parting_words
+
+
+@both_languages
+def test_domain_taken_looks(look: Look, snap_compare: SnapCompare) -> None:
+    """A dialog that names the session there and a free domain; three keys answer it."""
+    pad = RecordedPad(refusal=taken(can_share=True))
+    assert snap_compare(look.app("deck", pad), terminal_size=look.size, run_before=look.settle)
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])

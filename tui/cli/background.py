@@ -18,6 +18,7 @@ from launcher.errors import (
 )
 from launcher.events import LogEvent
 from text.plain import plain
+from tui.cli.company import warn_of_company
 from tui.cli.health import settled, well
 from tui.cli.output import Paint, json_text, say_error, write
 from tui.cli.report import TextReport
@@ -68,6 +69,7 @@ async def _up(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
+    warn_of_company(profile)
     try:
         link = await client.launch(
             profile, foreground=False, node_lang=language(), supervisor=options.supervisor

@@ -14,6 +14,7 @@ from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.profile import load_profile
 from launcher.serial_ports import serial_ports
 from launcher.status import NodeState
+from tui.cli.company import warn_of_company
 from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
 from tui.cli.output import Paint, drop_output
@@ -45,6 +46,7 @@ def run_command(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
+    warn_of_company(profile)
     return asyncio.run(_main(profile, options))
 
 
