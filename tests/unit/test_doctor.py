@@ -11,7 +11,7 @@ from launcher.discovery import PROFILES
 from launcher.serial_ports import SerialPort
 from tui.cli import main
 from tui.doctor import Finding, Level
-from tui.doctor.login import LoginFacts, setting
+from tui.doctor.login import LoginFacts, before_logout, setting
 from tui.doctor.login import judge as judge_login
 from tui.doctor.media import MediaFacts, cards_in
 from tui.doctor.media import judge as judge_media
@@ -238,6 +238,14 @@ def test_shared_memory() -> None:
 )
 def test_logging_out(facts: LoginFacts, verdict: list[tuple[str, str]]) -> None:
     assert bad(judge_login(facts)) == verdict
+
+
+def test_up_says_in_a_login_that_logging_out_ends_it() -> None:
+    lines = before_logout(LoginFacts(logind=True), {"XDG_SESSION_ID": "3"})
+    assert "`deck up` falls silent" in lines[0]
+    assert "loginctl enable-linger" in lines[1]
+    assert before_logout(LoginFacts(logind=True), {}) == []
+    assert before_logout(LoginFacts(logind=True, lingers=True), {"XDG_SESSION_ID": "3"}) == []
 
 
 @pytest.mark.parametrize(

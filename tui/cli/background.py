@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import sys
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ from tui.cli.health import settled, well
 from tui.cli.output import Paint, json_text, say_error, write
 from tui.cli.report import TextReport
 from tui.cli.sessions import as_json, show
+from tui.doctor.login import before_logout, look
 from tui.i18n import _, language, ngettext, said
 
 if TYPE_CHECKING:
@@ -88,6 +90,8 @@ async def _up(options: Namespace) -> int:
         healthy = all(well(node, optional) for node in link.nodes.values())
     finally:
         await link.aclose()
+    for line in before_logout(look(), os.environ):
+        say_error(line)
     if healthy:
         write(_("`deck attach` shows it, `deck down` stops it"))
     else:

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tui.doctor.finding import ok, warn
+from tui.doctor.finding import Level, ok, warn
 from tui.i18n import _
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from tui.doctor.finding import Finding
 
@@ -60,6 +60,14 @@ def judge(facts: LoginFacts) -> list[Finding]:
             _("run: loginctl enable-linger, or set RemoveIPC=no in /etc/systemd/logind.conf"),
         )
     ]
+
+
+def before_logout(facts: LoginFacts, environ: Mapping[str, str]) -> list[str]:
+    """Return what whoever leaves something running in this login should know, a line each."""
+    if not environ.get("XDG_SESSION_ID"):
+        return []  # No login of logind's: nothing ends here.
+    found = [finding for finding in judge(facts) if finding.level is Level.WARN]
+    return [line for finding in found for line in (finding.text, finding.mend)]
 
 
 def setting(texts: Iterable[str]) -> bool:
