@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from launcher.control_protocol import MAX_MESSAGE_BYTES, encode, pack_session, pack_text
 from launcher.control_server import ControlServer
 from launcher.discovery import why_open
+from launcher.domain_ports import other_users
 from launcher.logs_book import DECK, LogBook
 from launcher.logs_files import LogFiles
 from launcher.logs_folder import make_log_folder, prune_runs
@@ -188,6 +189,7 @@ class Supervisor:
         self._install_signals()
         self._watch_guardian()
         await self.control.serve(self._home.listen())
+        self._tell_of_other_users()
         self._session.start()
         _answer({"folder": str(self._home.record.folder)})
         helpers = [
@@ -324,6 +326,18 @@ class Supervisor:
 
     def _warn(self, words: Words) -> None:
         self._book.say(DECK, Severity.WARN, words)
+
+    def _tell_of_other_users(self) -> None:
+        """Say who could hear and drive this robot from elsewhere on the machine."""
+        users = other_users(self.info.domain)
+        if users:
+            words = say(
+                "{users}: they have ROS processes in domain {domain}, too, on this machine;"
+                " `--domain` chooses another",
+                users=", ".join(users),
+                domain=self.info.domain,
+            )
+            self._warn(words)
 
     def _log_failed(self, reason: str) -> None:
         words = say("{folder}: {reason}", folder=self.info.log_dir, reason=reason)

@@ -33,7 +33,7 @@ def who_runs(pid: int) -> Who:
     try:
         with open(f"/proc/{pid}/stat", "rb") as file:  # noqa: PTH123 - as all of /proc is read
             tty = _terminal(int(stat_fields(file.read())[4]))
-            user = _user(os.fstat(file.fileno()).st_uid)
+            user = user_name(os.fstat(file.fileno()).st_uid)
     except OSError:
         return Who(pid)
     host = read_environment(pid, "SSH_CONNECTION").split(" ")[0]
@@ -48,7 +48,8 @@ def _terminal(device: int) -> str:
     return f"tty{minor}" if major == _VT_MAJOR else ""
 
 
-def _user(uid: int) -> str:
+def user_name(uid: int) -> str:
+    """Return what a user is called, the number if he has no name here."""
     try:
         return pwd.getpwuid(uid).pw_name
     except KeyError:
