@@ -76,6 +76,12 @@ class Faults:
         """
         if not self.isolates:
             raise error
+        try:
+            return self._take(error, place)
+        except Exception:  # noqa: BLE001 - who tells of faults must not be one
+            return type(error).__name__
+
+    def _take(self, error: Exception, place: Widget | None) -> str:
         cause = _cause(error)
         frames = list(_frames(cause))
         failed = place or _innermost(frames)

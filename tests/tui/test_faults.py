@@ -276,6 +276,23 @@ async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() 
         assert "Deck has failed" in deck.journal[0][0]
 
 
+async def test_a_fault_that_cannot_be_told_ends_nothing() -> None:
+    class MuteError(Exception):
+        """One that has no words, and no way to say so."""
+
+        def __str__(self) -> str:
+            raise ZeroDivisionError
+
+    def fail() -> None:
+        raise MuteError
+
+    async with isolated() as deck:
+        deck.app.screen.call_later(fail)
+        deck.app.call_later(fail)
+        await deck.pilot.pause(0.05)
+        assert await deck.stops()
+
+
 async def test_without_isolation_a_fault_makes_a_test_red() -> None:
     app = DeckApp(RecordedPad(), LESSON_9)
     with pytest.raises(ZeroDivisionError):  # noqa: PT012 - it is raised when the app has gone
