@@ -181,6 +181,7 @@ class Supervisor:
         self._end = asyncio.Event()
         self._hurry = asyncio.Event()
         self._reason = ""
+        self._record_failed = False
         self._pids: dict[str, int | None] = {}
 
     async def run(self, stdin: asyncio.StreamReader) -> None:
@@ -322,7 +323,11 @@ class Supervisor:
         try:
             self._home.note(self._session.processes)
         except OSError as problem:
-            self._book.say(DECK, Severity.ERROR, _no_room(self._home.record.folder, problem))
+            if not self._record_failed:
+                self._record_failed = True
+                self._book.say(DECK, Severity.ERROR, _no_room(self._home.record.folder, problem))
+        else:
+            self._record_failed = False
 
     def _warn(self, words: Words) -> None:
         self._book.say(DECK, Severity.WARN, words)

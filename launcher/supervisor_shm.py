@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from typing import TYPE_CHECKING
 
 from launcher.process_shm import SHARED_MEMORY
@@ -16,6 +18,10 @@ if TYPE_CHECKING:
     from launcher.words import Words
 
 
+LEAST_FREE_BYTES = 1 << 20
+"""A participant of Fast DDS takes half of that."""
+
+
 class SharedMemory:
     """To be cleared before nodes start and again and again: others are killed at any time."""
 
@@ -26,9 +32,11 @@ class SharedMemory:
         self._tell = tell
         self._folder = folder
         self._kept: set[str] = set()
+        self._full = False
 
     def clear(self) -> None:
-        """Remove what is in the way; tell once of what only another user can remove."""
+        """Remove what is in the way; tell once of what cannot be helped here."""
+        self._look_for_room()
         found = discard_unfinished(self._folder)
         if found.removed:
             words = say(
@@ -46,3 +54,16 @@ class SharedMemory:
                     file=name,
                 )
                 self._tell(Severity.ERROR, words)
+
+    def _look_for_room(self) -> None:
+        with contextlib.suppress(OSError):
+            room = os.statvfs(self._folder)
+            full = room.f_bavail * room.f_frsize < LEAST_FREE_BYTES
+            if full and not self._full:
+                words = say(
+                    "{folder} is full: nodes that start now may not hear the others; `df {folder}`"
+                    " and `ls -l {folder}` show what fills it",
+                    folder=self._folder,
+                )
+                self._tell(Severity.ERROR, words)
+            self._full = full
