@@ -44,8 +44,11 @@ def test_every_command_shown_exists(readme: str) -> None:
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
 
-def test_every_file_linked_is_there(readme: str) -> None:
-    for link in re.findall(r"\]\(((?!https?:)[^)#]+)\)", readme):
+@pytest.mark.parametrize("page", [*READMES, "SECURITY.md"])
+def test_every_file_linked_is_there(page: str) -> None:
+    links = re.findall(r"\]\(((?!https?:)[^)#]+)", (ROOT / page).read_text())
+    assert links
+    for link in links:
         assert (ROOT / link).exists(), link
 
 
