@@ -189,7 +189,15 @@ class Supervisor:
         self._reaper.install(self._loop)
         self._install_signals()
         self._watch_guardian()
-        await self.control.serve(self._home.listen())
+        try:
+            listener = self._home.listen()
+        except OSError as problem:
+            folder = self._home.record.folder
+            _answer({"no_room": pack_text(_no_room(folder, problem))})
+            self._spawner.close()
+            self._files.close()
+            return
+        await self.control.serve(listener)
         self._tell_of_other_users()
         self._session.start()
         _answer({"folder": str(self._home.record.folder)})

@@ -55,6 +55,25 @@ def test_a_full_disk_is_told_of_and_stops_nothing(
     assert (run.returncode, run.stderr) == (0, "")
 
 
+def test_a_run_directory_that_takes_no_more_files_is_told_of(
+    tmp_path: Path, small: Path, ros_domain: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever it is that finds no room first: the folder, the record or the socket."""
+    monkeypatch.setenv("DECK_RUN_DIR", str(small))
+    path = written(tmp_path, "nodes: {a: {exec: [sleep, 60]}}")
+    command = (sys.executable, "-m", "tui", "run", str(path), "--domain", str(ros_domain))
+    told = []
+    for files in range(2, 8):
+        run = in_small_folder(small, f"64k,mode=700,nr_inodes={files}", *command, "--for", "0.1")
+        if run.returncode == 0:
+            break
+        told.append(run.stderr)
+        assert run.returncode == 2, run.stderr
+        assert "No space left on device" in run.stderr
+        assert "without a word" not in run.stderr
+    assert len(told) >= 2
+
+
 def test_shared_memory_without_room_is_told_of_once(small: Path) -> None:
     script = """
 import sys
