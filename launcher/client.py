@@ -146,14 +146,32 @@ async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
         reader, writer = await asyncio.open_unix_connection(
             sock=connection, limit=MAX_MESSAGE_BYTES
         )
+    except asyncio.TimeoutError as problem:
+        raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
+    except OSError as problem:
+        raise ConnectionLostError(say("the supervisor does not answer")) from problem
+    try:
+        hello = await _greeted(reader, writer, folder)
+    except BaseException:
+        writer.close()
+        raise
+    return SupervisorClient(hello, reader, writer, lifeline)
+
+
+async def _greeted(
+    reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path
+) -> dict[str, Any]:
+    """Say which version this is, and return the answer of a supervisor of the same one."""
+    try:
         writer.write(encode({"deck": VERSION}))
-        hello = json.loads(await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S))
+        hello: dict[str, Any] = json.loads(
+            await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S)
+        )
     except asyncio.TimeoutError as problem:
         raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
     except (OSError, ValueError) as problem:
         raise ConnectionLostError(say("the supervisor does not answer")) from problem
     if hello.get("deck") != VERSION:
-        writer.close()
         raise ProtocolError(
             say(
                 "the running session is of another version of Deck ({theirs}, this is {ours});"
@@ -162,7 +180,7 @@ async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
                 ours=VERSION,
             )
         )
-    return SupervisorClient(hello, reader, writer, lifeline)
+    return hello
 
 
 class SupervisorClient:

@@ -7,6 +7,8 @@ end of the session. It answers with one line on stdout: where to connect, or why
 
 from __future__ import annotations
 
+import os
+
 from launcher.process_ties import become_subreaper
 from launcher.spawn_server_start import fork_spawn_server
 from launcher.supervisor_guardian import fork_under_guardian
@@ -15,6 +17,8 @@ from launcher.supervisor_id import new_run_id
 
 def main() -> None:
     """Run one session."""
+    # It waits for the answer to its plan; the parent will be the guardian.
+    client = os.getppid()
     fork_under_guardian()
     become_subreaper()
     run_id = new_run_id()
@@ -25,7 +29,7 @@ def main() -> None:
 
     from launcher.supervisor_run import run
 
-    asyncio.run(run(run_id, spawn_server))
+    asyncio.run(run(run_id, spawn_server, client))
 
 
 if __name__ == "__main__":

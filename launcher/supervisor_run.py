@@ -53,14 +53,14 @@ STRAYS_AGAIN_S = 3.0
 """What is left of a run that ended a moment ago may just be ending."""
 
 
-async def run(run_id: str, spawn_server: SpawnServerHandle) -> None:
-    """Read the plan, carry it out, and clean up."""
+async def run(run_id: str, spawn_server: SpawnServerHandle, client: int) -> None:
+    """Read the plan, carry it out, and clean up; `client` is the process that has started this."""
     stdin = await _open_stdin()
     line = await stdin.readline()
     if not line.endswith(b"\n"):
         return  # The profile was no good, or the client has gone: there is nothing to do.
     plan = Plan.from_json(line)
-    home = Home(_record(plan, run_id))
+    home = Home(_record(plan, run_id, client))
     try:
         if _claim(home, plan):
             await Supervisor(plan, home, spawn_server).run(stdin)
@@ -76,7 +76,7 @@ async def _open_stdin() -> asyncio.StreamReader:
     return reader
 
 
-def _record(plan: Plan, run_id: str) -> RunRecord:
+def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
     session = SessionInfo(
         run_id=run_id,
         profile=plan.profile,
@@ -90,8 +90,7 @@ def _record(plan: Plan, run_id: str) -> RunRecord:
         supervisor_pid=os.getpid(),
         log_dir=str(Path(plan.log_dir, plan.name, run_id)),
         foreground=plan.foreground,
-        # It waits for the answer to its plan.
-        started_by=who_runs(os.getppid()),
+        started_by=who_runs(client),
         since_s=time.time(),
     )
     nodes = tuple(node.name for node in plan.nodes)

@@ -197,6 +197,13 @@ def hostile_pad(base: GraphUpdate | None = None, *, keys: bool = False) -> Hosti
     return HostilePad(RecordedSession(session, nodes, lines), graph, [poisoned(SESSION)])
 
 
+@pytest.fixture(autouse=True)
+def _all_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a terminal of 16 colours Deck itself writes one of those that are looked for."""
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setenv("COLORTERM", "truecolor")
+
+
 @dataclass
 class Stage:
     """A test's hands and eyes."""
