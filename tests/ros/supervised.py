@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import os
 import sys
@@ -14,7 +15,8 @@ from typing import Any
 
 import pytest
 
-from launcher.client import SupervisorClient, launch
+from launcher.client import SupervisorClient, attach, launch, running
+from launcher.errors import ConnectionLostError, NotRunningError
 from launcher.process_table import read_process
 from launcher.status import NodeState, NodeStatus
 from tests.waiting import until
@@ -56,6 +58,14 @@ async def start(tmp_path: Path, ros_domain: int) -> AsyncIterator[Launch]:
     yield begin
     for client in clients:
         await client.shutdown(now=True)
+
+
+async def end_sessions() -> None:
+    """End what still runs of this test; some of it may be ending by itself."""
+    for session in running():
+        with contextlib.suppress(NotRunningError, ConnectionLostError):
+            client = await attach(session.run_id)
+            await client.shutdown(now=True)
 
 
 async def until_state(

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from launcher.client import attach, running
+from launcher.client import running
 from tests.deck_process import DeckProcess, alive, deck
+from tests.ros.supervised import end_sessions
 from tests.unit.profile_files import written
 from tests.waiting import wait_until
 
@@ -26,9 +27,7 @@ TWO = "nodes: {other: {exec: [sleep, 100]}, quiet: {exec: [sleep, 100]}}"
 @pytest.fixture(autouse=True)
 async def _domain(ros_domain: int) -> AsyncIterator[int]:
     yield ros_domain
-    for session in running():
-        client = await attach(session.run_id)
-        await client.shutdown(now=True)
+    await end_sessions()
 
 
 def test_from_up_to_down(tmp_path: Path, ros_domain: int) -> None:

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from launcher.client import attach, running
+from launcher.client import running
 from tests.hostile import EVIL, EVIL_NAME, WORST, harm_in, quoted
+from tests.ros.supervised import end_sessions
 from tests.unit.bags import write_bag
 from tests.waiting import wait_until
 
@@ -22,9 +23,7 @@ from tests.waiting import wait_until
 @pytest.fixture(autouse=True)
 async def _domain(ros_domain: int) -> AsyncIterator[int]:
     yield ros_domain
-    for session in running():
-        client = await attach(session.run_id)
-        await client.shutdown(now=True)
+    await end_sessions()
 
 
 @pytest.fixture

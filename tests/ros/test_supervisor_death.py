@@ -29,6 +29,7 @@ from tests.ros.supervised import (
     SLEEPER,
     Launch,
     alive,
+    end_sessions,
     kill,
     running_pid,
     said,
@@ -110,9 +111,7 @@ async def own(tmp_path: Path, ros_domain: int) -> AsyncIterator[Any]:
         if owner.returncode is None:
             owner.kill()
         await owner.communicate()
-    for session in running():
-        client = await attach(session.run_id)
-        await client.shutdown(now=True)
+    await end_sessions()
 
 
 async def test_the_supervisor_killed_takes_everything_with_it(start: Launch) -> None:
