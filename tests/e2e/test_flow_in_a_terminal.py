@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
 from tests.e2e.conftest import Deck
 from tests.unit.profile_files import written
+from tui.flow import BURST_S
 
 PROFILE = """
     extends: 09-brain
@@ -46,6 +48,9 @@ def test_a_typed_command_and_a_voice_are_followed_to_the_wheels(deck: Deck, tmp_
     voice = ("/audio/mic_raw", "ai_brain", "/ai_command", "/drive", "/audio/speaker_raw")
     screen = terminal.wait_until(has(*voice, words="VOICE"), "a voice")
     in_rising_order(steps_of(screen, "VOICE"), "/audio/mic_raw", "/ai_command", "/drive")
+    # So soon after the brain's word another one on the same topic is one with it.
+    seen_s = time.monotonic()
+    terminal.wait_until(lambda _screen: time.monotonic() - seen_s > BURST_S, "the end of a burst")
     terminal.press("1")
     terminal.wait_for("Voice")
     terminal.press("c")

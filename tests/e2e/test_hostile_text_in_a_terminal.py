@@ -35,10 +35,11 @@ def test_a_node_that_means_harm_reaches_no_terminal(deck: Deck, ros_domain: int)
             lambda _asked: SetParametersResult(successful=False, reason=EVIL)
         )
         word = peer.publisher("/evil_word", String)
+        # Again and again: what is said before anybody listens is heard by nobody.
         timer = peer.node.create_timer(0.2, lambda: word.publish(String(data=EVIL)))
+        complaint = peer.node.create_timer(0.5, lambda: peer.node.get_logger().error(EVIL))
         terminal = deck.open("watch", "--lang", "en")
         terminal.wait_for("evil_node")
-        peer.node.get_logger().error(EVIL)
         terminal.press("2", "/")
         terminal.type("evil\r")
         terminal.wait_for("␛]52;c;")
@@ -61,6 +62,7 @@ def test_a_node_that_means_harm_reaches_no_terminal(deck: Deck, ros_domain: int)
         terminal.press("q")
         assert terminal.wait_exit() == 0
         timer.cancel()
+        complaint.cancel()
     assert not harm_on_screen(seen(terminal))
 
 
