@@ -11,14 +11,25 @@ import math
 import time
 from typing import TYPE_CHECKING, NamedTuple
 
+from nodes._parameters import Number
 from nodes._speech import Phrase
-from robot.limits import first_excess
+from robot.limits import PICO_RAD_S, first_excess
 
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
 
     from nodes._node import LessonNode
     from robot.limits import Limits
+
+MAX_WHEEL_SPEED = Number(
+    "max_wheel_speed",
+    PICO_RAD_S,
+    "As the Pico has it; both wheels are slowed to it",
+    low=0.1,
+    high=200.0,
+    unit="rad/s",
+)
+"""The parameter of who commands the wheels."""
 
 _REMEMBER_S = 1.5
 """So long a state tells of it: a little longer than from one state to the next."""

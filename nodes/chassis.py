@@ -41,10 +41,10 @@ from nodes._node import LessonNode
 from nodes._pace import Pace
 from nodes._parameters import Number, Text, Whole
 from nodes._pico_client import PicoClient
-from nodes._refusals import Refusals
+from nodes._refusals import MAX_WHEEL_SPEED, Refusals
 from nodes._topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
-from robot.limits import PICO_RAD_S, STEERING, wheel_limits
+from robot.limits import STEERING, wheel_limits
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -89,14 +89,7 @@ class Chassis(LessonNode):
             high=2.0,
             unit="m",
         ),
-        Number(
-            "max_wheel_speed",
-            PICO_RAD_S,
-            "As the Pico has it; both wheels are slowed to it",
-            low=0.1,
-            high=200.0,
-            unit="rad/s",
-        ),
+        MAX_WHEEL_SPEED,
     )
 
     def __init__(self) -> None:

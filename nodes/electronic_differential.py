@@ -25,7 +25,7 @@ from nodes._life import run
 from nodes._nap import Nap
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Text
-from nodes._refusals import Refusals
+from nodes._refusals import MAX_WHEEL_SPEED, Refusals
 from nodes._sole_publisher import SolePublisher
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, DRIVE, WHEEL_COMMANDS
@@ -37,7 +37,7 @@ from robot.kinematics import (
     WheelSpeeds,
     wheel_speeds,
 )
-from robot.limits import PICO_RAD_S, RIM_M_S, SPEED, STEERING, Limits
+from robot.limits import RIM_M_S, SPEED, STEERING, Limits
 from robot.words import STOP, DriveSetpoint
 
 JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
@@ -106,14 +106,7 @@ class ElectronicDifferential(LessonNode):
             high=STEERING.high,
             unit="rad",
         ),
-        Number(
-            "max_wheel_speed",
-            PICO_RAD_S,
-            "As the Pico has it; both wheels are slowed to it",
-            low=0.1,
-            high=200.0,
-            unit="rad/s",
-        ),
+        MAX_WHEEL_SPEED,
         Number("rate", 2.0, "Repetitions of the command a second", low=0.5, high=100.0, unit="Hz"),
         Number(
             "max_age_s",
