@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import gc
 import os
 import shutil
@@ -14,7 +13,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from launcher.process_shm_unfinished import discard_unfinished
+from tests.domains import DomainPool
 
 # A loaded machine is no failure of the code. Each run takes other examples: half as many as usual
 # are enough of them.
@@ -32,9 +31,6 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 STATE_DIR = "DECK_STATE_DIR"
 os.environ[STATE_DIR] = tempfile.mkdtemp(prefix="deck-test-state-")
 """Set for the whole run: nodes that a module shares, started anew by a test, remember alike."""
-
-DOMAINS = range(1, 102)
-"""Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -77,69 +73,25 @@ def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 
 
-class DomainPool:
-    """ROS domains that no other test run on this machine holds, by file locks.
-
-    All runs together hand them out in turn, so that one comes back as late as can be: what a test
-    has left in it, a discovery that is not over or a lease that has not run out, is gone by then.
-    """
-
-    def __init__(self) -> None:
-        """Hold none yet."""
-        self._folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"
-        self._folder.mkdir(exist_ok=True)
-        self._held: dict[int, int] = {}
-
-    def take(self) -> int:
-        """Return a domain that is nobody else's until it is let go of.
-
-        Tests kill processes at any moment, and a node that a test starts by itself has no Deck
-        that clears its way.
-        """
-        discard_unfinished()
-        for _ in DOMAINS:
-            domain = self._next()
-            path = self._folder / str(domain)
-            lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                os.close(lock)
-                continue
-            self._held[domain] = lock
-            # An emergency stop that an earlier test has left there.
-            (Path(os.environ[STATE_DIR]) / "stops" / str(domain)).unlink(missing_ok=True)
-            return domain
-        raise RuntimeError("every ROS domain from 1 to 101 is held by a test")
-
-    def _next(self) -> int:
-        """The domain whose turn it is, and it will be that of the next one."""
-        with (self._folder / "turn").open("a+") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
-            file.seek(0)
-            turn = int(file.read() or 0)
-            file.truncate(0)
-            file.write(str(turn + 1))
-        return DOMAINS[turn % len(DOMAINS)]
-
-    def let_go(self, *domains: int) -> None:
-        """Give domains back; all if none is named."""
-        for domain in domains or tuple(self._held):
-            os.close(self._held.pop(domain))
-
-
 @pytest.fixture(scope="session")
 def domain_pool() -> Iterator[DomainPool]:
     """The domains of this run."""
-    pool = DomainPool()
+    pool = DomainPool(Path("/tmp") / f"deck-test-domains-{os.getuid()}")
     yield pool
     pool.let_go()
+
+
+def take(pool: DomainPool) -> int:
+    """Return a free domain, without the emergency stop that an earlier test has left there."""
+    domain = pool.take()
+    (Path(os.environ[STATE_DIR]) / "stops" / str(domain)).unlink(missing_ok=True)
+    return domain
 
 
 @pytest.fixture
 def ros_domain(domain_pool: DomainPool, monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     """A ROS domain of this test's own, set in the environment."""
-    domain = domain_pool.take()
+    domain = take(domain_pool)
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     yield domain
     domain_pool.let_go(domain)
@@ -148,7 +100,7 @@ def ros_domain(domain_pool: DomainPool, monkeypatch: pytest.MonkeyPatch) -> Iter
 @pytest.fixture
 def other_domain(domain_pool: DomainPool) -> Iterator[int]:
     """Another ROS domain of this test's own."""
-    domain = domain_pool.take()
+    domain = take(domain_pool)
     yield domain
     domain_pool.let_go(domain)
 
@@ -156,6 +108,6 @@ def other_domain(domain_pool: DomainPool) -> Iterator[int]:
 @pytest.fixture(scope="module")
 def module_domain(domain_pool: DomainPool) -> Iterator[int]:
     """A ROS domain for fixtures that live as long as a test module."""
-    domain = domain_pool.take()
+    domain = take(domain_pool)
     yield domain
     domain_pool.let_go(domain)

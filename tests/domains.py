@@ -1,0 +1,87 @@
+"""ROS domains for tests, each held by one test of this user's at a time."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+
+from launcher.process_shm import SHARED_MEMORY, names, port_numbers, sweep
+from launcher.process_shm_unfinished import discard_unfinished
+
+DOMAINS = range(1, 102)
+"""Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
+
+
+class DomainPool:
+    """ROS domains that no other test run on this machine holds, by file locks.
+
+    All runs together hand them out in turn, so that one comes back as late as can be: what a test
+    has left in it, a discovery that is not over or a lease that has not run out, is gone by then.
+    """
+
+    def __init__(self, folder: Path, shared_memory: Path = SHARED_MEMORY) -> None:
+        """Hold none yet; `folder` is that of all runs of this user."""
+        self._folder = folder
+        self._shared_memory = shared_memory
+        self._folder.mkdir(exist_ok=True)
+        self._held: dict[int, int] = {}
+
+    def take(self) -> int:
+        """Return a domain that is nobody else's until it is let go of.
+
+        Tests kill processes at any moment, and a node that a test starts by itself has no Deck
+        that clears its way. Where another user has ports, with a node or without, it would be
+        given other ones than tests reckon with: such a domain is the last choice.
+        """
+        discard_unfinished(self._shared_memory)
+        strange = {domain_of(number) for number in self._ports() if self._is_strange(number)}
+        for choice in (set(DOMAINS) - strange, strange):
+            for _ in DOMAINS:
+                domain = self._next()
+                if domain in choice and self._lock(domain):
+                    return domain
+        raise RuntimeError("every ROS domain from 1 to 101 is held by a test")
+
+    def let_go(self, *domains: int) -> None:
+        """Give domains back, without the ports of killed nodes; all if none is named."""
+        for domain in domains or tuple(self._held):
+            ports = (number for number in self._ports() if domain_of(number) == domain)
+            sweep([f"fastrtps_port{number}" for number in ports], self._shared_memory)
+            os.close(self._held.pop(domain))
+
+    def _ports(self) -> list[int]:
+        found = names(self._shared_memory)
+        return port_numbers(name for name in found if name.removeprefix("fastrtps_port").isdigit())
+
+    def _is_strange(self, port: int) -> bool:
+        try:
+            owner = (self._shared_memory / f"fastrtps_port{port}").lstat().st_uid
+        except FileNotFoundError:
+            return False
+        return owner != os.geteuid()
+
+    def _lock(self, domain: int) -> bool:
+        lock = os.open(self._folder / str(domain), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(lock)
+            return False
+        self._held[domain] = lock
+        return True
+
+    def _next(self) -> int:
+        """The domain whose turn it is, and it will be that of the next one."""
+        with (self._folder / "turn").open("a+") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            file.seek(0)
+            turn = int(file.read() or 0)
+            file.truncate(0)
+            file.write(str(turn + 1))
+        return DOMAINS[turn % len(DOMAINS)]
+
+
+def domain_of(port: int) -> int:
+    """Return the domain that a port belongs to (RTPS 2.5, section 9.6.2.3)."""
+    return (port - 7400) // 250

@@ -1,0 +1,63 @@
+"""Tests get domains in which nothing stands in their way, and leave nothing in them."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.domains import DomainPool
+
+
+@pytest.fixture
+def shared_memory(tmp_path: Path) -> Path:
+    folder = tmp_path / "shm"
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture
+def pool(tmp_path: Path, shared_memory: Path) -> Iterator[DomainPool]:
+    pool = DomainPool(tmp_path / "domains", shared_memory)
+    yield pool
+    pool.let_go()
+
+
+def make_port(folder: Path, domain: int) -> Path:
+    """Make what a killed node leaves."""
+    port = folder / f"fastrtps_port{7411 + 250 * domain}"
+    port.write_bytes(b"\2".ljust(64, b"\0"))
+    port.with_name(f"{port.name}_el").touch()
+    return port
+
+
+def test_where_another_user_has_ports_is_the_last_choice(
+    pool: DomainPool, shared_memory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for domain in range(1, 102):
+        if domain != 77:
+            make_port(shared_memory, domain)
+    monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
+    assert pool.take() == 77
+    assert pool.take() in range(1, 102)
+
+
+def test_each_is_held_once_and_comes_back_late(pool: DomainPool) -> None:
+    first, second = pool.take(), pool.take()
+    pool.let_go(first)
+    assert (first, second, pool.take()) == (1, 2, 3)
+
+
+def test_ports_of_killed_nodes_go_with_their_domain(pool: DomainPool, shared_memory: Path) -> None:
+    domain = pool.take()
+    dead, others = make_port(shared_memory, domain), make_port(shared_memory, domain + 1)
+    alive = dead.with_name(f"fastrtps_port{7413 + 250 * domain}")
+    alive.write_bytes(dead.read_bytes())
+    with alive.with_name(f"{alive.name}_el").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        pool.let_go(domain)
+        left = {path.name for path in shared_memory.iterdir() if not path.name.endswith("_el")}
+        assert left == {others.name, alive.name}
