@@ -11,6 +11,7 @@ import json
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -198,10 +199,12 @@ def hostile_pad(base: GraphUpdate | None = None, *, keys: bool = False) -> Hosti
 
 
 @pytest.fixture(autouse=True)
-def _all_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+def _all_colours(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """On a terminal of 16 colours Deck itself writes one of those that are looked for."""
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.setenv("COLORTERM", "truecolor")
+    # A screen saves parameters where it runs.
+    monkeypatch.chdir(tmp_path)
 
 
 @dataclass
