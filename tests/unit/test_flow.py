@@ -24,10 +24,11 @@ from tests.tui.recorded_flow import (
     wheels,
     word,
 )
-from tui.flow import LONGEST_S, MOST_STEPS, Chain, Kind, Lane, Step
+from tui.flow import EARLY_S, LONGEST_S, MOST_STEPS, Chain, Kind, Lane, Step
 from tui.flow_book import MOST_CHAINS, FlowBook
 from tui.flow_reading import FlowReader, log_steps
 from tui.widgets.flow_lines import Axis, columns, fit
+from tui.widgets.flow_words import said_by
 
 PROGRAMS = {"brain": "nodes.ai_brain", "ai_driver": "nodes.ai_driver"}
 
@@ -82,6 +83,15 @@ def test_a_voice_between_two_words_is_one_utterance_and_after_a_silence_another(
 def test_a_brain_may_think_for_long_before_its_command() -> None:
     assert len(book_of(mic(0), said(9.0), step(9.01)).chains) == 1
     assert len(book_of(mic(0), said(21.0)).chains) == 2
+
+
+def test_a_command_is_a_persons_whatever_seems_to_have_come_a_hair_earlier() -> None:
+    wheels_s, said_s = 1.0 - EARLY_S / 2, 1.0
+    by_node = Step(said_s, Lane.COMMAND, "/ai_command", "/composer", text="left", begins=True)
+    (chain,) = book_of(by_node, Step(wheels_s, Lane.WHEELS, "/wheel_commands", "/gate")).chains
+    assert [said_by(one, chain) for one in chain.steps] == ["gate", "a person"]
+    (chain,) = book_of(mic(0.5), by_node).chains
+    assert [said_by(one, chain) for one in chain.steps] == ["", "composer"]
 
 
 def test_a_voice_does_not_follow_from_a_command() -> None:

@@ -52,7 +52,9 @@ def _once(step: Step) -> str:
 
 def said_by(step: Step, chain: Chain) -> str:
     """The node that said it; a command that nothing led to is a person's."""
-    if step is chain.steps[0] and step.lane is not Lane.MIC and step.begins:
+    # By what tells it apart: what seems to have come a hair earlier stands before it.
+    is_first = (step.source, step.time_s) == (chain.first.source, chain.start_s)
+    if is_first and step.lane is not Lane.MIC:
         return _("a person")
     return step.said_by.lstrip("/")
 
