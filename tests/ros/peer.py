@@ -12,6 +12,7 @@ import pytest
 import rclpy
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from tests.waiting import wait_until
@@ -47,6 +48,8 @@ class Peer:
                 environment.setenv(key, value)
             rclpy.init(context=self._context, domain_id=domain)
             self.node = rclpy.create_node(name, context=self._context)
+        # An observer of Deck's in this process silences all loggers without a level of their own.
+        self.node.get_logger().set_level(LoggingSeverity.INFO)
         self._publishers: dict[str, Publisher] = {}
         self._subscriptions: list[Subscription[Any]] = []
         self._executor = SingleThreadedExecutor(context=self._context)
