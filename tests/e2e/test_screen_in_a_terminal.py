@@ -60,10 +60,13 @@ def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -
 
 
 def wait_for_the_gate(terminal: Terminal) -> None:
-    """Wait in Topics until somebody is known to listen: before that a stop ends the nodes, too."""
+    """Wait in Topics until somebody is known to listen: before that a stop ends the nodes, too.
+
+    The cursor is on whichever of the topics of that name was there first.
+    """
     terminal.press("f3", "/")
     terminal.type("/emergency_stop\r")
-    row = re.compile(r"▶ /emergency_stop +std_msgs/Bool +\d+ +[1-9]")
+    row = re.compile(r" /emergency_stop +std_msgs/Bool +\d+ +[1-9]")
     terminal.wait_until(lambda text: row.search(text) is not None, "a subscriber of the stop")
 
 
