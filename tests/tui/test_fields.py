@@ -41,6 +41,17 @@ async def test_what_is_pasted_is_made_visible_and_that_is_the_value() -> None:
         assert field.cursor_position == len(field.value)
 
 
+async def test_a_cursor_that_waits_sends_nothing_over_the_line() -> None:
+    app = FieldApp()
+    async with app.run_test() as pilot:
+        field = app.query_one(Field)
+        await pilot.pause()
+        assert field.has_focus
+        assert not field.cursor_blink
+        await pilot.press("a")
+        assert not field.cursor_blink
+
+
 @given(st.text(st.characters(exclude_categories=("Cs",)), max_size=80))
 def test_a_text_typed_as_it_is_shown_is_that_text(text: str) -> None:
     assert is_plain(typed(text))

@@ -94,7 +94,6 @@ def test_a_parameter_that_is_refused(look: Look, snap_compare: SnapCompare) -> N
 
     def type_it(screen: GraphScreen, _graph: RecordedGraph) -> None:
         field = screen.app.screen.query_one(Input)
-        field.cursor_blink = False
         field.value = "99.0"
 
     before = at(NODE, "p", "down", refuse, "enter", type_it, "enter")

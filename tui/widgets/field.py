@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textual.reactive import reactive
 from textual.widgets import Input
 
 from text.plain import plain
@@ -12,6 +13,9 @@ class Field(Input):
 
     A value that is more than plain text has to be put there, and read, in a form that is plain.
     """
+
+    # A blink is bytes over the line twice a second, for as long as somebody thinks.
+    cursor_blink = reactive(False, init=False)
 
     def validate_value(self, value: str) -> str:
         """Make visible what would be hidden, or obeyed by the terminal."""
