@@ -1,4 +1,4 @@
-"""Ports of nodes that a test has killed, kept from those that are started next.
+"""Ports of nodes that a test has killed or that hung, kept from those that are started next.
 
 Whoever has talked to a killed node goes on talking to it: see `launcher.process_ports`. A launcher
 sees to that for the nodes that it starts anew; here it is a test that does.
@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from launcher.process_ports import BurntPorts
-from launcher.process_shm import held_segments, port_numbers, sweep
+from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers, sweep
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,4 +24,7 @@ def held_by(pids: Iterable[int]) -> set[str]:
 
 def burn(held: set[str]) -> None:
     """Remove what is left of it, and let nobody have these ports."""
-    _BURNT.keep(port_numbers(sweep(held)))
+    left = {name for name in held if (SHARED_MEMORY / f"{name}_el").exists()}
+    # Not only of what can be removed: who goes on talking may look at a lock just now.
+    _BURNT.keep(port_numbers(left))
+    sweep(left)

@@ -59,6 +59,7 @@ class NodeProcess:
             "DECK_LANG": lang,
         }
         self._log = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - closed in `close`
+        self._held: set[str] = set()
         self.process = subprocess.Popen(
             command,
             cwd=ROOT,
@@ -89,26 +90,30 @@ class NodeProcess:
         )
 
     def send(self, number: signal.Signals) -> None:
-        """Send a signal; to kill it is waited for, and as after a launcher's nodes swept up."""
-        held = ports.held_by([self.process.pid]) if number == signal.SIGKILL else set()
+        """Send a signal; after one to kill, wait for the end."""
+        self._held |= ports.held_by([self.process.pid])
         self.process.send_signal(number)
-        if held:
-            self.process.wait()
-            ports.burn(held)
+        if number == signal.SIGKILL:
+            self.wait()
 
     def wait(self, within_s: float = 20.0) -> int:
-        """Wait for the end; the exit code comes back."""
-        return self.process.wait(within_s)
+        """Wait for the end; the exit code comes back.
+
+        As after a launcher's nodes, what one that said no good-bye has left is swept up: also who
+        ends on a signal, but not from its main loop, leaves its ports to the next.
+        """
+        code = self.process.wait(within_s)
+        ports.burn(self._held)
+        return code
 
     def close(self) -> None:
         """End it, whatever it does."""
         if self.process.poll() is None:
-            self.process.send_signal(signal.SIGINT)
+            self.send(signal.SIGINT)
             try:
-                self.process.wait(10)
+                self.wait(10)
             except subprocess.TimeoutExpired:
-                self.process.kill()
-                self.process.wait()
+                self.send(signal.SIGKILL)
         self._log.close()
 
     def _stop_waiting(self, words: tuple[str, ...]) -> bool:

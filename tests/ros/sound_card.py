@@ -80,6 +80,11 @@ class SoundCard:
         """Speak into the microphone."""
         self._sound += sound
 
+    @property
+    def speaks(self) -> bool:
+        """Whether there is still something to be said."""
+        return bool(self._sound)
+
     def close(self) -> None:
         """Be gone."""
         self._ending.set()
