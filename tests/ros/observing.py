@@ -14,6 +14,7 @@ from typing import Any
 from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
 from graph.observer import Observer
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
+from tests import ports
 from tests.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
@@ -56,6 +57,13 @@ class Peer:
             return self._answers.get(timeout=30)
 
         return do
+
+    def kill(self) -> None:
+        """Kill it, and keep its ports from whoever comes next."""
+        held = ports.held_by([self.process.pid])
+        self.process.kill()
+        self.process.wait(10)
+        ports.burn(held)
 
     def close(self) -> None:
         assert self.process.stdin is not None

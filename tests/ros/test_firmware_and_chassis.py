@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import threading
 import time
 from typing import TYPE_CHECKING
@@ -84,5 +85,5 @@ def test_the_driver_drives_the_firmware(pico: LivePico, ros_domain: int, tmp_pat
         wait_until(lambda: pico.motors == [0, 0], "a stop by age")
         timer = peer.node.create_timer(0.1, lambda: publisher.publish(wheels(-5.0)))
         wait_until(lambda: pico.motors[0] < 0, "backward")
-        node.process.kill()
+        node.send(signal.SIGKILL)
         wait_until(lambda: pico.motors == [0, 0], "the firmware's own stop")

@@ -164,7 +164,7 @@ def test_a_late_speaker_drops_the_oldest_and_says_so(
         node.wait_for_words("the oldest 1.5 s of sound are dropped")
         wait_until(lambda: without_silence(card.played) == sound[-RATE_HZ:], "the newest")
         (running,) = children(node)
-        node.process.kill()
+        node.send(signal.SIGKILL)
         wait_until(lambda: not is_there(running), "the end of PortAudio with its node")
 
 

@@ -206,8 +206,7 @@ def test_a_server_that_is_killed_in_mid_goal_is_told_though_another_takes_its_pl
     first = Peer("mortal", module_domain, fast_dds=profile)
     first.serve_action("/mortal")
     number = at_work(watcher, first, action="/mortal")
-    first.process.kill()
-    first.process.wait(10)
+    first.kill()
     second = Peer("mortal", module_domain)
     second.serve_action("/mortal")
     assert wait_for(watcher, number, GoalStatus.FAILED).error == "its server has left the graph"
