@@ -25,6 +25,7 @@ def held_by(pids: Iterable[int]) -> set[str]:
 def burn(held: set[str]) -> None:
     """Remove what is left of it, and let nobody have these ports."""
     left = {name for name in held if (SHARED_MEMORY / f"{name}_el").exists()}
-    # Not only of what can be removed: who goes on talking may look at a lock just now.
+    # Also those that cannot be removed: a process that still writes there may hold the lock for a
+    # moment, to see whether anybody else does.
     _BURNT.keep(port_numbers(left))
     sweep(left)

@@ -99,8 +99,8 @@ class NodeProcess:
     def wait(self, within_s: float = 20.0) -> int:
         """Wait for the end; the exit code comes back.
 
-        As after a launcher's nodes, what one that said no good-bye has left is swept up: also who
-        ends on a signal, but not from its main loop, leaves its ports to the next.
+        What it has left in shared memory is swept up then, as a launcher does: a node that hangs at
+        its end says no good-bye, whatever the signal, and leaves its ports to the next.
         """
         code = self.process.wait(within_s)
         ports.burn(self._held)

@@ -75,7 +75,7 @@ def is_there(pid: int) -> bool:
 def comes_whole(card: SoundCard, said: bytes, heard: list[ByteMultiArray]) -> bool:
     """Say it, wait for a second of silence after it, and compare.
 
-    Not the first time on a machine too busy to empty the card in time: sound does not wait.
+    May be called anew: sound does not wait, and a busy machine may lose a block of it.
     """
     heard.clear()
     card.say(said)
