@@ -60,6 +60,8 @@ class NodeProcess:
         }
         self._log = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - closed in `close`
         self._held: set[str] = set()
+        self.hung = False
+        """Whether it has ever been told to."""
         self.process = subprocess.Popen(
             command,
             cwd=ROOT,
@@ -92,6 +94,7 @@ class NodeProcess:
     def send(self, number: signal.Signals) -> None:
         """Send a signal; after one to kill, wait for the end."""
         self._held |= ports.held_by([self.process.pid])
+        self.hung |= number == signal.SIGSTOP
         self.process.send_signal(number)
         if number == signal.SIGKILL:
             self.wait()
@@ -103,7 +106,7 @@ class NodeProcess:
         its end says no good-bye, whatever the signal, and leaves its ports to the next.
         """
         code = self.process.wait(within_s)
-        ports.burn(self._held)
+        ports.burn(self._held, hung=self.hung)
         return code
 
     def close(self) -> None:

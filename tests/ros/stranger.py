@@ -5,11 +5,13 @@ Each line that it prints is what it has seen so far: names of nodes, and the fas
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
 
 import rclpy
 from ackermann_msgs.msg import AckermannDriveStamped
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -44,4 +46,5 @@ class Stranger(Node):
 
 if __name__ == "__main__":
     rclpy.init()
-    rclpy.spin(Stranger(drives="drive" in sys.argv))
+    with contextlib.suppress(ExternalShutdownException):
+        rclpy.spin(Stranger(drives="drive" in sys.argv))

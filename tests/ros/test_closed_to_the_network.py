@@ -66,9 +66,18 @@ class Seeing:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._process.kill()
-        self._process.wait()
+        # Not killed: half made, a port of his would hold up the next one on this machine.
+        self._process.terminate()
+        self._process.wait(10)
         self._reader.join()
+
+    def wait_for_robot(self, which: str) -> None:
+        """Wait until he sees a robot."""
+
+        def what() -> str:
+            return f"to see {which}: looked {self.looks} times, ended {self._process.poll()}"
+
+        wait_until(lambda: WHEELS in self.seen["nodes"], what, 60)
 
     def _read(self) -> None:
         assert self._process.stdout is not None
@@ -105,7 +114,7 @@ def test_the_network_neither_sees_nor_drives_a_local_robot(
             stack.callback(session.close)
             # With the plainest settings, as whoever starts a node by hand has them.
             friend = stack.enter_context(Seeing(robot, domain))
-            wait_until(lambda: WHEELS in friend.seen["nodes"], f"the robot on {discovery}", 60)
+            friend.wait_for_robot(f"the one on {discovery}")
             return friend
 
         friend = run("localhost", ros_domain)
@@ -114,7 +123,7 @@ def test_the_network_neither_sees_nor_drives_a_local_robot(
         open_friend = run("subnet", other_domain)
         for _ in range(JOINS):
             with intruder(neighbour, other_domain) as guest:
-                wait_until(lambda: WHEELS in guest.seen["nodes"], "to see the open one", 60)
+                guest.wait_for_robot("the open one")
         with intruder(neighbour, other_domain):
             wait_until(lambda: open_friend.seen["fastest"] > 1, "to drive the open one", 60)
         assert thief.seen == {"nodes": [], "fastest": 0.0}

@@ -64,7 +64,7 @@ def fall(request: pytest.FixtureRequest, nodes: RobotNodes) -> Fall:
     """How a node goes."""
     if request.param == "killed":
         return lambda name: nodes.end(name, number=signal.SIGKILL)
-    return lambda name: nodes.processes[name].send(signal.SIGSTOP)
+    return nodes.hang
 
 
 def wait_back_and_still(nodes: RobotNodes, *names: str) -> None:
@@ -73,10 +73,11 @@ def wait_back_and_still(nodes: RobotNodes, *names: str) -> None:
     since = len(nodes.wheels.told)
     for name in names:
         if name in nodes.processes:
-            nodes.processes[name].send(signal.SIGCONT)
+            nodes.wake(name)
     nodes.start(*(name for name in names if name not in nodes.processes))
     nodes.wheels.assert_stays()
     nodes.wheels.assert_still(since)
+    nodes.renew()
 
 
 @pytest.mark.parametrize("name", ["chassis", "electronic_differential", "safety_stop"])
@@ -109,10 +110,10 @@ def test_without_a_sonar_nothing_goes_its_way(nodes: RobotNodes, fall: Fall) -> 
 def test_commands_that_have_waited_for_who_hung_are_old(nodes: RobotNodes) -> None:
     nodes.wheels.drive()
     nodes.wheels.wait_moving()
-    nodes.processes["electronic_differential"].send(signal.SIGSTOP)
+    nodes.hang("electronic_differential")
     nodes.wheels.assert_stands()
     # Its queue is full, and nobody puts a stop behind.
-    nodes.processes["safety_stop"].send(signal.SIGSTOP)
+    nodes.hang("safety_stop")
     wait_back_and_still(nodes, "electronic_differential")
     wait_back_and_still(nodes, "safety_stop")
 
