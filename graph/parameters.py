@@ -159,8 +159,8 @@ class Parameters:
             return ""
         if node:
             return say(
-                "{node} lets nobody at its parameters: it was started with its parameter services "
-                "off",
+                "{node} shows no services for its parameters: it has just come, or was started "
+                "with them off",
                 node=talking.node,
             )
         return _gone(talking)

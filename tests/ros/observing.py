@@ -105,6 +105,10 @@ class Watcher:
     def node(self, name: str) -> NodeRow | None:
         return next((row for row in self.update.nodes if row.name == name), None)
 
+    def serves(self, name: str) -> bool:
+        """Whether somebody is seen to serve that."""
+        return any(row.name == name for row in self.update.services)
+
     def of(self, topic: str) -> list[Any]:
         """The values of the samples so far; `data` alone where that is all there is."""
         return [

@@ -71,7 +71,7 @@ def begin_everything(watcher: Watcher, hung: Process) -> list[Any]:
     running = Process("running", int(os.environ["ROS_DOMAIN_ID"]))
     running.serve_action("/drive_to")
     wait_until(lambda: len(watcher.update.actions) == 2, "both actions")
-    wait_until(lambda: any(s.name == "/slow" for s in watcher.update.services), "the service")
+    wait_until(lambda: watcher.serves("/slow"), "the service")
     os.kill(hung.process.pid, signal.SIGSTOP)
     waiting = [observer.call("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0) for n in range(30)]
     waiting.append(observer.parameters("/hung", timeout_s=60.0))

@@ -79,7 +79,7 @@ def test_a_server_that_does_not_answer_ends_in_a_time_out_and_freezes_nothing(
     wait_until(lambda: watcher.of("/beat"), "the beat")
     slow = Peer("slow", module_domain)
     slow.serve("/slow", after_s=2.0)
-    wait_until(lambda: any(s.name == "/slow" for s in watcher.update.services), "the service")
+    wait_until(lambda: watcher.serves("/slow"), "the service")
     slow_one = watcher.observer.call("/slow", ADD, {"a": 1, "b": 2}, timeout_s=0.8)
     let_updates_come(watcher, 5)
     assert not slow_one.done()
@@ -111,7 +111,7 @@ def test_what_cannot_be_called_is_refused_in_words(
     request_: dict[str, object],
     word: str,
 ) -> None:
-    wait_until(lambda: any(s.name == "/add" for s in watcher.update.services), "the service")
+    wait_until(lambda: watcher.serves("/add"), "the service")
     result = call(watcher, service, request_, type_name=type_name)
     assert not result.ok
     assert result.error.startswith(word)
@@ -122,7 +122,7 @@ def test_a_server_that_dies_during_the_call_ends_in_a_time_out(
 ) -> None:
     dying = Peer("dying", module_domain)
     dying.serve("/dying", after_s=60.0)
-    wait_until(lambda: any(s.name == "/dying" for s in watcher.update.services), "the service")
+    wait_until(lambda: watcher.serves("/dying"), "the service")
     future = watcher.observer.call("/dying", ADD, {"a": 1, "b": 2}, timeout_s=2.0)
     wait_until(future.running, "the call is under way")
     dying.kill()
@@ -143,7 +143,7 @@ def test_a_service_that_vanishes_in_mid_call_is_told_long_before_the_time_out(
         # Nobody spins this node, so the request stays unanswered.
         silent = rclpy.create_node("silent", context=host.node.context)
         service = silent.create_service(load_service(ADD), "/vanishing", lambda _, answer: answer)
-        wait_until(lambda: any(s.name == "/vanishing" for s in watcher.update.services), "it")
+        wait_until(lambda: watcher.serves("/vanishing"), "it")
         future = watcher.observer.call("/vanishing", ADD, {"a": 1, "b": 2}, timeout_s=60.0)
         wait_until(lambda: takes_a_request(service), "the request")
         assert not future.done()

@@ -35,7 +35,7 @@ def node(module_domain: int) -> Iterator[Any]:
 @pytest.fixture(scope="module")
 def watcher(module_domain: int, node: Any) -> Iterator[Watcher]:
     watcher = Watcher(module_domain)
-    wait_until(lambda: watcher.node(f"/{node.get_name()}"), "the node")
+    wait_until(lambda: watcher.serves(f"/{node.get_name()}/list_parameters"), "the node")
     yield watcher
     watcher.close()
 
@@ -144,7 +144,7 @@ def test_a_node_may_have_any_number_of_parameters(watcher: Watcher, module_domai
     with Peer(module_domain, "hoard") as peer:
         for number in range(MANY):
             peer.node.declare_parameter(f"group_{number % 7}.p{number}", number)
-        wait_until(lambda: watcher.node("/hoard"), "the node")
+        wait_until(lambda: watcher.serves("/hoard/list_parameters"), "its services")
         found = rows(watcher, "/hoard")
         mine = {name: row.value for name, row in found.items() if name.startswith("group_")}
         assert mine == {f"group_{n % 7}.p{n}": n for n in range(MANY)}
@@ -160,7 +160,7 @@ def test_a_node_without_parameter_services_gets_its_own_words(
     mute = Process("mute", module_domain)
     wait_until(lambda: watcher.node("/mute"), "the node")
     result = watcher.observer.parameters("/mute").result(40)
-    assert result.error.startswith("/mute lets nobody at its parameters")
+    assert result.error.startswith("/mute shows no services for its parameters")
     refused = watcher.observer.set_parameters("/mute", {"a": 1}).result(40)
     assert refused.error == result.error
     mute.close()
@@ -175,7 +175,7 @@ def test_a_stopped_node_ends_in_a_time_out_and_holds_up_nothing(
     watcher: Watcher, module_domain: int
 ) -> None:
     asleep = Process("asleep", module_domain, "--parameters")
-    wait_until(lambda: watcher.node("/asleep"), "the node")
+    wait_until(lambda: watcher.serves("/asleep/list_parameters"), "its services")
     assert "use_sim_time" in rows(watcher, "/asleep")
     os.kill(asleep.process.pid, signal.SIGSTOP)
     try:
@@ -195,7 +195,7 @@ def test_a_node_that_leaves_in_mid_talk_is_told_at_once(
     watcher: Watcher, module_domain: int
 ) -> None:
     leaving = Process("leaving", module_domain, "--parameters")
-    wait_until(lambda: watcher.node("/leaving"), "the node")
+    wait_until(lambda: watcher.serves("/leaving/list_parameters"), "its services")
     assert "use_sim_time" in rows(watcher, "/leaving")
     os.kill(leaving.process.pid, signal.SIGSTOP)
     read = watcher.observer.parameters("/leaving", timeout_s=60)
@@ -209,7 +209,7 @@ def test_a_node_that_leaves_in_mid_talk_is_told_at_once(
 
 def test_what_is_asked_of_an_observer_that_stops_is_answered(module_domain: int) -> None:
     watcher = Watcher(module_domain)
-    wait_until(lambda: watcher.node("/robot"), "the node")
+    wait_until(lambda: watcher.serves("/robot/list_parameters"), "its services")
     watcher.close()
     assert "stopped" in watcher.observer.parameters("/robot").result(10).error
     assert "stopped" in watcher.observer.set_parameters("/robot", {"speed": 1}).result(10).error

@@ -238,7 +238,7 @@ def test_the_lists_of_nodes_and_services_leave_out_deck_itself(
     peer.serve("/add")
     watcher.observer.watch(["/kind"])
     wait_until(lambda: watcher.node("/talker"), "the node")
-    wait_until(lambda: any(row.name == "/add" for row in watcher.update.services), "the service")
+    wait_until(lambda: watcher.serves("/add"), "the service")
     service = next(row for row in watcher.update.services if row.name == "/add")
     assert service.type_names == ("example_interfaces/srv/AddTwoInts",)
     assert service.nodes == ("/talker",)
