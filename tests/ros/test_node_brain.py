@@ -120,7 +120,7 @@ def test_a_voice_sets_the_whole_robot_in_motion(ros_domain: int) -> None:
                 lambda: heads and heads[-1].position[0] == pytest.approx(math.radians(45)),
                 "the head at 45 degrees",
             )
-            assert "drive on" in text(wait_for(speaker, "a reply"))
+            wait_until(lambda: any("drive on" in text(reply) for reply in speaker), "the reply")
             started[2].wait_for_words("The loudspeaker plays")
             started[-1].wait_for_words("with the voice, a picture and 2.00 m ahead", "has turned")
         for node in started:
