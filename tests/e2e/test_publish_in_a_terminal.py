@@ -13,8 +13,9 @@ DELETE, F12 = "\x1b[3~", "\x1b[24~"
 def test_a_message_is_filled_in_published_and_repeated_until_it_is_stopped(deck: Deck) -> None:
     terminal = deck.open("04-ackermann", "--lang", "en")
     terminal.wait_for("1/1")
-    # Without a pause, as somebody types who knows the way.
     terminal.press("f3")
+    terminal.wait_for("/ai_command")
+    # Without a pause, as somebody types who knows the way.
     terminal.type("/ai_command")
     terminal.wait_for("1 of ")
     terminal.press("enter", "n")

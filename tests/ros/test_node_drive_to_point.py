@@ -28,7 +28,13 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
 MODULE = "nodes.drive_to_point"
-SIMULATED: dict[str, object] = {"simulate": "always", "max_speed": 0.5}
+SIMULATED: dict[str, object] = {
+    "simulate": "always",
+    "max_speed": 0.5,
+    "stale_after_s": 20.0,
+    "patience_s": 60.0,
+}
+"""A busy machine that stands for some seconds shall end no drive."""
 SUCCEEDED, CANCELED, ABORTED = (
     GoalStatus.STATUS_SUCCEEDED,
     GoalStatus.STATUS_CANCELED,

@@ -367,13 +367,14 @@ async def test_what_a_node_costs_is_that_of_its_whole_group(start: Launch) -> No
 async def test_what_eludes_every_search_ends_with_the_session(start: Launch) -> None:
     """A daemon without a mark in its environment: the supervisor has adopted it all the same."""
     text = """
-        import os, sys
+        import os, signal
         if os.fork() == 0:
             os.setsid()
             if os.fork(): os._exit(0)
             command = "echo daemon $$; sleep 1000"
             os.execve("/bin/sh", ["sh", "-c", command], {"PATH": os.environ["PATH"]})
-        os.wait()
+        # It stays, for after its end nobody would listen to the daemon.
+        signal.pause()
     """
     client = await start({"node": {"exec": script(text)}})
     daemon = int(await said(client, "node", "daemon"))
