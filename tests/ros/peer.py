@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
-import time
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 ROOT = Path(__file__).parents[2]
-ASKED_AGAIN_S = 8.0
+ASKED_AGAIN_LOOKS = 300
+"""Six seconds, of which those do not count in which the whole machine stood."""
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 DISCOVERY = {
     "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
@@ -124,10 +125,10 @@ class Peer:
         asked, which happens in the first moments of a node ("client will not receive response").
         """
         asked: list[Future] = []
-        began_s = time.monotonic()
+        looks = count()
 
         def answered() -> Future | None:
-            if time.monotonic() >= began_s + ASKED_AGAIN_S * len(asked):
+            if next(looks) % ASKED_AGAIN_LOOKS == 0:
                 asked.append(ask())
             return next((future for future in asked if future.done()), None)
 
