@@ -133,6 +133,8 @@ class Gate:
         )
 
     def _hear(self, source: str, message: AckermannDriveStamped) -> None:
+        # Taken first: if this process is held up from here on, the command has grown old by then.
+        arrived_s = time.monotonic()
         if self.held_up() or self._nap.kept_waiting(message.header.stamp):
             return
         self._arrivals.hear(source)
@@ -142,9 +144,9 @@ class Gate:
             if asked.speed_m_s:
                 self._tell_cut(asked)
             return
-        driving = self._sources.hear(source, asked, time.monotonic())
+        driving = self._sources.hear(source, asked, arrived_s)
         if driving.source == source:
-            self._pass_on(driving)
+            self._pass_on(self._sources.driving(time.monotonic()))
             return
         self._ignored, self._ignored_s = source, time.monotonic()
         self._node.say.warn(words.IGNORED, every_s=2.0, ignored=source, source=driving.source)

@@ -35,8 +35,8 @@ LONG: dict[str, object] = {"stale_after_s": 60, "max_age_s": 60}
 class Gate:
     """The safety node as a gate, with everything around it."""
 
-    def __init__(self, domain: int, **params: object) -> None:
-        self._domain = domain
+    def __init__(self, domain: int, *, module: str = "nodes.safety_stop", **params: object) -> None:
+        self._domain, self._module = domain, module
         self._params = {"gate": True, "rate": 50, "settle_s": 0, **LONG, **params}
         self.process = self._started()
         self.peer = Peer(domain)
@@ -89,7 +89,7 @@ class Gate:
         return self.states[-1].status[0]
 
     def _started(self) -> NodeProcess:
-        return NodeProcess("nodes.safety_stop", self._domain, params=self._params)
+        return NodeProcess(self._module, self._domain, params=self._params)
 
 
 def values(message: DiagnosticArray) -> dict[str, str]:
