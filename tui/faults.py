@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from time import monotonic
 from types import FrameType
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 from textual.events import Resize
 from textual.screen import Screen
@@ -59,7 +60,8 @@ class Faults:
         self._app = app
         self._journal = journal
         self._told: dict[tuple[type[BaseException], str], Told] = {}
-        self._undrawn: list[float] = []
+        self._undrawn: WeakKeyDictionary[Screen[object], list[float]] = WeakKeyDictionary()
+        """When each screen could not be drawn; one below the front one fails again and again."""
         self.given_up = False
         """Whether not even the safe screen can be drawn: the app ends, in order."""
 
@@ -124,11 +126,12 @@ class Faults:
     def _give_up(self, screen: Screen[object], frames: list[FrameType]) -> bool:
         """Show what can be drawn in place of a screen that cannot, if it has been tried enough."""
         now_s = monotonic()
-        self._undrawn = [at for at in self._undrawn if now_s - at < UNDRAWN_WITHIN_S]
-        self._undrawn.append(now_s)
-        if len(self._undrawn) < MOST_UNDRAWN and not _is_composing(frames, screen):
+        before = self._undrawn.get(screen, [])
+        undrawn = [*(at for at in before if now_s - at < UNDRAWN_WITHIN_S), now_s]
+        if len(undrawn) < MOST_UNDRAWN and not _is_composing(frames, screen):
+            self._undrawn[screen] = undrawn
             return False
-        self._undrawn.clear()
+        self._undrawn.pop(screen, None)
         self._replace(screen)
         return True
 

@@ -26,7 +26,7 @@ from tests.tui.recorded import (
 )
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.faults import COMPOSING, LAYING_OUT
+from tui.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
 from tui.isolation import isolating
 from tui.panels.panel import Panel
 from tui.panels.wheels import WheelsFeed
@@ -261,6 +261,15 @@ async def test_when_nothing_can_be_drawn_the_nodes_are_stopped_the_normal_way() 
             assert app.return_code == 1
             assert ("shutdown",) in session.asked
             assert "cannot draw its screen" in app.sessions.parting_words
+
+
+async def test_a_screen_below_that_cannot_be_drawn_either_does_not_keep_the_one_in_front() -> None:
+    async with isolated() as deck:
+        below, front = deck.app.screen_stack[-2:]
+        with broken(Screen, "arrange"):
+            for screen in [front, below, below] * MOST_UNDRAWN:
+                screen._refresh_layout(deck.app.size)
+        await deck.until(lambda: isinstance(deck.app.screen, SafeScreen))
 
 
 async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() -> None:
