@@ -23,11 +23,9 @@ def held_by(pids: Iterable[int]) -> set[str]:
 
 
 def burn(held: set[str], *, hung: bool = False) -> None:
-    """Remove what is left of it, and let nobody have these ports; of one that hung, any of his."""
+    """Remove what is left of it, and let nobody have those ports, or any if the node has `hung`."""
     left = {name for name in held if (SHARED_MEMORY / f"{name}_el").exists()}
-    if hung:
-        _BURNT.keep(port_numbers(held))
     # Also those that cannot be removed: a process that still writes there may hold the lock for a
     # moment, to see whether anybody else does.
-    _BURNT.keep(port_numbers(left))
+    _BURNT.keep(port_numbers(held if hung else left))
     sweep(left)

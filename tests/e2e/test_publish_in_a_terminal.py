@@ -14,6 +14,7 @@ def test_a_message_is_filled_in_published_and_repeated_until_it_is_stopped(deck:
     terminal = deck.open("04-ackermann", "--lang", "en")
     terminal.wait_for("1/1")
     terminal.press("f3")
+    terminal.wait_for("filter: words")
     terminal.wait_for("/ai_command")
     # Without a pause, as somebody types who knows the way.
     terminal.type("/ai_command")

@@ -89,11 +89,11 @@ class RobotNodes:
         self.processes[name].send(signal.SIGCONT)
 
     def renew(self) -> None:
-        """Start nodes anew that were woken.
+        """Start the nodes that were woken anew.
 
-        Fast DDS may have left them deaf: others make the port of one that hangs for over a second
-        anew, and who does so last may remove the port at which he listens since (seen in 1 of 250
-        such nodes: he listened at one that was deleted, and two of four others wrote to another).
+        Fast DDS may have left them deaf: others replace the port of a node that hangs for over a
+        second, and may remove the one at which it listens after that (seen in 1 of 250 rounds: it
+        listened at a deleted port, and two of four others wrote to another).
         """
         names = sorted(self._woken & self.processes.keys())
         self._woken.clear()

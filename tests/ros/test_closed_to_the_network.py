@@ -66,7 +66,7 @@ class Seeing:
         return self
 
     def __exit__(self, *_: object) -> None:
-        # Not killed: half made, a port of his would hold up the next one on this machine.
+        # Not killed: an incomplete port in shared memory might hold up the next one there.
         self._process.terminate()
         self._process.wait(10)
         self._reader.join()

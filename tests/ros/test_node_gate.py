@@ -190,5 +190,6 @@ def test_a_gate_that_is_held_up_while_it_takes_a_command_in_does_not_obey_it(
         gate.see(3.0)
         gate.peer.say(KEYS, drive(0.3))
         gate.process.wait_for_words("was held up")
-        let_pass(0.5)
+        seen = len(gate.safe)
+        wait_until(lambda: len(gate.safe) >= seen + 10, "what passes after it")
         assert speeds(gate.safe) == {0.0}
