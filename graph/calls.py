@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from concurrent.futures import Future
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from graph.clients import Clients
@@ -16,7 +17,6 @@ from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from concurrent.futures import Future
 
     from rclpy.client import Client
     from rclpy.node import Node
@@ -29,6 +29,8 @@ QUEUE = 10
 """Requests that a service keeps while it is busy, by default (source: rmw, the services' QoS)."""
 GONE_AFTER_S = 0.5
 """A last answer may come a little after its service has left the graph."""
+LATE_KEPT = 20
+"""Calls whose time is over and whose answer would still be taken; their clients are kept, too."""
 
 
 @dataclass
@@ -43,6 +45,8 @@ class _Call:
     """Number of the request, once it is sent."""
     served_s: float = 0.0
     """When its service was last seen, once it is sent."""
+    is_late: bool = False
+    """Whether its time is over; `future` is then the one for what still comes of it."""
 
 
 class Calls:
@@ -64,7 +68,8 @@ class Calls:
     ) -> None:
         """Begin a call; the future's result tells of every failure in words, it never raises.
 
-        `known` is what the graph says of the service, `started_s` when it was asked for.
+        `known` is what the graph says of the service, `started_s` when it was asked for. A call
+        that was sent and has no answer within `timeout_s` is told as failed, and listened for on.
         """
         if known and type_name not in known.type_names:
             types = ", ".join(known.type_names)
@@ -98,7 +103,7 @@ class Calls:
         return self._clients.get(service, type_name, {call.client for call in self._calls})
 
     def step(self) -> bool:
-        """Send, take answers, give up; tell whether any call is still under way."""
+        """Send, take answers, give up; tell whether anybody waits for one that is in time."""
         if not self._calls:
             return False
         answers = self._take_answers()
@@ -107,7 +112,9 @@ class Calls:
             if result is not None:
                 self._calls.remove(call)
                 call.future.set_result(result)
-        return bool(self._calls)
+            elif not call.is_late and time.monotonic() - call.started_s >= call.timeout_s:
+                self._give_up(call)
+        return any(not call.is_late for call in self._calls)
 
     def fail(self, error: Exception) -> None:
         """End every call that is under way."""
@@ -130,22 +137,38 @@ class Calls:
         if call.sequence is not None and _has_gone(call):
             words = say("{name} has left the graph and has not answered", name=call.service)
             return _failed(call.service, words, call.started_s)
-        if time.monotonic() - call.started_s < call.timeout_s:
-            return None
-        words = say("{name}: no answer within {seconds} s", **_facts(call))
+        return None
+
+    def _give_up(self, call: _Call) -> None:
+        """Tell that its time is over; an answer to one that was sent is still listened for."""
+        future = call.future
         if call.sequence is None:
+            self._calls.remove(call)
             words = say("{name}: nobody serves it within {seconds} s", **_facts(call))
-        return _failed(call.service, words, call.started_s)
+            future.set_result(_failed(call.service, words, call.started_s))
+            return
+        late = [other for other in self._calls if other.is_late]
+        for oldest in late[: max(0, len(late) + 1 - LATE_KEPT)]:
+            self._calls.remove(oldest)
+            words = say("{name}: its answer is no longer awaited", name=oldest.service)
+            oldest.future.set_result(_failed(oldest.service, words, oldest.started_s))
+        call.is_late, call.future = True, Future()
+        # Whoever stops waiting for it must not leave one that cannot be set.
+        call.future.set_running_or_notify_cancel()
+        words = say("{name}: no answer within {seconds} s", **_facts(call))
+        told = _failed(call.service, words, call.started_s)
+        future.set_result(replace(told, late=call.future))
 
     def _has_its_turn(self, call: _Call) -> bool:
         """Whether the service is there and has room: what overflows its queue gets no answer."""
         sent = sum(
-            other.client is call.client and other.sequence is not None for other in self._calls
+            other.client is call.client and other.sequence is not None and not other.is_late
+            for other in self._calls
         )
         return sent < QUEUE and self._clients.is_ready(call.client)
 
     def _take_answers(self) -> dict[tuple[Client, int], Any]:
-        """Take all answers there are; those to calls that were given up are dropped here."""
+        """Take all answers there are; those to calls that nobody listens for are dropped here."""
         answers = {}
         for client in {call.client for call in self._calls}:
             with client.handle:

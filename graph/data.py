@@ -12,6 +12,8 @@ from enum import Enum
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     # numpy takes a tenth of a second, and the screen's first frame needs none of it.
     import numpy as np
     from numpy.typing import NDArray
@@ -265,6 +267,8 @@ class CallResult:
     error: str
     """Why there is no response: no such service, time-out, unknown type, bad request."""
     elapsed_s: float
+    late: Future[CallResult] | None = None
+    """After a time-out: what still comes of it, if anything does."""
 
 
 @dataclass(frozen=True)

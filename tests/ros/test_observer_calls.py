@@ -84,12 +84,32 @@ def test_a_server_that_does_not_answer_ends_in_a_time_out_and_freezes_nothing(
     let_updates_come(watcher, 5)
     assert not slow_one.done()
     result = slow_one.result(30)
-    assert result.error == "/slow: no answer within 0.8 s"
-    # The answer that comes too late is not taken for one to the next call.
-    wait_until(lambda: slow.served == ["/slow"], "the late answer")
-    late = call(watcher, "/slow", {"a": 10, "b": 20}, timeout_s=30)
-    assert late.response == {"sum": 30}
+    assert (result.ok, result.error) == (False, "/slow: no answer within 0.8 s")
+    # The answer that comes too late is told as what it is, not taken for one to the next call.
+    assert result.late is not None
+    late = result.late.result(30)
+    assert (late.ok, late.response) == (True, {"sum": 3})
+    assert late.elapsed_s > result.elapsed_s
+    following = call(watcher, "/slow", {"a": 10, "b": 20}, timeout_s=30)
+    assert following.response == {"sum": 30}
     slow.close()
+
+
+def test_a_service_that_leaves_after_the_time_out_is_told_to_whoever_still_listens(
+    watcher: Watcher, module_domain: int
+) -> None:
+    with InProcess(module_domain, "leaver") as host:
+        # Nobody spins this node, so the request stays unanswered.
+        silent = rclpy.create_node("silent", context=host.node.context)
+        service = silent.create_service(load_service(ADD), "/leaving", lambda _, answer: answer)
+        wait_until(lambda: watcher.serves("/leaving"), "it")
+        future = watcher.observer.call("/leaving", ADD, {"a": 1, "b": 2}, timeout_s=2.0)
+        wait_until(lambda: takes_a_request(service), "the request")
+        result = future.result(30)
+        assert (result.error, result.late is not None) == ("/leaving: no answer within 2 s", True)
+        silent.destroy_node()
+        assert result.late is not None
+        assert result.late.result(30).error == "/leaving has left the graph and has not answered"
 
 
 @pytest.mark.usefixtures("server")

@@ -45,6 +45,8 @@ class RecordedGraph:
     """(topic, type, value, latched)."""
     prepared: list[tuple[str, str, bool]] = field(default_factory=list)
     called: list[tuple[str, str, Mapping[str, Any]]] = field(default_factory=list)
+    waited_s: list[float] = field(default_factory=list)
+    """How long the answer to each call may take."""
     publish_error: Exception | None = None
     """Set: every publishing fails by this."""
     answers: dict[str, CallResult] = field(default_factory=dict)
@@ -120,7 +122,7 @@ class RecordedGraph:
     def call(
         self, service: str, type_name: str, request: Mapping[str, Any], timeout_s: float = 5.0
     ) -> Future[CallResult]:
-        del timeout_s
+        self.waited_s.append(timeout_s)
         self.called.append((service, type_name, request))
         future: Future[CallResult] = Future()
         if self.hold_calls:

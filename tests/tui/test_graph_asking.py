@@ -8,6 +8,7 @@ from contextlib import asynccontextmanager
 from dataclasses import replace
 
 import pytest
+from textual.widgets import Input
 
 from graph.data import CallResult, GoalStatus
 from tests.tui.graph_room import Room, opened
@@ -67,15 +68,90 @@ async def test_a_wrong_request_is_not_sent(service: Room) -> None:
 async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: Room) -> None:
     service.graph.hold_calls = True
     await service.press("ctrl+s")
-    await service.wait_for("Waiting: 0 s of 5 s")
+    await service.wait_for("Still waiting: 0 s of 5 s")
+    assert "f7 stops waiting for it." in service.seen()
     assert "f7 Cancel" in service.seen()
     await service.press("escape")
     await service.press("left")
     assert "/ai_brain" in service.seen()
     await service.press("right", "x")
     await service.wait_for("given up")
-    service.graph.waiting[0].set_result(CallResult(SERVICE, True, {"sum": 7}, "", 9.0))
-    await service.pilot.pause()
+    # Its time passes too, and still nobody is told that it has failed.
+    late = time_is_over(service)
+    late.set_result(CallResult(SERVICE, True, {"sum": 7}, "", 9.0))
+    await service.wait_for("Late answer after 9.0 s, awaited for 5 s")
+    await service.wait_for("sum: 7")
+
+
+def time_is_over(room: Room) -> Future[CallResult]:
+    """Let the time of the newest call pass; the future is for what still comes of it."""
+    late: Future[CallResult] = Future()
+    why = "/set_head_position: no answer within 5 s"
+    room.graph.waiting[-1].set_result(CallResult(SERVICE, False, None, why, 5.0, late))
+    return late
+
+
+def timeout_field(room: Room) -> Input:
+    return room.screen.query_one("#call-timeout", Input)
+
+
+async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_own(
+    service: Room,
+) -> None:
+    service.graph.hold_calls = True
+    assert timeout_field(service).value == "5"
+    timeout_field(service).focus()
+    await service.press("backspace", "3", "0", "ctrl+s")
+    await service.wait_for("Still waiting: 0 s of 30 s")
+    assert service.graph.waited_s == [30.0]
+    await service.screen.go(Place(Kind.SERVICE, "/camera/set_parameters"))
+    await service.wait_for("fits rcl_interfaces/srv/SetParameters")
+    assert timeout_field(service).value == "5"
+    await service.screen.go(Place(Kind.SERVICE, SERVICE))
+    await service.wait_for("Still waiting: 0 s of 30 s")
+    assert timeout_field(service).value == "30"
+
+
+@pytest.mark.parametrize("typed", ["", "soon", "0", "-3", "nan", "1e9"])
+async def test_a_time_out_that_is_none_is_told_and_nothing_is_called(
+    service: Room, typed: str
+) -> None:
+    timeout_field(service).value = typed
+    await service.wait_for("✗ 0.1 to 3600 s")
+    service.screen.names.focus()
+    await service.press("ctrl+s")
+    assert service.graph.called == []
+    assert timeout_field(service).has_focus
+    timeout_field(service).value = "0,5"
+    await service.press("ctrl+s")
+    assert service.graph.waited_s == [0.5]
+
+
+async def test_a_late_answer_is_told_wherever_one_is_and_shown_as_late(service: Room) -> None:
+    service.graph.hold_calls = True
+    await service.press("ctrl+s")
+    await service.wait_for("Still waiting")
+    late = time_is_over(service)
+    await service.wait_for("No answer within 5 s")
+    assert "A late answer will be shown here" in " ".join(service.seen().split())
+    await service.app.show_screen("topics")
+    late.set_result(CallResult(SERVICE, True, {"sum": 42}, "", 7.04))
+    told = f"{SERVICE}: the answer has come after 7.0 s."
+    await service.wait(lambda: told in [one.message for one in service.app._notifications])
+    await service.app.show_screen("graph")
+    await service.wait_for("Late answer after 7.0 s, awaited for 5 s")
+    await service.wait_for("sum: 42")
+
+
+async def test_a_service_that_leaves_after_the_time_out_is_told(service: Room) -> None:
+    service.graph.hold_calls = True
+    await service.press("ctrl+s")
+    await service.wait_for("Still waiting")
+    late = time_is_over(service)
+    await service.wait_for("no answer yet")
+    why = f"{SERVICE} has left the graph and has not answered"
+    late.set_result(CallResult(SERVICE, False, None, why, 8.0))
+    await service.wait_for(why)
 
 
 async def test_a_call_that_fails_says_why(service: Room) -> None:

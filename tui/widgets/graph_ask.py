@@ -65,10 +65,15 @@ class AskPane(GraphPane):
             with Vertical(classes="ask-left"):
                 yield GraphLinks()
                 yield YamlForm(submit_title=self.submit_title, type_is_given=True)
+                yield from self.compose_more()
             with Vertical(classes="ask-right"):
                 yield Static(classes="ask-title", markup=False)
                 yield EchoTree()
                 yield Rows(header=False, classes="asked")
+
+    def compose_more(self) -> ComposeResult:
+        """Yield what is to be chosen besides, below the form."""
+        yield from ()
 
     def on_mount(self) -> None:
         """Keep the seconds of waiting true."""

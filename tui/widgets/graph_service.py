@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from graph.data import CallResult
 from text.plain import plain
+from tui.actions.graph import Cancel
 from tui.clock import time_of_day
+from tui.figures import figure
 from tui.i18n import N_, _, said
+from tui.widgets.call_timeout import USUAL_S, CallTimeout
 from tui.widgets.graph_ask import AskPane, now_s
 from tui.widgets.graph_links import heading, link, node_links
 from tui.widgets.graph_pane import LONGEST
@@ -21,9 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from concurrent.futures import Future
 
+    from textual.app import ComposeResult
+
     from graph.data import ServiceRow
 
-TIMEOUT_S = 5.0
 MOST_CALLS = 50
 """Of one service that are kept."""
 
@@ -35,8 +39,11 @@ class Call:
     number: int
     request: Mapping[str, Any]
     asked_s: float
+    timeout_s: float
     result: CallResult | None = None
     given_up: bool = False
+    late: bool = False
+    """Whether its answer came after somebody was told that there is none."""
 
     @property
     def waits(self) -> bool:
@@ -53,6 +60,29 @@ class ServicePane(AskPane):
         super().__init__(id=id)
         self._calls: dict[str, list[Call]] = {}
         self._number = 0
+        self._timeouts: dict[str, str] = {}
+        """Service to what stood in its field for the time-out."""
+
+    def compose_more(self) -> ComposeResult:
+        """Below the form: how long an answer is waited for."""
+        yield CallTimeout()
+
+    @property
+    def timeout(self) -> CallTimeout:
+        """How long an answer is waited for."""
+        return self.query_one(CallTimeout)
+
+    def show_name(self, name: str) -> None:
+        """Show another one, with its own time-out."""
+        if name != self.name_shown:
+            self._timeouts[self.name_shown] = self.timeout.field.value
+            self.timeout.field.value = self._timeouts.get(name, USUAL_S)
+        super().show_name(name)
+
+    def relabel(self) -> None:
+        """Say everything anew."""
+        super().relabel()
+        self.timeout.relabel()
 
     @property
     def calls(self) -> Sequence[Call]:
@@ -111,42 +141,64 @@ class ServicePane(AskPane):
         name = f"{self.name_shown} {call.number}"
         if call.result is None:
             return self._waiting(call, name)
+        if call.result.ok and call.result.response is not None:
+            return _answer_title(call, call.result), name, call.result.response
+        words = plain(said(call.result.error), LONGEST)
+        if call.result.late is not None:
+            title = _("No answer within {n} s").format(n=f"{call.timeout_s:g}")
+            listens = _("A late answer will be shown here; choose a longer time below the form.")
+            return title, name, (_("no answer yet"), listens)
         told = _("{n} ms").format(n=f"{call.result.elapsed_s * 1000:.1f}")
-        if not call.result.ok or call.result.response is None:
-            words = plain(said(call.result.error), LONGEST)
-            return _("No answer · {time}").format(time=told), name, (_("the call failed"), words)
-        title = _("Answer in {time}").format(time=told)
-        return title, name, call.result.response
+        return _("No answer · {time}").format(time=told), name, (_("the call failed"), words)
 
     def _waiting(self, call: Call, name: str) -> tuple[str, str, tuple[str, str]]:
         if call.given_up:
-            words = (_("given up"), _("The node may still do what it was asked for."))
-            return _("No answer"), name, words
+            words = _(
+                "The node may still do what it was asked for; a late answer will be shown here."
+            )
+            return _("No answer"), name, (_("given up"), words)
         waited = int(now_s() - call.asked_s)
-        title = _("Waiting: {n} s of {most} s").format(n=waited, most=f"{TIMEOUT_S:g}")
-        return title, name, (_("the call is under way"), "")
+        title = _("Still waiting: {n} s of {most} s").format(n=waited, most=f"{call.timeout_s:g}")
+        key = self.deck.keys_of(Cancel)[0]
+        way_out = _("{key} stops waiting for it.").format(key=key)
+        return title, name, (_("the call is under way"), way_out)
 
     def ask(self, value: Mapping[str, Any]) -> None:
         """Call the service."""
-        graph = self.deck.feed.graph
+        graph, timeout_s = self.deck.feed.graph, self.timeout.seconds
+        if timeout_s is None:
+            self.warn(_("Not called: correct the waiting time below the form."))
+            self.timeout.field.focus()
+            return
         if graph is None:
             return
         self._number += 1
-        call = Call(self._number, value, now_s())
+        call = Call(self._number, value, now_s(), timeout_s)
         calls = self._calls.setdefault(self.name_shown, [])
         calls.insert(0, call)
         del calls[MOST_CALLS:]
-        future = graph.call(self.name_shown, self.type_names()[0], value, TIMEOUT_S)
+        future = graph.call(self.name_shown, self.type_names()[0], value, timeout_s)
         self.run_worker(self._take(call, self.name_shown, future), exit_on_error=False)
         self.redraw()
         self.asked_rows.choose(str(call.number))
 
     async def _take(self, call: Call, name: str, future: Future[CallResult]) -> None:
-        try:
-            call.result = await asyncio.wrap_future(future)
-        except Exception as error:  # noqa: BLE001 - whatever it was, it is told
-            why = str(error) or type(error).__name__
-            call.result = CallResult(name, False, None, why, now_s() - call.asked_s)
+        result = await _outcome(call, name, future)
+        if result.late is None:
+            self._show(call, result)
+            return
+        if not call.given_up:
+            self._show(call, result)
+        result = await _outcome(call, name, result.late)
+        call.late = result.ok
+        self._show(call, result)
+        if call.late:
+            words = _("{name}: the answer has come after {n} s.")
+            told = words.format(name=name, n=figure(result.elapsed_s, 1))
+            self.notify(plain(told, LONGEST), markup=False)
+
+    def _show(self, call: Call, result: CallResult) -> None:
+        call.result = result
         if self.is_mounted:
             self.redraw()
             self.screen.refresh_bindings()
@@ -162,6 +214,22 @@ class ServicePane(AskPane):
         if call is not None:
             call.given_up = True
             self.redraw()
+
+
+async def _outcome(call: Call, name: str, future: Future[CallResult]) -> CallResult:
+    try:
+        return await asyncio.wrap_future(future)
+    except Exception as error:  # noqa: BLE001 - whatever it was, it is told
+        why = str(error) or type(error).__name__
+        return CallResult(name, False, None, why, now_s() - call.asked_s)
+
+
+def _answer_title(call: Call, result: CallResult) -> str:
+    if call.late:
+        words = _("Late answer after {n} s, awaited for {most} s")
+        return words.format(n=figure(result.elapsed_s, 1), most=f"{call.timeout_s:g}")
+    told = _("{n} ms").format(n=f"{result.elapsed_s * 1000:.1f}")
+    return _("Answer in {time}").format(time=told)
 
 
 def _at(call: Call) -> str:
