@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.images import ImageError
 from graph.pictures import Picture, numbers_picture, thinned
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,7 +38,7 @@ def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
     """
     words, data = value.get("format"), value.get("data")
     if not isinstance(words, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError("this is no sensor_msgs/CompressedImage")
+        raise ImageError(say("this is no {type}", type="sensor_msgs/CompressedImage"))
     raw = bytes(data)
     head: tuple[int, float, float] | None = None
     if "compressedDepth" in words and len(raw) > DEPTH_HEAD.size:
@@ -55,19 +56,26 @@ def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
 def _size(raw: bytes) -> tuple[int, int]:
     """Width and height as the data say, before anything is decoded."""
     if not raw:
-        raise ImageError("the message has no data")
+        raise ImageError(say("the message has no data"))
     if len(raw) > MOST_BYTES:
-        raise ImageError(f"the data are too large: {len(raw)} bytes, at most {MOST_BYTES}")
+        words = say(
+            "the data are too large: {found} bytes, at most {most}", found=len(raw), most=MOST_BYTES
+        )
+        raise ImageError(words)
     if raw.startswith(PNG):
         if len(raw) < 24:
-            raise ImageError(f"the PNG data are cut short: {len(raw)} bytes")
+            raise ImageError(say("the PNG data are cut short: {found} bytes", found=len(raw)))
         width, height = struct.unpack_from(">II", raw, 16)
     elif raw.startswith(JPEG):
         width, height = _jpeg_size(raw)
     else:
-        raise ImageError(f"the data are neither JPEG nor PNG: they begin with {raw[:8].hex(' ')}")
+        words = say(
+            "the data are neither JPEG nor PNG: they begin with {first}", first=raw[:8].hex(" ")
+        )
+        raise ImageError(words)
     if not 0 < width * height <= MOST_PIXELS:
-        raise ImageError(f"a picture of {width} x {height} is not decoded")
+        words = say("a picture of {width} x {height} is not decoded", width=width, height=height)
+        raise ImageError(words)
     return width, height
 
 
@@ -86,14 +94,17 @@ def _jpeg_size(raw: bytes) -> tuple[int, int]:
             return width, height
         else:
             at += 2 + int.from_bytes(raw[at + 2 : at + 4], "big")
-    raise ImageError("the JPEG data are damaged: they do not say how large the picture is")
+    raise ImageError(say("the JPEG data are damaged: they do not say how large the picture is"))
 
 
 def _refuse_if_cut(raw: bytes) -> None:
     """Refuse what OpenCV would show half of, and complain about on the terminal."""
     kind, end = ("JPEG", JPEG_END) if raw.startswith(JPEG) else ("PNG", PNG_END)
     if raw.rfind(end, -4096) < 0:
-        raise ImageError(f"the {kind} data are cut short: no end in {len(raw)} bytes")
+        words = say(
+            "the {kind} data are cut short: no end in {found} bytes", kind=kind, found=len(raw)
+        )
+        raise ImageError(words)
 
 
 def _reduction(width: int, height: int, fit: Fit) -> int:
@@ -109,7 +120,8 @@ def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uin
     try:
         import cv2
     except ImportError as error:
-        raise ImageError(f"OpenCV is missing, which decodes them: {error}") from error
+        words = say("OpenCV is missing, which decodes them: {error}", error=error)
+        raise ImageError(words) from error
     modes: dict[int, int] = {
         1: cv2.IMREAD_COLOR,
         2: cv2.IMREAD_REDUCED_COLOR_2,
@@ -120,10 +132,11 @@ def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uin
     try:
         pixels: Any = cv2.imdecode(np.frombuffer(raw, np.uint8), mode)
     except cv2.error as error:
-        raise ImageError(f"the data are damaged: {error.err}") from error
+        raise ImageError(say("the data are damaged: {error}", error=error.err)) from error
     if pixels is None:
         kind = "JPEG" if raw.startswith(JPEG) else "PNG"
-        raise ImageError(f"the {kind} data are damaged: they cannot be decoded")
+        words = say("the {kind} data are damaged: they cannot be decoded", kind=kind)
+        raise ImageError(words)
     return pixels[:, :, None] if pixels.ndim == 2 else pixels  # type: ignore[no-any-return]
 
 

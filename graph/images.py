@@ -1,4 +1,4 @@
-"""Camera messages as pictures: `sensor_msgs/Image` as a tree to RGB, with numpy alone.
+"""Camera messages as pictures: `sensor_msgs/Image` as a tree to RGB.
 
 numpy is imported in the functions: widgets import this room before there is any picture.
 """
@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
+from graph.words import say
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from graph.data import Value
+    from graph.words import Words
 
     Rgb: TypeAlias = NDArray[np.uint8]
     """Shape (height, width, 3)."""
@@ -33,8 +36,38 @@ DEPTHS = {"mono16": "u2", "16UC1": "u2", "32FC1": "f4"}
 """Numbers with no colour of their own: shown from black, the least, to white, the greatest."""
 
 
+YUV = {"uyvy": "UYVY", "yuv422": "UYVY", "yuyv": "YUY2", "yuv422_yuy2": "YUY2"}
+"""Two pixels share U and V; to OpenCV's name of the order (`yuv422` is the old name of `uyvy`)."""
+BAYER = {
+    f"bayer_{pattern}{bits}": (pattern.upper(), bits // 8)
+    for bits in (8, 16)
+    for pattern in ("rggb", "bggr", "gbrg", "grbg")
+}
+"""One colour a pixel; the pattern from the top left on, by rows, and the bytes of a pixel."""
+
+
 class ImageError(ValueError):
-    """The message is no picture that can be shown; str() says what is wrong with it."""
+    """The message is no picture that can be shown; `words` says what is wrong with it."""
+
+    def __init__(self, words: Words) -> None:
+        """Say `words`."""
+        super().__init__(words)
+        self.words = words
+
+
+class UnknownEncodingError(ImageError):
+    """The pixels may be sound, but nobody here can read them."""
+
+    def __init__(self, encoding: str) -> None:
+        """Name those that can be read."""
+        known = ", ".join([*COLOURS, *DEPTHS, *YUV, *BAYER])
+        super().__init__(
+            say(
+                "encoding '{encoding}' is not shown; known are {known}",
+                encoding=encoding,
+                known=known,
+            )
+        )
 
 
 def to_rgb(value: Mapping[str, Value]) -> Rgb:
@@ -45,7 +78,7 @@ def to_rgb(value: Mapping[str, Value]) -> Rgb:
     width, height, step = (whole(value, name) for name in ("width", "height", "step"))
     encoding, data = value.get("encoding"), value.get("data")
     if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError("this is no sensor_msgs/Image")
+        raise ImageError(say("this is no {type}", type="sensor_msgs/Image"))
     if encoding in COLOURS:
         pixel_bytes, order = COLOURS[encoding]
         pixels = pixel_rows(data, width, height, step, pixel_bytes)
@@ -54,8 +87,12 @@ def to_rgb(value: Mapping[str, Value]) -> Rgb:
         kind = (">" if value.get("is_bigendian") else "<") + DEPTHS[encoding]
         rows = pixel_rows(data, width, height, step, int(kind[-1]))
         return grey(rows.copy().view(kind))
-    known = ", ".join([*COLOURS, *DEPTHS])
-    raise ImageError(f"encoding '{encoding}' is not shown; known are {known}")
+    if encoding in YUV or encoding in BAYER:
+        from graph.raw_colours import full_colours
+
+        big_endian = bool(value.get("is_bigendian"))
+        return full_colours(encoding, data, (width, height), step, big_endian=big_endian)
+    raise UnknownEncodingError(encoding)
 
 
 def shrink(rgb: Rgb, width: int, height: int) -> Rgb:
@@ -77,7 +114,8 @@ def whole(value: Mapping[str, Value], name: str) -> int:
     """Return a field that is a whole number; raises ImageError."""
     number = value.get(name)
     if not isinstance(number, int):
-        raise ImageError(f"this is no sensor_msgs/Image: {name} is missing")
+        words = say("this is no {type}: {name} is missing", type="sensor_msgs/Image", name=name)
+        raise ImageError(words)
     return number
 
 
@@ -88,16 +126,28 @@ def pixel_rows(
     import numpy as np
 
     if width < 1 or height < 1:
-        raise ImageError(f"the picture is empty: {width} x {height}")
+        words = say("the picture is empty: {width} x {height}", width=width, height=height)
+        raise ImageError(words)
     if step < width * pixel_bytes:
         raise ImageError(
-            f"step {step} is too small: {width} pixels of {pixel_bytes} bytes take "
-            f"{width * pixel_bytes}"
+            say(
+                "step {step} is too small: {width} pixels of {size} bytes take {total}",
+                step=step,
+                width=width,
+                size=pixel_bytes,
+                total=width * pixel_bytes,
+            )
         )
     if len(data) < height * step:
         raise ImageError(
-            f"the data are too short: {height} rows of {step} bytes take {height * step}, "
-            f"there are {len(data)}"
+            say(
+                "the data are too short: {height} rows of {step} bytes take {total}, "
+                "there are {found}",
+                height=height,
+                step=step,
+                total=height * step,
+                found=len(data),
+            )
         )
     rows = np.frombuffer(data, np.uint8, height * step).reshape(height, step)
     return rows[:, : width * pixel_bytes]

@@ -10,7 +10,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from graph.images import COLOURS, DEPTHS, ImageError, grey, in_order, pixel_rows, whole
+from graph.images import (
+    BAYER,
+    COLOURS,
+    DEPTHS,
+    YUV,
+    ImageError,
+    UnknownEncodingError,
+    grey,
+    in_order,
+    pixel_rows,
+    to_rgb,
+    whole,
+)
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -57,7 +70,7 @@ def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Pictur
     width, height, step = (whole(value, name) for name in ("width", "height", "step"))
     encoding, data = value.get("encoding"), value.get("data")
     if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError("this is no sensor_msgs/Image")
+        raise ImageError(say("this is no {type}", type="sensor_msgs/Image"))
     if encoding in COLOURS:
         pixel_bytes, order = COLOURS[encoding]
         rows = pixel_rows(data, width, height, step, pixel_bytes)
@@ -69,8 +82,9 @@ def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Pictur
         rows = pixel_rows(data, width, height, step, size)
         numbers = thinned(rows.reshape(height, width, size), fit).copy().view(kind)[:, :, 0]
         return numbers_picture(numbers, width, height, encoding)
-    known = ", ".join([*COLOURS, *DEPTHS])
-    raise ImageError(f"encoding '{encoding}' is not shown; known are {known}")
+    if encoding in YUV or encoding in BAYER:
+        return Picture(thinned(to_rgb(value), fit), width, height, encoding)
+    raise UnknownEncodingError(encoding)
 
 
 def numbers_picture(

@@ -95,7 +95,10 @@ image = st.fixed_dictionaries(
         "header": header,
         "height": uint32,
         "width": uint32,
-        "encoding": st.sampled_from(("bgr8", "rgb8", "mono8", "mono16", "32FC1", "8UC3")) | texts,
+        "encoding": st.sampled_from(
+            ("bgr8", "rgb8", "mono8", "mono16", "32FC1", "8UC3", "uyvy", "bayer_grbg16")
+        )
+        | texts,
         "is_bigendian": st.integers(0, 255),
         "step": uint32,
         "data": data,

@@ -167,12 +167,12 @@ async def test_an_image_is_a_picture_and_can_be_a_tree(room: Room) -> None:
 
 async def test_a_picture_that_cannot_be_shown_is_told(room: Room) -> None:
     await room.choose(CAMERA)
-    odd = {"width": 2, "height": 2, "step": 4, "encoding": "bayer_rggb8", "data": b"1234"}
+    odd = {"width": 2, "height": 2, "step": 4, "encoding": "nv21", "data": b"1234"}
     await room.show(
         lesson_update(samples={CAMERA: (sample(CAMERA, "sensor_msgs/msg/Image", odd),)})
     )
     headline, detail = room.screen.detail.picture.words
-    assert headline == "pictures of the encoding bayer_rggb8 cannot be shown"
+    assert headline == "pictures of the encoding nv21 cannot be shown"
     assert "rgb8" in detail
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from graph.images import ImageError, to_rgb
 from tui.figures import whole
-from tui.i18n import N_, _
+from tui.i18n import N_, _, said
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.image_view import ImageView
 from tui.widgets.trouble import trouble_words
@@ -60,7 +60,7 @@ class CameraFeed(Panel):
         try:
             picture = to_rgb(sample.value)
         except ImageError as error:
-            view.show_words(_("this picture cannot be shown"), str(error))
+            view.show_words(_("this picture cannot be shown"), said(error.words))
             return
         view.show(picture, self._caption(update, picture.shape[1], picture.shape[0]))
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
-from graph.images import COLOURS, DEPTHS, ImageError
+from graph.images import ImageError, UnknownEncodingError
 from graph.pictures import COMPRESSED, IMAGE, Picture, ramp_colours, read_picture
 from text.plain import plain
-from tui.i18n import _
+from tui.i18n import _, said
 from tui.screens.topics_plotting import PlotPlace, TopicsPlotting
 from tui.widgets.image_view import Scale
 from tui.widgets.topic_words import BETWEEN
@@ -131,9 +131,9 @@ class TopicsPictures(TopicsPlotting):
         self.detail.show_picture(picture.rgb, f"{size}{BETWEEN}{rate}", scale)
 
     def _refuse(self, sample: Sample, error: ImageError) -> None:
-        encoding = str(sample.value.get("encoding"))
         headline = _("this picture cannot be shown")
-        if sample.type_name == IMAGE and encoding not in COLOURS and encoding not in DEPTHS:
+        if isinstance(error, UnknownEncodingError):
+            encoding = str(sample.value.get("encoding"))
             words = _("pictures of the encoding {encoding} cannot be shown")
             headline = words.format(encoding=plain(encoding, LONGEST))
-        self.detail.show_no_picture(headline, str(error))
+        self.detail.show_no_picture(headline, said(error.words))
