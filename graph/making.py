@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from graph.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
 from graph.types import load_message
 from graph.values import fields_of
-from graph.words import say
+from graph.words import no_number, say
 
 if TYPE_CHECKING:
     from graph.data import Value
@@ -165,7 +165,7 @@ def _boolean(value: Value, path: str) -> bool:
 
 def _float(element: str, value: Value, path: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise FieldError(path, say("expected a number, got {value}", value=_shown(value)))
+        raise FieldError(path, no_number(value, _shown(value)))
     try:
         number = float(value)
     except OverflowError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from graph.data import ParameterRow
-from graph.words import say
+from graph.words import no_number, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -149,11 +149,9 @@ def _double(value: Value) -> float:
         try:
             return float(text)
         except ValueError:
-            raise WrongValueError(
-                say("expected a number, got {value}", value=_shown(value))
-            ) from None
+            raise WrongValueError(no_number(value, _shown(value))) from None
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise WrongValueError(say("expected a number, got {value}", value=_shown(value)))
+        raise WrongValueError(no_number(value, _shown(value)))
     try:
         return float(value)
     except OverflowError:

@@ -6,6 +6,7 @@ the screen looks it up in a catalogue.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from text.plain import filled
@@ -36,3 +37,13 @@ class Words(str):
 def say(template: str, **values: object) -> Words:
     """Make a sentence: `say("no such bag: {path}", path=path)`."""
     return Words(template, values)
+
+
+def no_number(value: object, shown: str) -> Words:
+    """Say that a number was expected; of `0,5` that a fraction is written with a point."""
+    if isinstance(value, str) and (comma := _DECIMAL_COMMA.fullmatch(value.strip())):
+        return say("write a fraction with a point: {mended}", mended=".".join(comma.groups()))
+    return say("expected a number, got {value}", value=shown)
+
+
+_DECIMAL_COMMA = re.compile(r"([-+]?[0-9]+),([0-9]+)")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -27,6 +28,7 @@ WANTED = {
     "dict_type": say("keys and values"),
     "model_type": say("keys and values"),
 }
+_DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
 LIMITS = {
     "greater_than": (say("more than {limit}"), "gt"),
     "greater_than_equal": (say("at least {limit}"), "ge"),
@@ -151,6 +153,10 @@ def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
 def _mend(kind: str, found: object) -> str:
     if kind == "string_type" and isinstance(found, (bool, int, float)):
         return say("put it between quotes")
+    if kind == "float_type" and isinstance(found, str):
+        comma = _DECIMAL_COMMA.fullmatch(found)
+        if comma:
+            return say("write a fraction with a point: {mended}", mended=".".join(comma.groups()))
     if kind == "tuple_type" and isinstance(found, str):
         return say("write [{value}]", value=found)
     return ""

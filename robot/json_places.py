@@ -22,6 +22,7 @@ MAX_DEPTH = 32
 _STRINGS = JSONDecoder()
 _BLANK = re.compile(r"[ \t\n\r]*")
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\b", re.IGNORECASE)
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")
 _CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
@@ -151,6 +152,10 @@ class _Reader:
         if match is None or _NOT_FINITE.match(self.text, at):
             code = "not_finite" if _NOT_FINITE.match(self.text, at) else "value_expected"
             raise JsonError(code, at, path)
+        comma = _DECIMAL_COMMA.match(self.text, at)
+        if comma and not (path and isinstance(path[-1], int)):
+            # In a list it stands between two numbers; elsewhere no number can follow a comma.
+            raise JsonError("decimal_comma", at, path, mended=".".join(comma.groups()))
         digits = match.group()
         if match.group(1) or match.group(2) or len(digits) > _LONGEST_INT:
             return float(digits), match.end()

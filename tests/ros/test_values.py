@@ -74,6 +74,7 @@ def test_nothing_a_person_types_leads_to_more_than_a_field_error(type_name: str,
     ("type_name", "tree", "word"),
     [
         ("std_msgs/msg/Float32", {"data": "abc"}, "data: expected a number, got 'abc'"),
+        ("std_msgs/msg/Float32", {"data": "-0,5"}, "data: write a fraction with a point: -0.5"),
         ("std_msgs/msg/Float32", {"data": True}, "data: expected a number, got True"),
         ("std_msgs/msg/Float32", {"data": 1e39}, "data: 1e+39 is too great for a float"),
         ("std_msgs/msg/Float64", {"data": 10**400}, "data: 1000"),

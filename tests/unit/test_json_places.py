@@ -47,6 +47,10 @@ def test_the_place_of_a_value_is_where_it_begins() -> None:
     assert line_column(text, found.values[("a", 1, "б")]) == (2, 18)
 
 
+def test_a_comma_between_two_numbers_of_a_list_is_no_decimal_comma() -> None:
+    assert read("[0,5]").value == [0, 5]
+
+
 @pytest.mark.parametrize(
     ("text", "code", "offset"),
     [
@@ -61,6 +65,8 @@ def test_the_place_of_a_value_is_where_it_begins() -> None:
         ("NaN", "not_finite", 0),
         ("[-Infinity]", "not_finite", 1),
         ("01", "text_after", 1),
+        ('{"a": 0,5}', "decimal_comma", 6),
+        ("-1,25", "decimal_comma", 0),
         ('{"a":1,"a":2}', "duplicate", 7),
         ('"\\ud800"', "half_character", 0),
         ("[" * 60_000, "too_deep", 33),

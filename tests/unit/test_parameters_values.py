@@ -41,6 +41,7 @@ def test_what_fits_a_type_is_taken(kind: str, value: Any, made: Any) -> None:
     ("kind", "value", "words"),
     [
         ("double", "fast", "expected a number, got 'fast'"),
+        ("double", "0,5", "write a fraction with a point: 0.5"),
         ("double", True, "expected a number, got True"),
         ("double", [1.0], "expected a number"),
         ("double", 10**400, "is too great for a double"),

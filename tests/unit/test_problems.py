@@ -28,6 +28,12 @@ def test_a_problem_speaks_russian() -> None:
     assert problem.in_russian() == "должно быть от -0.5 до 0.5 m/s, а не 7"
 
 
+def test_a_decimal_comma_is_told_with_its_mend() -> None:
+    problem = Problem.of("decimal_comma", mended="0.5")
+    assert problem.message == "write a fraction with a point: 0.5"
+    assert problem.in_russian() == "дробь — через точку: 0.5"
+
+
 def test_a_field_is_named_as_in_a_program() -> None:
     assert field_name(("commands", 1, "speed")) == "commands[1].speed"
     assert field_name((0, "a")) == "[0].a"

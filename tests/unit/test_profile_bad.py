@@ -32,6 +32,13 @@ BAD = {
         "domain: many\nnodes: {a: {exec: [x]}}",
         "1:9: domain: expected a whole number, found the text 'many'",
     ),
+    "a decimal comma": (
+        "nodes:\n  a:\n    exec: [x]\n    ready:\n      node: a\n      within: 2,5",
+        (
+            "6:15: nodes.a.ready.within: expected a number, found the text '2,5'"
+            " (write a fraction with a point: 2.5)"
+        ),
+    ),
     "text where a list belongs": (
         "nodes:\n  a: {exec: [x]}\n  b: {exec: [x], needs: a}",
         "3:25: nodes.b.needs: expected a list, found the text 'a' (write [a])",
