@@ -6,9 +6,10 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from tui.i18n import N_, _
+from tui.panels.joints import Joints
 from tui.panels.panel import Panel, trouble_of
 from tui.widgets.head import HeadPanel
-from tui.widgets.head_reading import Pose, head_in
+from tui.widgets.head_reading import PAN, TILT, Pose, head_in
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -24,6 +25,10 @@ class HeadFeed(Panel):
     title = N_("Head")
     least = 3
     weight = 4
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._joints = Joints(STATE, (PAN, TILT))
 
     def compose(self) -> ComposeResult:
         """The drawing."""
@@ -44,6 +49,8 @@ class HeadFeed(Panel):
             pose = head_in(sample.value)
             if pose is not None:
                 drawing.show(pose)
+            self._joints.hear(sample, read=pose is not None)
+        drawing.show_instead(self._joints.instead)
         for sample in update.samples.get(RESULT, ()):
             self._hear(str(sample.value.get("data", "")))
         drawing.show_trouble(*trouble_of(update, STATE))

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 from robot.kinematics import wheel_speeds
 from tui.i18n import N_
+from tui.panels.joints import Joints
 from tui.panels.panel import Panel, first_published, newest, trouble_of
 from tui.widgets.wheels import WheelsPanel
-from tui.widgets.wheels_reading import Wheels, wheels_in
+from tui.widgets.wheels_reading import LEFT, RIGHT, Wheels, wheels_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,6 +30,10 @@ class WheelsFeed(Panel):
     weight = 4
     across_below = 80
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._joints = Joints(WHEELS, (LEFT, RIGHT))
+
     def compose(self) -> ComposeResult:
         """The drawing."""
         yield WheelsPanel()
@@ -47,6 +52,9 @@ class WheelsFeed(Panel):
             wheels = wheels_in(sample.value) if topic == WHEELS else would_be(sample.value)
             if wheels is not None:
                 drawing.show(wheels)
+            if topic == WHEELS:
+                self._joints.hear(sample, read=wheels is not None)
+        drawing.show_instead(self._joints.instead if topic == WHEELS else None)
         drawing.show_trouble(*trouble_of(update, topic))
 
     def words_changed(self) -> None:

@@ -39,6 +39,13 @@ class Ink(NamedTuple):
 Line = list[Ink]
 
 
+class Instead(NamedTuple):
+    """Words in place of values, where messages come that say nothing of them."""
+
+    headline: str
+    detail: str
+
+
 class Drawing(OneStyle, Widget):
     """Base of panels: a subclass draws lines of `Ink` and calls `redraw` when its values change."""
 
@@ -68,6 +75,7 @@ class Drawing(OneStyle, Widget):
         self._trouble: Trouble | None = None
         self._detail = ""
         self._age_s: float | None = None
+        self._instead: Instead | None = None
         self._styles: dict[str, Style] = {}
         self._drawn_in = Size(0, 0)
         """For which size the lines were drawn."""
@@ -92,6 +100,17 @@ class Drawing(OneStyle, Widget):
         if state != (self._trouble, self._detail, self._age_s):
             self._trouble, self._detail, self._age_s = state
             self.redraw()
+
+    def show_instead(self, words: Instead | None) -> None:
+        """Say these words in place of values, which are no longer true; none: show values again."""
+        if words != self._instead:
+            self._instead = words
+            self.redraw()
+
+    @property
+    def draws(self) -> bool:
+        """Whether values are drawn, and no words in place of them."""
+        return self.has_value and self._instead is None
 
     @property
     def stale(self) -> bool:
@@ -128,7 +147,7 @@ class Drawing(OneStyle, Widget):
     def _drawn(self, width: int, height: int) -> list[Line]:
         self._drawn_in = Size(width, height)
         self._fault = ""
-        if not self.has_value:
+        if not self.draws:
             return []
         try:
             lines = self.draw(width, height)[:height]
@@ -160,7 +179,7 @@ class Drawing(OneStyle, Widget):
     def render_line(self, y: int) -> Strip:
         """One line: of the drawing, or of words in place of it."""
         width = self.size.width
-        if self._fault or not self.has_value:
+        if self._fault or not self.draws:
             return self._words(y, width)
         segments = [Segment(ink.text, self._style(ink.look)) for ink in _at(self._lines, y)]
         return Strip(segments).adjust_cell_length(width, self._style(""))
@@ -177,6 +196,8 @@ class Drawing(OneStyle, Widget):
         if self._trouble is not None:
             headline = trouble_words(self._trouble, self._age_s)
         words = (headline, plain(self._detail, 400))
+        if self._instead is not None and self._trouble is None:
+            words = self._instead
         if self._fault:
             words = (self._fault, "")
         strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)

@@ -1,0 +1,90 @@
+"""Wheels and head whose messages are about other joints: which come, and which are awaited."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.tui.app_runs import opened
+from tests.tui.panel_stage import rows
+from tests.tui.recorded import RecordedGraph, RecordedPad, joints, lesson_samples, lesson_update
+from tui.panels.joints import ANOTHER_S, Joints
+from tui.widgets.head import HeadPanel
+from tui.widgets.wheels import WheelsPanel
+
+if TYPE_CHECKING:
+    from graph.data import Sample
+    from tui.widgets.drawing import Drawing
+
+TOPIC = "/wheel_commands"
+AWAITED = ("rear_left_wheel_joint", "rear_right_wheel_joint")
+OTHER = joints(TOPIC, left_wheel=(0.0, 1.0), right_wheel=(0.0, 1.0))
+READ = joints(TOPIC, rear_left_wheel_joint=(0.0, 1.0))
+
+
+def heard(*samples: tuple[Sample, float]) -> Joints:
+    known = Joints(TOPIC, AWAITED)
+    for sample, at_s in samples:
+        known.hear(replace(sample, received_s=at_s), read=sample is READ)
+    return known
+
+
+@pytest.mark.parametrize(
+    ("kind", "other", "came", "awaited"),
+    [
+        (
+            WheelsPanel,
+            OTHER,
+            "/wheel_commands: left_wheel, right_wheel have come",
+            "awaited: rear_left_wheel_joint, rear_right_wheel_joint",
+        ),
+        (
+            HeadPanel,
+            joints("/head_state", yaw=(0.1, 0.0), pitch=(0.2, 0.0)),
+            "/head_state: yaw, pitch have come",
+            "awaited: pan_joint, tilt_joint",
+        ),
+        (
+            HeadPanel,
+            joints("/head_state"),
+            "/head_state: no joint names have come",
+            "awaited: pan_joint, tilt_joint",
+        ),
+    ],
+)
+async def test_the_panel_says_which_joints_come_and_which_are_awaited(
+    kind: type[Drawing], other: Sample, came: str, awaited: str
+) -> None:
+    samples = {**lesson_samples(), other.topic: (other,)}
+    pad = RecordedPad(graph=RecordedGraph(lesson_update(samples=samples)))
+    async with opened(pad, size=(160, 60)) as (app, pilot):
+        await pilot.pause()
+        panel = app.screen.query_one(kind)
+        words = " ".join(" ".join(rows(panel)).split())
+        assert "messages come, but with other joint names" in words
+        assert came in words
+        assert awaited in words
+        assert "waiting for the first message" not in words
+        pad.graph.show(lesson_update())
+        await pilot.pause()
+        await pilot.pause()
+        assert "have come" not in " ".join(rows(panel))
+
+
+def test_values_give_way_once_nothing_but_other_joints_comes() -> None:
+    assert heard((READ, 5.0)).instead is None
+    assert heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S / 2)).instead is None
+    told = heard((READ, 5.0), (OTHER, 5.0 + ANOTHER_S)).instead
+    assert told is not None
+    assert "left_wheel" in told.detail
+    assert heard((OTHER, 5.0), (READ, 5.1)).instead is None
+
+
+@pytest.mark.parametrize("names", [None, 7, "text", ["\x1b[31mred", "[b]bold[/b]"]])
+def test_hostile_names_do_no_harm(names: object) -> None:
+    bad = replace(OTHER, value={"name": names})
+    told = heard((bad, 5.0)).instead
+    assert told is not None
+    assert "\x1b" not in told.detail
