@@ -143,6 +143,10 @@ class Asking:
         """Ask for a goal to be cancelled; updates tell whether its server agrees."""
         self._order(Do(lambda station: station.goals.cancel(number)))
 
+    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
+        """Ask for a goal of somebody else's to be cancelled; updates tell what came of it."""
+        self._order(Do(lambda station: station.seen_goals.cancel(action, goal_id)))
+
     def forget_goal(self, number: int) -> None:
         """Tell no more of a goal; one that has not ended is cancelled."""
         self._order(Do(lambda station: station.goals.forget(number)))

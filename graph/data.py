@@ -162,7 +162,7 @@ class ActionRow:
 
 
 class GoalStatus(str, Enum):
-    """Where a goal of Deck's own stands (source: action_msgs/GoalStatus, and before it)."""
+    """Where a goal stands (source: action_msgs/GoalStatus, and before it)."""
 
     SENDING = "sending"
     REJECTED = "rejected"
@@ -174,6 +174,11 @@ class GoalStatus(str, Enum):
     ABORTED = "aborted"
     FAILED = "failed"
     """Nobody serves it, or its server has gone or does not answer."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing more is to come."""
+        return self.value in {"rejected", "succeeded", "canceled", "aborted", "failed"}
 
 
 @dataclass(frozen=True)
@@ -194,12 +199,37 @@ class Goal:
     error: str = ""
     elapsed_s: float = 0.0
     """Since it was sent, or until it ended."""
+    goal_id: str = ""
+    """By which its server knows it, 32 hexadecimal digits."""
 
     @property
     def ended(self) -> bool:
         """Whether nothing more is to come."""
-        over = {"rejected", "succeeded", "canceled", "aborted", "failed"}
-        return self.status.value in over
+        return self.status.ended
+
+
+@dataclass(frozen=True)
+class SeenGoal:
+    """One goal that somebody else has sent, as its server tells everybody of it."""
+
+    action: str
+    type_name: str
+    goal_id: str
+    """32 hexadecimal digits."""
+    status: GoalStatus
+    age_s: float | None = None
+    """Since its server has accepted it, or until it was seen to have ended; None where the clocks
+    do not agree."""
+    feedback: Mapping[str, Value] | None = None
+    """The newest."""
+    feedbacks: int = 0
+    """How many came since it is looked at."""
+    error: str = ""
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing more is to come."""
+        return self.status.ended
 
 
 @dataclass(frozen=True)
@@ -287,6 +317,8 @@ class GraphUpdate:
     actions: tuple[ActionRow, ...] = ()
     goals: tuple[Goal, ...] = ()
     """Deck's own, oldest first, those that have ended too until they are forgotten."""
+    seen_goals: tuple[SeenGoal, ...] = ()
+    """Those of others to the actions that are looked at, as long as their servers tell of them."""
     publications: tuple[Publication, ...] = ()
     error: str = ""
     """Set when the observer cannot work at all: rclpy is missing, the domain is refused."""

@@ -45,6 +45,8 @@ class Goals:
         self._numbers = itertools.count(1)
         self._lives: dict[int, GoalLife] = {}
         self._lines: dict[tuple[str, str], ActionLine] = {}
+        self._sent: set[bytes] = set()
+        """Ids of all, those that are forgotten too."""
 
     @property
     def under_way(self) -> bool:
@@ -75,10 +77,16 @@ class Goals:
         except Exception:
             self._close_lines()
             raise
-        number = next(self._numbers)
-        told = Goal(number, action, type_name, GoalStatus.SENDING, to_tree(message.dated()))
-        self._lives[number] = GoalLife(told, uuid.uuid4().bytes, message, line)
+        number, goal_id = next(self._numbers), uuid.uuid4()
+        fields = to_tree(message.dated())
+        told = Goal(number, action, type_name, GoalStatus.SENDING, fields, goal_id=goal_id.hex)
+        self._lives[number] = GoalLife(told, goal_id.bytes, message, line)
+        self._sent.add(goal_id.bytes)
         future.set_result(number)
+
+    def has_sent(self, goal_id: bytes) -> bool:
+        """Whether this goal is one of Deck's own."""
+        return goal_id in self._sent
 
     def cancel(self, number: int) -> None:
         """Have a goal cancelled; one that has ended, or is not known, is left as it is."""

@@ -28,6 +28,9 @@ STATUS = {
 }
 """Source: action_msgs/GoalStatus."""
 ENDS = frozenset({GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED})
+LOST = "its server has left the graph"
+REFUSED = "the server refuses to cancel it"
+NO_WORD_OF_CANCEL = "no answer to the request to cancel it within {seconds} s"
 
 
 class GoalLife:
@@ -165,10 +168,7 @@ class GoalLife:
     def _ask_to_cancel(self, now_s: float) -> None:
         if self._cancel is not None and now_s - self._cancel_s >= ANSWER_WITHIN_S:
             self._cancel = None
-            word = say(
-                "no answer to the request to cancel it within {seconds} s",
-                seconds=f"{ANSWER_WITHIN_S:g}",
-            )
+            word = say(NO_WORD_OF_CANCEL, seconds=f"{ANSWER_WITHIN_S:g}")
             self.told = replace(self.told, error=word) if not self.told.ended else self.told
         if self._wants_cancel and self._accepted:
             self._wants_cancel = False
@@ -178,7 +178,7 @@ class GoalLife:
     def _cancel_answered(self, agreed: bool) -> None:
         self._cancel = None
         if not agreed and not self.told.ended:
-            self.told = replace(self.told, error=say("the server refuses to cancel it"))
+            self.told = replace(self.told, error=say(REFUSED))
 
     def _take_result(self, response: Any) -> None:  # noqa: ANN401 - generated
         self._result = self._cancel = None
@@ -200,7 +200,7 @@ class GoalLife:
             self._servers_seen_s = now_s
         elif now_s - self._servers_seen_s >= GONE_AFTER_S:
             self._cancel = None
-            self._end(GoalStatus.FAILED, say("its server has left the graph"))
+            self._end(GoalStatus.FAILED, say(LOST))
         if self._over_s is not None and now_s - self._over_s >= ANSWER_WITHIN_S:
             self._end(GoalStatus.FAILED, say("it has ended, and its result does not come"))
 

@@ -34,6 +34,30 @@ class Heard:
     """Numbers of action_msgs/GoalStatus by the goal's id."""
 
 
+class Servers:
+    """Who serves an action, asked for a few times a second at most."""
+
+    def __init__(self, node: Node, action: str) -> None:
+        self._node = node
+        self._status_topic = status_topic(action)
+        self._servers: frozenset[bytes] = frozenset()
+        self._looked_s = 0.0
+
+    def now(self) -> frozenset[bytes]:
+        """Return what identifies each server that is there: one that is started anew is another."""
+        now_s = time.monotonic()
+        if now_s - self._looked_s >= LOOK_AT_SERVERS_S:
+            self._looked_s = now_s
+            ends = self._node.get_publishers_info_by_topic(self._status_topic)
+            self._servers = frozenset(bytes(end.endpoint_gid) for end in ends)
+        return self._servers
+
+
+def status_topic(action: str) -> str:
+    """Return where the servers of an action tell everybody how all goals stand."""
+    return f"{action}/_action/status"
+
+
 class ActionLine:
     """The client of one action."""
 
@@ -47,10 +71,7 @@ class ActionLine:
         )
 
         self.type: Any = load_action(type_name)
-        self._node = node
-        self._status_topic = f"{action}/_action/status"
-        self._servers: frozenset[bytes] = frozenset()
-        self._looked_s = 0.0
+        self.servers = Servers(node, action).now
         services = qos_profile_services_default.get_c_qos_profile()
         with node.handle:
             self._handle: Any = rclpy_implementation.ActionClient(
@@ -69,15 +90,6 @@ class ActionLine:
         """Whether a server is there and matched."""
         ready: bool = self._handle.is_action_server_available()
         return ready
-
-    def servers(self) -> frozenset[bytes]:
-        """Return what identifies each server that is there: one that is started anew is another."""
-        now_s = time.monotonic()
-        if now_s - self._looked_s >= LOOK_AT_SERVERS_S:
-            self._looked_s = now_s
-            ends = self._node.get_publishers_info_by_topic(self._status_topic)
-            self._servers = frozenset(bytes(end.endpoint_gid) for end in ends)
-        return self._servers
 
     def send(self, goal_id: bytes, goal: Any) -> int:  # noqa: ANN401 - generated
         """Send a goal; return the number of the request."""

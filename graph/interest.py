@@ -12,6 +12,8 @@ class Interest:
     watched: frozenset[str] = frozenset()
     followed: frozenset[str] = frozenset()
     all_topics: bool = False
+    actions: frozenset[str] = frozenset()
+    """Whose goals are wanted, those of others too."""
 
     @property
     def named(self) -> frozenset[str]:

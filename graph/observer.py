@@ -88,6 +88,10 @@ class Observer(Asking):
         """Measure the rates of all topics, or only of those watched and followed."""
         self._look_at(all_topics=all_topics)
 
+    def watch_goals(self, actions: Iterable[str]) -> None:
+        """Tell in each update of the goals that others have sent to exactly these actions."""
+        self._look_at(actions=frozenset(actions))
+
     def _look_at(self, **changes: frozenset[str] | bool) -> None:
         with self._lock:
             self._interest = replace(self._interest, **changes)  # type: ignore[arg-type]

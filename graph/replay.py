@@ -91,6 +91,9 @@ class Replay(Refusals):
     def measure(self, all_topics: bool) -> None:
         """Do nothing: every topic of a bag is measured."""
 
+    def watch_goals(self, actions: Iterable[str]) -> None:
+        """Do nothing: a bag has no actions."""
+
     def toggle(self) -> None:
         """Pause, or go on; at the end begin anew."""
 

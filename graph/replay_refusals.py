@@ -88,6 +88,9 @@ class Refusals:
     def cancel_goal(self, number: int) -> None:
         """Do nothing: there is no goal."""
 
+    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
+        """Do nothing: there is no goal."""
+
     def forget_goal(self, number: int) -> None:
         """Do nothing: there is no goal."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from graph.calls import Calls
 from graph.data import GraphUpdate
 from graph.goals import Goals
+from graph.goals_seen import SeenGoals
 from graph.held import Held
 from graph.interest import Interest
 from graph.outbox import Outbox
@@ -37,6 +38,7 @@ class Station:
         self.calls = Calls(ros.node)
         self.outbox = Outbox(ros.node)
         self.goals = Goals(ros.node)
+        self.seen_goals = SeenGoals(ros.node, self.goals.has_sent)
         self.publications = Publications(ros.node)
         self.held = Held(ros.node)
         self.parameters = Parameters(self.calls, self._known_node, self._known_service)
@@ -79,6 +81,7 @@ class Station:
         if tuned != self._tuned or self._taps.need_tuning():
             self._tuned = tuned
             self._taps.tune(*tuned)
+            self.seen_goals.tune(interest.actions, self._scan.actions)
         return self._update(self._taps.drain(self.breathe))
 
     def step(self) -> float | None:
@@ -92,8 +95,9 @@ class Station:
         # What has just been answered leads to the next question.
         talking = self.parameters.step()
         pursuing = self.goals.step()
+        canceling = self.seen_goals.step()
         sending = self.outbox.step()
-        if not (calling or talking or pursuing or sending):
+        if not (calling or talking or pursuing or canceling or sending):
             return due_s
         return _sooner(due_s, time.monotonic() + PENDING_S)
 
@@ -103,6 +107,7 @@ class Station:
             self.held.close()
             self.publications.close()
             self.goals.close()
+            self.seen_goals.close()
         finally:
             self.parameters.fail(error)
             self.calls.fail(error)
@@ -134,7 +139,7 @@ class Station:
     def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
         rows = self._taps.rows()
         seen = self._scan
-        doing = (self.goals.rows(), self.publications.rows())
+        doing = (self.goals.rows(), self.seen_goals.rows(), self.publications.rows())
         told = (rows, seen.nodes, seen.services, seen.actions, *doing)
         if not samples and told == self._told:
             return None

@@ -221,6 +221,7 @@ class Feed:
         followed = set(own).union(*(screen.follow_topics() for screen in self._screens))
         graph.watch(set() if front is None else front.watch_topics())
         graph.follow(followed)
+        graph.watch_goals(set() if front is None else front.watch_goals())
         graph.measure(front is not None and front.measure_all)
         graph.period_s = 0.25 if front is None else front.period_s
 

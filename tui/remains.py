@@ -37,7 +37,7 @@ def _ended(node: NodeStatus, reason: str) -> NodeStatus:
 
 def silent_graph(update: GraphUpdate) -> GraphUpdate:
     """Return the graph with nobody on its topics."""
-    return replace(update, samples={}, topics=tuple(map(_silent, update.topics)))
+    return replace(update, samples={}, seen_goals=(), topics=tuple(map(_silent, update.topics)))
 
 
 def _silent(row: TopicRow) -> TopicRow:

@@ -81,6 +81,9 @@ class GraphLink(Protocol):
     def measure(self, all_topics: bool) -> None:
         """Measure the rates of all topics, or only of those watched and followed."""
 
+    def watch_goals(self, actions: Iterable[str]) -> None:
+        """Tell of the goals that others have sent to exactly these actions."""
+
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False
     ) -> Future[None]:
@@ -129,6 +132,9 @@ class GraphLink(Protocol):
 
     def cancel_goal(self, number: int) -> None:
         """Ask for a goal to be cancelled."""
+
+    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
+        """Ask for a goal of somebody else's to be cancelled; updates tell what came of it."""
 
     def forget_goal(self, number: int) -> None:
         """Tell no more of a goal; one that has not ended is cancelled."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 
@@ -51,6 +51,25 @@ class Served:
         self.server.notify_execute(handle, lambda _: result)
 
 
+class Asked:
+    """The client of one action: what it was told of its goals, in the order of their sending."""
+
+    def __init__(self, node: Node, name: str) -> None:
+        self.client = ActionClient(node, load_action(DRIVE), name)
+        self.ends: dict[int, int] = {}
+        self.sent = 0
+
+    def send(self, x: float) -> None:
+        assert self.client.wait_for_server(20)
+        number, self.sent = self.sent, self.sent + 1
+        sent = self.client.send_goal_async(load_action(DRIVE).Goal(x=x))
+        sent.add_done_callback(lambda future: self._answered(number, future.result()))
+
+    def _answered(self, number: int, handle: Any) -> None:
+        result = handle.get_result_async()
+        result.add_done_callback(lambda f: self.ends.__setitem__(number, f.result().status))
+
+
 class ActionOrders:
     """What a test can order about actions; the type is DriveToPoint."""
 
@@ -58,6 +77,7 @@ class ActionOrders:
 
     def __init__(self) -> None:
         self.served_actions: dict[str, Served] = {}
+        self.asked_actions: dict[str, Asked] = {}
 
     def serve_action(self, topic: str, reject: bool = False, refuse_cancel: bool = False) -> None:
         self.served_actions[topic] = Served(self.node, topic, reject, refuse_cancel)
@@ -78,6 +98,16 @@ class ActionOrders:
         """End a goal: `succeed`, `abort` or `canceled`, with these fields in its result."""
         served = self.served_actions[topic]
         served.end(goal, how, to_message(served.kind.Result, result))
+
+    def send_drive(self, topic: str, x: float) -> None:
+        """Send a goal, as any client does."""
+        if topic not in self.asked_actions:
+            self.asked_actions[topic] = Asked(self.node, topic)
+        self.asked_actions[topic].send(x)
+
+    def ends(self, topic: str) -> dict[int, int]:
+        """The numbers of action_msgs/GoalStatus by which the goals that were sent have ended."""
+        return self.asked_actions[topic].ends
 
     def withdraw_action(self, topic: str) -> None:
         self.served_actions.pop(topic).server.destroy()

@@ -75,6 +75,10 @@ class RecordedGraph:
     """(action, type, goal)."""
     canceled_goals: list[int] = field(default_factory=list)
     forgotten_goals: list[int] = field(default_factory=list)
+    goals_watched: set[str] = field(default_factory=set)
+    """Actions whose goals of others are wanted."""
+    canceled_of_others: list[tuple[str, str]] = field(default_factory=list)
+    """(action, id of the goal)."""
     _on_update: Callable[[GraphUpdate], None] | None = None
 
     def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
@@ -99,6 +103,12 @@ class RecordedGraph:
 
     def measure(self, all_topics: bool) -> None:
         self.measured = all_topics
+
+    def watch_goals(self, actions: Iterable[str]) -> None:
+        self.goals_watched = set(actions)
+
+    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
+        self.canceled_of_others.append((action, goal_id))
 
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False

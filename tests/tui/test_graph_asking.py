@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 from textual.widgets import Input
 
-from graph.data import CallResult, GoalStatus
+from graph.data import CallResult, GoalStatus, SeenGoal
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import SERVICES, graph_update
@@ -271,6 +271,65 @@ async def test_a_goal_that_was_just_sent_is_chosen_as_soon_as_it_is_listed(
     action.graph.change_goal(2, elapsed_s=1.5)
     await action.wait_for("1.5 s")
     assert pane.asked_rows.chosen == "1"
+
+
+MINE, THEIRS = "3f2a9c1e" + "0" * 24, "8d00b7f4" + "0" * 24
+SEEN = (
+    SeenGoal(ACTION, DRIVE, MINE, GoalStatus.SUCCEEDED, 63.0),
+    SeenGoal(ACTION, DRIVE, THEIRS, GoalStatus.EXECUTING, 12.3, {"distance": 0.7}, 9),
+    SeenGoal("/another", DRIVE, "7" * 32, GoalStatus.EXECUTING, 1.0),
+)
+
+
+async def test_goals_of_other_clients_are_listed_with_id_state_age_and_feedback(
+    action: Room,
+) -> None:
+    assert action.graph.goals_watched == {ACTION}
+    await action.show(graph_update(seen_goals=SEEN))
+    await action.wait_for("8d00b7f4 ● executing 12.3 s other's · 9 feedbacks")
+    await action.wait_for("3f2a9c1e ✓ succeeded 63.0 s other's · 0 feedbacks")
+    await action.wait_for("distance: 0.7")
+    assert "77777777" not in action.seen()
+    # Nobody need look at them who looks at something else.
+    await action.app.show_screen("topics")
+    assert action.graph.goals_watched == set()
+    await action.app.show_screen("graph")
+    assert action.graph.goals_watched == {ACTION}
+
+
+async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: Room) -> None:
+    await action.press("ctrl+s")
+    await action.wait_for("#1 ◌ sending 0.0 s own")
+    update = action.graph.update
+    assert update is not None
+    await action.show(replace(update, seen_goals=SEEN))
+    pane = action.screen.ask_pane
+    assert pane is not None
+    pane.asked_rows.choose(THEIRS)
+    await action.press("f7")
+    await action.wait_for("Cancel a goal of another client?")
+    assert THEIRS in action.seen()
+    await action.press("escape")
+    assert action.graph.canceled_of_others == []
+    await action.press("f7", "enter")
+    await action.wait(lambda: action.graph.canceled_of_others)
+    assert action.graph.canceled_of_others == [(ACTION, THEIRS)]
+    # What has ended is left alone, and so are those of others without being chosen.
+    pane.asked_rows.choose(MINE)
+    await action.press("f7")
+    assert action.graph.canceled_goals == [1]
+    assert action.graph.canceled_of_others == [(ACTION, THEIRS)]
+    # Nor can Deck forget what is not its own.
+    action.screen.names.focus()
+    await action.press("d")
+    assert action.graph.forgotten_goals == []
+
+
+async def test_why_a_goal_of_another_client_was_not_cancelled_is_told(action: Room) -> None:
+    why = "the server refuses to cancel it"
+    await action.show(graph_update(seen_goals=(replace(SEEN[1], error=why),)))
+    await action.wait_for("8d00b7f4 ● executing · of another client")
+    assert why in action.seen()
 
 
 async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: Room) -> None:

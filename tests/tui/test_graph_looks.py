@@ -10,7 +10,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from graph.data import CallResult, GoalStatus, GraphUpdate, ParametersResult
+from graph.data import CallResult, GoalStatus, GraphUpdate, ParametersResult, SeenGoal
 from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
@@ -141,9 +141,23 @@ def test_a_call_under_way_and_one_that_failed(look: Look, snap_compare: SnapComp
 
 @both_languages
 def test_an_action(look: Look, snap_compare: SnapCompare) -> None:
-    """Goal form, two goals: one succeeded, one executing with its twelfth feedback shown."""
+    """Goal form; two own goals, one succeeded, one at its twelfth feedback; one of another's."""
     before = at(ACTION, "enter", "ctrl+s", "ctrl+s", executing)
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+    theirs = SeenGoal(
+        ACTION.name, "deck_interfaces/action/DriveToPoint", "8d00b7f4" * 4,
+        GoalStatus.CANCELING, 75.25, {"distance": 0.5}, 3,
+    )  # fmt: skip
+    update = graph_update(seen_goals=(theirs,))
+    assert snap_compare(app_of(look, update), terminal_size=look.size, run_before=before)
+
+
+@both_languages
+def test_a_goal_of_another_client_is_to_be_cancelled(look: Look, snap_compare: SnapCompare) -> None:
+    """A dialog asks: it names the action, the whole id, the state, and who waits for its end."""
+    theirs = SeenGoal(ACTION.name, "", "8d00b7f4" * 4, GoalStatus.EXECUTING, 75.25)
+    update = graph_update(seen_goals=(theirs,))
+    before = at(ACTION, "enter", "f7")
+    assert snap_compare(app_of(look, update), terminal_size=look.size, run_before=before)
 
 
 @both_languages

@@ -176,7 +176,7 @@ class Cancel(GraphAction):
     id = "graph.cancel"
     key = "f7,x,ч"
     title = N_("Cancel")
-    tooltip = N_("Wait no longer for the call, or cancel the chosen goal.")
+    tooltip = N_("Wait no longer for the call, or cancel the chosen goal; asks first for others'.")
     footer = True
     priority = True
 

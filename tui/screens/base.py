@@ -85,6 +85,10 @@ class DeckScreen(Screen[None], Acting, Working):
         """Return the topics of which every message is wanted, also while another is in front."""
         return set()
 
+    def watch_goals(self) -> set[str]:
+        """Return the actions whose goals of others are wanted while this screen is in front."""
+        return set()
+
     def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
         """Yield headings and actions of parts of the screen that have keys of their own."""
         yield from ()
@@ -99,7 +103,7 @@ class DeckScreen(Screen[None], Acting, Working):
         self._styled_for = self._surroundings()
 
     def topics_changed(self) -> None:
-        """Tell the app that `watch_topics`, `follow_topics` or `measure_all` answer otherwise."""
+        """Tell the app that what this screen wants of the graph is something else now."""
         if self.is_current:
             self.feed.ask_for_topics()
 

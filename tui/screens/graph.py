@@ -13,6 +13,8 @@ from tui.actions.graph import GRAPH_ACTIONS
 from tui.i18n import N_
 from tui.screens import graph_parameters
 from tui.screens.graph_frame import GraphFrame
+from tui.screens.graph_goal import CancelGoalScreen
+from tui.widgets.graph_action import ActionPane
 from tui.widgets.graph_index import chosen_of
 from tui.widgets.graph_map import GraphMap, middle_of
 from tui.widgets.graph_pane import GraphPane
@@ -22,6 +24,7 @@ from tui.widgets.graph_type_tree import GraphTypeTree
 from tui.widgets.rows import Rows
 
 if TYPE_CHECKING:
+    from graph.data import SeenGoal
     from tui.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 
@@ -98,6 +101,14 @@ class GraphScreen(GraphFrame):
         if message.place.kind is not Kind.NODE:
             self.remove_class("-map")
         await self.go(message.place)
+
+    @on(ActionPane.CancelWanted)
+    def _cancel_wanted(self, message: ActionPane.CancelWanted) -> None:
+        self.deck.push_screen(CancelGoalScreen(message.goal, message.state), self._cancel)
+
+    def _cancel(self, goal: SeenGoal | None) -> None:
+        if goal is not None and self.feed.graph is not None:
+            self.feed.graph.cancel_seen_goal(goal.action, goal.goal_id)
 
     @on(GraphTabs.Selected)
     def _selected(self, message: GraphTabs.Selected) -> None:

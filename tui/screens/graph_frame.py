@@ -78,6 +78,8 @@ class GraphFrame(DeckScreen):
         self.listed: dict[Kind, list[Entry]] = {}
         """All there is of each kind."""
         self._panes: dict[Kind, GraphPane] = {}
+        self._goals_of: set[str] = set()
+        """Whose goals were asked for."""
         self._installed: tuple[str, ...] = ()
         """Every type there is on this computer, once somebody has asked for all."""
 
@@ -156,6 +158,11 @@ class GraphFrame(DeckScreen):
         pane = self.pane
         return pane if isinstance(pane, AskPane) else None
 
+    def watch_goals(self) -> set[str]:
+        """Return the action that is shown."""
+        here = self.trail.here
+        return {here.name} if here is not None and here.kind is Kind.ACTION else set()
+
     def take(self, update: GraphUpdate | None) -> None:
         """Show this graph from now on."""
         self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
@@ -185,6 +192,9 @@ class GraphFrame(DeckScreen):
         if self.names.chosen_name and not self.trail.chosen.get(kind):
             self.trail.choose(self.names.chosen_name)
         self._show_detail(shown)
+        if self.watch_goals() != self._goals_of:
+            self._goals_of = self.watch_goals()
+            self.topics_changed()
         if self.draws:
             update = self.feed.update
             middle = middle_of(update, self.trail.here)

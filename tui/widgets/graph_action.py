@@ -1,11 +1,13 @@
-"""An action: its goal form, and the goals that Deck has sent with what comes of them."""
+"""An action: its goal form, and its goals, Deck's own and those of others."""
 
 from __future__ import annotations
 
 import asyncio
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from graph.data import GoalStatus
+from textual.message import Message
+
+from graph.data import Goal, GoalStatus, SeenGoal
 from text.plain import plain
 from tui.figures import figure
 from tui.i18n import N_, _, ngettext, said
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from concurrent.futures import Future
 
-    from graph.data import ActionRow, Goal
+    from graph.data import ActionRow
 
 STATES = {
     GoalStatus.SENDING: ("◌", N_("sending"), "dim"),
@@ -33,10 +35,21 @@ STATES = {
     GoalStatus.FAILED: ("✗", N_("lost"), "bad"),
 }
 """Status to sign, word and meaning: never the colour alone."""
+SHORT_ID = 8
+"""Digits of an id that are shown: two goals of one action hardly ever share them."""
 
 
 class ActionPane(AskPane):
     """Sends goals; feedback and result come with the updates of the graph."""
+
+    class CancelWanted(Message):
+        """A goal of another client is to be cancelled, if whoever wants it is sure."""
+
+        def __init__(self, goal: SeenGoal, state: str) -> None:
+            super().__init__()
+            self.goal = goal
+            self.state = state
+            """How it stands, in the language spoken now."""
 
     submit_title: ClassVar[str] = N_("Send goal")
 
@@ -53,10 +66,18 @@ class ActionPane(AskPane):
         return [goal for goal in reversed(goals) if goal.action == self.name_shown]
 
     @property
-    def chosen(self) -> Goal | None:
+    def of_others(self) -> Sequence[SeenGoal]:
+        """Those that others have sent, the newest first."""
+        update = self.graph_now
+        goals = () if update is None else update.seen_goals
+        return [goal for goal in reversed(goals) if goal.action == self.name_shown]
+
+    @property
+    def chosen(self) -> Goal | SeenGoal | None:
         """The chosen one."""
         wanted = self.asked_rows.chosen
-        return next((goal for goal in self.goals if str(goal.number) == wanted), None)
+        goals: list[Goal | SeenGoal] = [*self.goals, *self.of_others]
+        return next((goal for goal in goals if _key(goal) == wanted), None)
 
     @property
     def row(self) -> ActionRow | None:
@@ -81,10 +102,10 @@ class ActionPane(AskPane):
         ]
 
     def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
-        """Return the goals."""
+        """Return the goals: Deck's own, below them those of others."""
         return (
-            (Column("", 4), Column("", 14), Column("", 8), Column("")),
-            [_row(goal) for goal in self.goals],
+            (Column("", 8), Column("", 13), Column("", 8), Column("")),
+            [*map(_own_row, self.goals), *map(_other_row, self.of_others)],
         )
 
     def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
@@ -99,11 +120,13 @@ class ActionPane(AskPane):
                     _("{key} sends what is filled in.").format(key=self.submit_key),
                 ),
             )
-        name = f"{self.name_shown} {goal.number}"
-        state = f"#{goal.number} {_words(goal)}"
+        name = f"{self.name_shown} {_key(goal)}"
+        state = f"{_name(goal)} {_words(goal)}"
+        if isinstance(goal, SeenGoal):
+            state = f"{state} · " + _("of another client")
         if goal.error:
             return state, name, (_(STATES[goal.status][1]), plain(said(goal.error), LONGEST))
-        if goal.result is not None:
+        if isinstance(goal, Goal) and goal.result is not None:
             return f"{state} · " + _("result"), f"{name} result", goal.result
         if goal.feedback is not None:
             count = _("feedback {n}").format(n=goal.feedbacks)
@@ -137,7 +160,9 @@ class ActionPane(AskPane):
     @property
     def can_cancel(self) -> bool:
         """Whether the chosen goal, or else any, has not ended."""
-        return any(not goal.ended for goal in self.goals)
+        chosen = self.chosen
+        can_chosen = chosen is not None and not chosen.ended
+        return can_chosen or any(not goal.ended for goal in self.goals)
 
     @property
     def is_waiting(self) -> bool:
@@ -145,38 +170,59 @@ class ActionPane(AskPane):
         return False
 
     def cancel(self) -> None:
-        """Cancel the chosen goal; if that one has ended, the newest that has not."""
+        """Cancel the chosen goal; if that one has ended, the newest of Deck's own that has not."""
         graph, goal = self.deck.feed.graph, self.chosen
-        if goal is None or goal.ended:
-            goal = next((one for one in self.goals if not one.ended), None)
-        if graph is not None and goal is not None:
-            graph.cancel_goal(goal.number)
+        if isinstance(goal, SeenGoal) and not goal.ended:
+            self.post_message(self.CancelWanted(goal, _words(goal)))
+            return
+        own = goal if isinstance(goal, Goal) and not goal.ended else None
+        own = own or next((one for one in self.goals if not one.ended), None)
+        if graph is not None and own is not None:
+            graph.cancel_goal(own.number)
 
     @property
     def can_forget(self) -> bool:
-        """Whether a goal is chosen."""
-        return self.chosen is not None
+        """Whether a goal of Deck's own is chosen."""
+        return isinstance(self.chosen, Goal)
 
     def forget(self) -> None:
         """Take the chosen goal off the list."""
         graph, goal = self.deck.feed.graph, self.chosen
-        if graph is not None and goal is not None:
+        if graph is not None and isinstance(goal, Goal):
             graph.forget_goal(goal.number)
 
 
-def _words(goal: Goal) -> str:
+def _key(goal: Goal | SeenGoal) -> str:
+    return str(goal.number) if isinstance(goal, Goal) else goal.goal_id
+
+
+def _name(goal: Goal | SeenGoal) -> str:
+    """Return what it is called: the number by which Deck has sent it, or how its id begins."""
+    return f"#{goal.number}" if isinstance(goal, Goal) else goal.goal_id[:SHORT_ID]
+
+
+def _words(goal: Goal | SeenGoal) -> str:
     sign, word, _meaning = STATES[goal.status]
     return f"{sign} {_(word)}"
 
 
-def _row(goal: Goal) -> Row:
+def _own_row(goal: Goal) -> Row:
+    return _row(goal, goal.elapsed_s, _("own"))
+
+
+def _other_row(goal: SeenGoal) -> Row:
+    return _row(goal, goal.age_s, _("other's"))
+
+
+def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
     told = ngettext("{n} feedback", "{n} feedbacks", goal.feedbacks).format(n=goal.feedbacks)
     if goal.error:
         told = plain(said(goal.error), LONGEST)
+    age = "" if age_s is None else _("{n} s").format(n=figure(age_s, 1))
     cells = (
-        Cell(f"#{goal.number}"),
+        Cell(_name(goal)),
         Cell(_words(goal), STATES[goal.status][2]),
-        Cell(_("{n} s").format(n=figure(goal.elapsed_s, 1)), "dim"),
-        Cell(told, "dim"),
+        Cell(age, "dim"),
+        Cell(f"{whose} · {told}", "dim"),
     )
-    return Row(str(goal.number), cells)
+    return Row(_key(goal), cells)
