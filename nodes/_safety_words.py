@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes._speech import Phrase, Speech
-from robot.safety import Sight, Verdict
+from robot.safety import Sight, Verdict, Zone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -68,6 +68,10 @@ _SIGHTS_OUT_OF_RANGE = {
     ),
 }
 """Instead, by REP-117, of a distance that is infinite."""
+_SIGHT_SLOWED = Phrase(
+    "Free to move, slowed to {percent} % ({metres:.2f} m).",
+    "Ехать можно, но медленнее: {percent} % скорости ({metres:.2f} м).",
+)
 _LOG_EVERY_S = 0.9
 
 _VERDICTS = {
@@ -103,17 +107,23 @@ _REASONS_OUT_OF_RANGE = {
 def tell_front(say: Speech, view: View) -> None:
     """Log what the front sonar shows; each kind of news once a second at most."""
     log = say.info if view.sight == Sight.FREE else say.warn
-    metres, seconds = view.reading.distance_m, view.reading.age_s
+    slowed = view.sight == Sight.FREE and view.share < 1
     log(
-        _phrase(view, _SIGHTS, _SIGHTS_OUT_OF_RANGE),
+        _SIGHT_SLOWED if slowed else _phrase(view, _SIGHTS, _SIGHTS_OUT_OF_RANGE),
         every_s=_LOG_EVERY_S,
-        metres=metres,
-        seconds=seconds,
+        metres=view.reading.distance_m,
+        seconds=view.reading.age_s,
+        percent=_percent(view.share),
     )
 
 
+def _percent(share: float) -> int:
+    """What is let through, in whole percent: of a little not nothing, of less than all not all."""
+    return min(99, max(1 if share else 0, round(100 * share)))
+
+
 def diagnosis(
-    say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment
+    say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment, zone: Zone
 ) -> DiagnosticStatus:
     """The state of safety: level, a sentence, and key-values for programs.
 
@@ -128,7 +138,9 @@ def diagnosis(
         level=level,
         name="safety_stop",
         message=_sentence(say, verdict, views, moment),
-        values=[KeyValue(key=key, value=value) for key, value in _values(verdict, views, moment)],
+        values=[
+            KeyValue(key=key, value=value) for key, value in _values(verdict, views, moment, zone)
+        ],
     )
 
 
@@ -137,7 +149,7 @@ def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], moment: Mome
     sentence = say.text(_VERDICTS[verdict], why=why)
     if 0 < moment.allowed < 1:
         view = views[-1 if moment.asked_m_s < 0 else 0]
-        percent = round(moment.allowed * 100)
+        percent = _percent(moment.allowed)
         sentence = say.text(_SLOWED, percent=percent, why=_reason(say, view))
     if moment.ignored:
         sentence += say.text(_AND_IGNORED, ignored=moment.ignored, source=moment.source)
@@ -160,7 +172,9 @@ def _phrase(
     return phrases[view.sight]
 
 
-def _values(verdict: Verdict, views: Sequence[View], moment: Moment) -> Iterator[tuple[str, str]]:
+def _values(
+    verdict: Verdict, views: Sequence[View], moment: Moment, zone: Zone
+) -> Iterator[tuple[str, str]]:
     yield "verdict", verdict.value
     for view in views:
         metres = view.reading.distance_m
@@ -171,3 +185,5 @@ def _values(verdict: Verdict, views: Sequence[View], moment: Moment) -> Iterator
     yield "refused", moment.refused.told if moment.refused else ""
     yield "allowed", f"{moment.allowed:.2f}"
     yield "command_age_s", "" if moment.age_s is None else f"{moment.age_s:.2f}"
+    yield "critical_m", f"{zone.critical_m:.6g}"
+    yield "slow_m", f"{zone.slow_m:.6g}"

@@ -98,9 +98,10 @@ class SafetyStop(LessonNode):
         self.say.info(STARTED, metres=self.number("critical_distance"))
 
     def parameters_changed(self) -> None:
-        """Keep the new rate, and look again with the new distances."""
+        """Keep the new rate, and look again with the new distances, which are told at once."""
         change_period(self._timer, 1.0 / self.number("rate"))
         self._judge()
+        self._publish_state()
 
     def before_end(self) -> None:
         """A gate that goes leaves the robot standing."""
@@ -180,7 +181,7 @@ class SafetyStop(LessonNode):
         return str(self._status().message)
 
     def _status(self) -> DiagnosticStatus:
-        return diagnosis(self.say, self._verdict, self._views, self._moment())
+        return diagnosis(self.say, self._verdict, self._views, self._moment(), self._zone)
 
     def _publish_state(self) -> None:
         self._told_s, self._told = time.monotonic(), self._news()

@@ -75,6 +75,10 @@ class Gate:
     message: str = ""
     refused: str = ""
     """What was asked for in the last moments and refused: `0.8 m/s, limit 0.5 m/s`."""
+    critical_m: float | None = None
+    """Nearer than this is danger; None if it does not tell."""
+    slow_m: float | None = None
+    """Nearer than this it slows; not above `critical_m`: it never does."""
 
     @property
     def is_held(self) -> bool:
@@ -112,6 +116,8 @@ def _read(status: Mapping[str, Any]) -> Gate:
         1.0 if share is None else share,
         str(status.get("message", "")),
         values.get("refused", ""),
+        _number(values.get("critical_m", "")),
+        _number(values.get("slow_m", "")),
     )
 
 

@@ -12,6 +12,7 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32
 
+from tests.ros.devices import set_parameter
 from tests.ros.gate import FRONT, Gate, drive, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
@@ -193,3 +194,11 @@ def test_a_gate_that_is_held_up_while_it_takes_a_command_in_does_not_obey_it(
         seen = len(gate.safe)
         wait_until(lambda: len(gate.safe) >= seen + 10, "what passes after it")
         assert speeds(gate.safe) == {0.0}
+
+
+def test_it_tells_its_distances_and_a_new_one_at_once(gate: Gate) -> None:
+    gate.see(2.0)
+    state = values(gate.states[-1])
+    assert (state["critical_m"], state["slow_m"]) == ("0.5", "1")
+    set_parameter(gate.peer, "safety_node", "critical_distance", 0.75)
+    wait_until(lambda: values(gate.states[-1])["critical_m"] == "0.75", "the new distance")

@@ -197,13 +197,35 @@ def test_what_is_out_of_range_is_told_in_words(
     say = Speech(log, lang)  # type: ignore[arg-type]
     eye = Eye("front")
     eye.see(metres)
-    view = eye.view(Zone(0.5, 1.0, 60.0))
+    zone = Zone(0.5, 1.0, 60.0)
+    view = eye.view(zone)
     tell_front(say, view)
     assert log.lines[-1].endswith(logged)
     verdict = Verdict.FREE if metres > 0 else Verdict.BLOCKED_FORWARD
-    assert diagnosis(say, verdict, [view], Moment()).message.endswith(told)
-    slowed = diagnosis(say, Verdict.FREE, [view], Moment(allowed=0.5)).message
+    assert diagnosis(say, verdict, [view], Moment(), zone).message.endswith(told)
+    slowed = diagnosis(say, Verdict.FREE, [view], Moment(allowed=0.5), zone).message
     assert "inf" not in slowed
+
+
+@pytest.mark.parametrize(
+    ("lang", "metres", "logged"),
+    [
+        ("en", 0.52, "Free to move, slowed to 4 % (0.52 m)."),
+        ("ru", 0.52, "Ехать можно, но медленнее: 4 % скорости (0.52 м)."),
+        ("en", 0.501, "Free to move, slowed to 1 % (0.50 m)."),
+        ("en", 0.999, "Free to move, slowed to 99 % (1.00 m)."),
+        ("en", 0.5, "Free to move, slowed to 0 % (0.50 m)."),
+        ("en", 1.0, "The way is free (1.00 m)."),
+    ],
+)
+def test_a_way_on_which_it_is_slowed_is_not_called_free(
+    lang: str, metres: float, logged: str
+) -> None:
+    log = Log()
+    eye = Eye("front")
+    eye.see(metres)
+    tell_front(Speech(log, lang), eye.view(Zone(0.5, 1.0, 60.0)))  # type: ignore[arg-type]
+    assert log.lines[-1].endswith(logged)
 
 
 # ---------------------------------------------------------------- the sonar

@@ -13,7 +13,7 @@ from tests.tui.snapshots import SnapCompare
 from tui.i18n import set_language
 from tui.widgets.sonar import Sonar, SonarPanel
 from tui.widgets.sonar_bar import bar, mark_cell, trend
-from tui.widgets.sonar_words import Zone, zone_of
+from tui.widgets.sonar_words import COURSE, Bounds, Zone, zone_of
 
 INF, NAN = math.inf, math.nan
 
@@ -58,28 +58,30 @@ async def test_a_small_gauge_says_number_and_word(
         assert all(word in shown for word in ("front", *words))
 
 
-async def test_the_threshold_can_be_another() -> None:
+async def test_the_bounds_can_be_others() -> None:
     gauge = Sonar("front")
     async with alone(gauge, 44, 3).run_test(size=(60, 20)):
         gauge.show(0.7, 0.0)
         assert "CLOSE" in rows(gauge)[0]
-        gauge.set_threshold(0.8)
+        gauge.set_bounds(Bounds(0.8, 2.0))
         assert "STOP" in rows(gauge)[0]
+        gauge.show(1.7, 1.0)
+        assert "CLOSE" in rows(gauge)[0]
 
 
 @pytest.mark.parametrize("width", [6, 20, 33, 80])
 def test_the_bar_is_as_long_as_the_distance_and_marks_the_threshold(width: int) -> None:
     for metres in (0.0, 0.3, 0.5, 1.7, 3.0, 9.0, INF, NAN, -1.0):
-        assert sum(len(ink.text) for ink in bar(metres, width, 0.5)) == width
-    filled, rest = bar(0.0, width, 0.5)
+        assert sum(len(ink.text) for ink in bar(metres, width, COURSE)) == width
+    filled, rest = bar(0.0, width, COURSE)
     assert filled.text == ""
     assert rest.text[mark_cell(0.5, width)] == "│"
     assert rest.text[mark_cell(1.0, width)] == "│"
-    assert len(bar(1.5, 30, 0.5)[0].text) == 15
+    assert len(bar(1.5, 30, COURSE)[0].text) == 15
 
 
 def test_the_trend_has_the_newest_at_the_right() -> None:
-    (line,) = trend([3.0, NAN, 0.0], 5, 1, 0.5)
+    (line,) = trend([3.0, NAN, 0.0], 5, 1, COURSE)
     assert "".join(ink.text for ink in line) == "  █?▁"
 
 

@@ -6,11 +6,14 @@ import math
 from typing import TYPE_CHECKING
 
 from graph.data import Trouble
+from tui.emergency import SAFETY_TOPIC
 from tui.i18n import N_, _
+from tui.panels.bounds import bounds_of
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.map_panel import RoomMap
 from tui.widgets.map_reading import goal_in, ground_in, pose_in
 from tui.widgets.map_scene import FRONT, REAR
+from tui.widgets.sonar_words import COURSE
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -34,6 +37,7 @@ class MapFeed(Panel):
         self._pose_topic = ""
         """Where the pose comes from; empty until there is one."""
         self._heard_s = -math.inf
+        self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
         """The drawing."""
@@ -41,7 +45,7 @@ class MapFeed(Panel):
 
     def watched(self) -> set[str]:
         """The newest of everything; the path is what of it was seen."""
-        return {ODOMETRY, TRUTH, GROUND, GOAL, *SONARS.values()}
+        return {ODOMETRY, TRUTH, GROUND, GOAL, SAFETY_TOPIC, *SONARS.values()}
 
     def show(self, update: GraphUpdate) -> None:
         """Show what has come."""
@@ -52,6 +56,8 @@ class MapFeed(Panel):
         if ground is not None:
             drawing.show_ground(ground)
         self._show_goal(update, drawing)
+        self._bounds = bounds_of(update, self._bounds)
+        drawing.show_bounds(self._bounds)
         for place, topic in SONARS.items():
             self._show_ray(update, drawing, place, topic)
         self._show_pose(update, drawing)

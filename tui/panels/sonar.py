@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tui.emergency import SAFETY_TOPIC
 from tui.i18n import N_
+from tui.panels.bounds import bounds_of
 from tui.panels.panel import ALWAYS, Panel, row_of, trouble_of
 from tui.widgets.sonar import SonarPanel
+from tui.widgets.sonar_words import COURSE
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -24,13 +27,17 @@ class SonarFeed(Panel):
     weight = 2
     across_below = ALWAYS
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._bounds = COURSE
+
     def compose(self) -> ComposeResult:
         """The gauges."""
         yield SonarPanel()
 
     def watched(self) -> set[str]:
-        """Both sonars."""
-        return set(TOPICS.values())
+        """Both sonars, and what counts as near."""
+        return {*TOPICS.values(), SAFETY_TOPIC}
 
     def show(self, update: GraphUpdate) -> None:
         """Show every reading, for the trend."""
@@ -39,6 +46,8 @@ class SonarFeed(Panel):
         if rear is not None and rear.publishers:
             # One that has fallen silent stays, and says so.
             gauges.set_both(True)
+        self._bounds = bounds_of(update, self._bounds)
+        gauges.set_bounds(self._bounds)
         for place, topic in TOPICS.items():
             for sample in update.samples.get(topic, ()):
                 metres = sample.value.get("data")

@@ -23,7 +23,7 @@ from tui.widgets.map_scene import (
     grid_step_m,
 )
 from tui.widgets.sonar_bar import ink_of
-from tui.widgets.sonar_words import STOP_BELOW_M, remark
+from tui.widgets.sonar_words import remark
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from robot.odometry import Pose
     from tui.widgets.map_field import Field
     from tui.widgets.map_scene import Scene
+    from tui.widgets.sonar_words import Bounds
 
 BAR_CELLS = 12
 """The scale bar is no longer."""
@@ -55,7 +56,7 @@ def entries(scene: Scene, view: Field, driven_m: float, remarks: Sequence[str]) 
         metres = scene.pose.distance_to(scene.goal)
         words = _("goal {metres} m away").format(metres=figure(metres, 1))
         said.append(Entry(3, [Ink(f"{GOAL_SIGN} ", GOAL), Ink(words)]))
-    said += [Entry(4, _ray(place, metres)) for place, metres in scene.rays.items()]
+    said += [Entry(4, _ray(place, metres, scene.bounds)) for place, metres in scene.rays.items()]
     if scene.truth is not None:
         metres = scene.pose.distance_to(scene.truth)
         words = _("truth {metres} m off").format(metres=f"{metres:.2f}")
@@ -77,11 +78,11 @@ def _robot(pose: Pose) -> list[Entry]:
     ]
 
 
-def _ray(place: str, metres: float) -> Line:
+def _ray(place: str, metres: float, bounds: Bounds) -> Line:
     name = _("front") if place == FRONT else _("rear")
     words = remark(metres) or _("{metres} m").format(metres=figure(metres, 1))
     sign = BLIND_SIGN if math.isnan(metres) else FREE_SIGN if metres == math.inf else HIT_SIGN
-    return [Ink(f"{sign} ", ink_of(metres, STOP_BELOW_M)), Ink(f"{name} {words}")]
+    return [Ink(f"{sign} ", ink_of(metres, bounds)), Ink(f"{name} {words}")]
 
 
 def scale_bar(view: Field) -> Line:

@@ -12,6 +12,7 @@ from tui.widgets.map_layers import Layers
 from tui.widgets.map_legend import column, entries, rows
 from tui.widgets.map_scene import Scene, along, draw_scene, ray_origin, robot_corners
 from tui.widgets.map_trail import Trail
+from tui.widgets.sonar_words import COURSE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from robot.odometry import Point, Pose
     from tui.widgets.map_legend import Entry
     from tui.widgets.map_reading import Ground
+    from tui.widgets.sonar_words import Bounds
 
 MOST_ROWS = 5
 """Of the legend below the map."""
@@ -49,6 +51,7 @@ class RoomMap(Drawing):
         self._truth: Pose | None = None
         self._goal: Point | None = None
         self._rays: dict[str, float] = {}
+        self._bounds = COURSE
         self._ground: Ground | None = None
         self._frame = ""
         self._seen: Extent | None = None
@@ -87,6 +90,10 @@ class RoomMap(Drawing):
         if before is None or not abs(metres - before) < steady_m:
             self._rays[place] = metres
 
+    def show_bounds(self, bounds: Bounds) -> None:
+        """Show rays below these distances as near."""
+        self._bounds = bounds
+
     def show_ground(self, ground: Ground) -> None:
         """The room is like this."""
         self._ground = ground
@@ -101,7 +108,11 @@ class RoomMap(Drawing):
         if self._scene is None:
             return
         self._scene = Scene(
-            self._scene.pose, self._truth_apart(self._scene.pose), self._goal, dict(self._rays)
+            self._scene.pose,
+            self._truth_apart(self._scene.pose),
+            self._goal,
+            dict(self._rays),
+            self._bounds,
         )
         look = self._look(self._scene)
         if look != self._last or not self._lines:
@@ -183,7 +194,15 @@ class RoomMap(Drawing):
             shapes.append(robot_corners(view, scene.truth))
         said: Mapping[int, object] = dict(enumerate(self._entries(scene, view)))
         dots = [[(round(x), round(y)) for x, y in shape] for shape in shapes]
-        return dots, dict(scene.rays), scene.goal, self._ground, said, self._trail.revision
+        return (
+            dots,
+            dict(scene.rays),
+            scene.bounds,
+            scene.goal,
+            self._ground,
+            said,
+            self._trail.revision,
+        )
 
 
 def _legend_rows(extent: Extent, width: int, height: int) -> int:

@@ -13,7 +13,7 @@ from robot.world import Body, Sonar
 from tui.widgets.map_canvas import Canvas
 from tui.widgets.map_reading import OCCUPIED_FROM
 from tui.widgets.sonar_bar import ink_of
-from tui.widgets.sonar_words import STOP_BELOW_M
+from tui.widgets.sonar_words import COURSE, Bounds
 
 if TYPE_CHECKING:
     from robot.odometry import Point, Pose
@@ -56,6 +56,8 @@ class Scene:
     goal: Point | None = None
     rays: dict[str, float] = field(default_factory=dict)
     """`FRONT` and `REAR` to metres by REP-117."""
+    bounds: Bounds = COURSE
+    """What of these is near."""
 
 
 def ray_origin(pose: Pose, place: str) -> tuple[dots.Point, float]:
@@ -115,7 +117,7 @@ def draw_path(canvas: Canvas, view: Field, piece: list[dots.Point]) -> None:
 def draw_scene(canvas: Canvas, view: Field, scene: Scene) -> None:
     """All that moves, the robot last."""
     for place, metres in scene.rays.items():
-        _draw_ray(canvas, view, scene.pose, place, metres)
+        _draw_ray(canvas, view, scene.pose, place, metres, ink_of(metres, scene.bounds))
     if scene.goal is not None:
         canvas.sign(view.place(scene.goal.x_m, scene.goal.y_m), GOAL_SIGN, GOAL)
     if scene.truth is not None:
@@ -125,9 +127,10 @@ def draw_scene(canvas: Canvas, view: Field, scene: Scene) -> None:
     _draw_robot(canvas, view, scene.pose)
 
 
-def _draw_ray(canvas: Canvas, view: Field, pose: Pose, place: str, metres: float) -> None:
+def _draw_ray(
+    canvas: Canvas, view: Field, pose: Pose, place: str, metres: float, look: str
+) -> None:
     start, heading = ray_origin(pose, place)
-    look = ink_of(metres, STOP_BELOW_M)
     begin = view.place(*start)
     if math.isnan(metres):
         end = view.place(*along(start, heading, BROKEN_M))

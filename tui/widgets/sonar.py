@@ -12,7 +12,7 @@ from tui.figures import whole
 from tui.i18n import N_, _
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of
 from tui.widgets.sonar_bar import bar, big, ink_of, scale, trend
-from tui.widgets.sonar_words import STOP_BELOW_M, number, remark, zone_of
+from tui.widgets.sonar_words import COURSE, Bounds, number, remark, zone_of
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -31,14 +31,13 @@ class Sonar(Drawing):
         self,
         name: str = "",
         *,
-        stop_below_m: float = STOP_BELOW_M,
         id: str | None = None,
         classes: str | None = None,
     ) -> None:
         """`name` is marked by `N_`: "front", "rear"."""
         super().__init__(id=id, classes=classes)
         self._label = name
-        self._stop_below_m = stop_below_m
+        self._bounds = COURSE
         self._values: deque[float] = deque(maxlen=KEPT)
         self._times: deque[float] = deque(maxlen=KEPT)
 
@@ -48,10 +47,10 @@ class Sonar(Drawing):
         self._times.append(time_s)
         self.redraw()
 
-    def set_threshold(self, stop_below_m: float) -> None:
-        """Below this many metres the word is STOP."""
-        if stop_below_m != self._stop_below_m:
-            self._stop_below_m = stop_below_m
+    def set_bounds(self, bounds: Bounds) -> None:
+        """Say STOP and CLOSE below these distances from now on."""
+        if bounds != self._bounds:
+            self._bounds = bounds
             self.redraw()
 
     @property
@@ -69,17 +68,17 @@ class Sonar(Drawing):
         lines.append(self._head(width, with_number=not is_big))
         if is_big:
             lines += self._digits(metres, width)
-        lines.append(bar(metres, width, self._stop_below_m))
+        lines.append(bar(metres, width, self._bounds))
         rest = height - len(lines)
         if rest >= 2 and is_big:
-            lines.append(scale(width, self._stop_below_m))
+            lines.append(scale(width, self._bounds))
             rest -= 1
         if rest > 0:
             lines += self._trend(width, rest)
         return lines
 
     def _digits(self, metres: float, width: int) -> list[Line]:
-        digits = big(number(metres), ink_of(metres, self._stop_below_m))
+        digits = big(number(metres), ink_of(metres, self._bounds))
         digits[2] = [*digits[2], Ink(" " + (remark(metres) or _("m")))]
         return [[Ink(" "), *line] if width > DIGIT_CELLS else line for line in digits]
 
@@ -92,12 +91,12 @@ class Sonar(Drawing):
 
     def _number(self, metres: float) -> Line:
         words = remark(metres) or _("{metres} m").format(metres=number(metres))
-        return [Ink(words, ink_of(metres, self._stop_below_m))]
+        return [Ink(words, ink_of(metres, self._bounds))]
 
     def _word(self, metres: float) -> Line:
         if self.stale:
             return [Ink(self.stale_words, "alert")]
-        zone = zone_of(metres, self._stop_below_m)
+        zone = zone_of(metres, self._bounds)
         return [Ink(f" {zone.word} ", zone.look)]
 
     def _one_line(self, width: int) -> Line:
@@ -107,13 +106,13 @@ class Sonar(Drawing):
         room = width - cells_of(line)
         if room < 0:
             return beside(self._number(metres), self._word(metres), width)
-        return [*line, *(bar(metres, room, self._stop_below_m) if room >= 6 else ())]
+        return [*line, *(bar(metres, room, self._bounds) if room >= 6 else ())]
 
     def _trend(self, width: int, rest: int) -> list[Line]:
         rows = min(rest, 4)
         if rest < 3:
-            return trend(self._values, width, rows, self._stop_below_m)
-        drawn = trend(self._values, width, min(rest - 1, 4), self._stop_below_m)
+            return trend(self._values, width, rows, self._bounds)
+        drawn = trend(self._values, width, min(rest - 1, 4), self._bounds)
         return [*drawn, self._span(width)]
 
     def _span(self, width: int) -> Line:
@@ -151,6 +150,11 @@ class SonarPanel(Container):
     ) -> None:
         """Tell why nothing comes from the sonar at `front` or `rear`."""
         self._sonar(place).show_trouble(trouble, detail, age_s)
+
+    def set_bounds(self, bounds: Bounds) -> None:
+        """Say STOP and CLOSE below these distances from now on."""
+        for sonar in self.query(Sonar):
+            sonar.set_bounds(bounds)
 
     def set_both(self, both: bool) -> None:
         """Whether there is a rear sonar to be shown."""

@@ -4,28 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
 from tui.i18n import _
 from tui.widgets.drawing import Ink, Line
-from tui.widgets.sonar_words import FREE_FROM_M, RANGE_M, Zone, zone_of
+from tui.widgets.sonar_words import RANGE_M, Zone, zone_of
+
+if TYPE_CHECKING:
+    from tui.widgets.sonar_words import Bounds
 
 EIGHTHS = " ▏▎▍▌▋▊▉█"
 HEIGHTS = " ▁▂▃▄▅▆▇█"
 _INK = {Zone.FREE: "good", Zone.CLOSE: "warn", Zone.STOP: "bad", Zone.BLIND: "bad"}
 
 
-def ink_of(metres: float, stop_below_m: float) -> str:
+def ink_of(metres: float, bounds: Bounds) -> str:
     """Look of a bar of this length."""
-    return _INK[zone_of(metres, stop_below_m)]
+    return _INK[zone_of(metres, bounds)]
 
 
-def bar(metres: float, width: int, stop_below_m: float) -> Line:
-    """A bar from 0 to `RANGE_M`; a stroke at the threshold and at 1 m where it does not reach."""
+def bar(metres: float, width: int, bounds: Bounds) -> Line:
+    """A bar from 0 to `RANGE_M`; a stroke at each bound that it does not reach."""
     if width < 1:
         return []
-    look = ink_of(metres, stop_below_m)
+    look = ink_of(metres, bounds)
     if math.isnan(metres):
         return [Ink(("? " * width)[:width], look)]
     if math.isinf(metres) and metres > 0:
@@ -36,7 +40,7 @@ def bar(metres: float, width: int, stop_below_m: float) -> Line:
     if metres > RANGE_M:
         filled = "█" * (width - 1) + "▶"
     rest = ["·"] * (width - len(filled))
-    for mark in (stop_below_m, FREE_FROM_M):
+    for mark in bounds:
         place = mark_cell(mark, width) - len(filled)
         if 0 <= place < len(rest):
             rest[place] = "│"
@@ -48,13 +52,12 @@ def mark_cell(metres: float, width: int) -> int:
     return min(width - 1, int(width * metres / RANGE_M))
 
 
-def scale(width: int, stop_below_m: float) -> Line:
+def scale(width: int, bounds: Bounds) -> Line:
     """Numbers under the strokes of the bar."""
     cells = [" "] * width
     for metres, text in (
         (0.0, "0"),
-        (stop_below_m, f"↑{stop_below_m:g}"),
-        (FREE_FROM_M, f"↑{FREE_FROM_M:g}"),
+        *((metres, f"↑{metres:g}") for metres in bounds),
         (RANGE_M, _("{metres} m").format(metres=f"{RANGE_M:g}")),
     ):
         start = min(mark_cell(metres, width), width - len(text))
@@ -77,19 +80,19 @@ def big(text: str, look: str) -> list[Line]:
     return [[Ink(row, look)] for row in rows]
 
 
-def trend(values: Iterable[float], width: int, height: int, stop_below_m: float) -> list[Line]:
+def trend(values: Iterable[float], width: int, height: int, bounds: Bounds) -> list[Line]:
     """The newest values as columns, the newest at the right; `?` where there was no reading."""
     shown = list(values)[-width:]
     lines: list[Line] = []
     for row in range(height - 1, -1, -1):
         line: Line = [Ink(" " * (width - len(shown)))]
-        line.extend(_column(value, row, height, stop_below_m) for value in shown)
+        line.extend(_column(value, row, height, bounds) for value in shown)
         lines.append(_joined(line))
     return lines
 
 
-def _column(metres: float, row: int, height: int, stop_below_m: float) -> Ink:
-    look = ink_of(metres, stop_below_m)
+def _column(metres: float, row: int, height: int, bounds: Bounds) -> Ink:
+    look = ink_of(metres, bounds)
     if math.isnan(metres):
         return Ink("?" if row == 0 else " ", look)
     share = min(max(metres, 0.0), RANGE_M) / RANGE_M

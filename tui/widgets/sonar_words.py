@@ -4,16 +4,27 @@ from __future__ import annotations
 
 import math
 from enum import Enum
+from typing import NamedTuple
 
 from tui.figures import figure
 from tui.i18n import N_, _
 
-STOP_BELOW_M = 0.5
-"""safety_stop holds the wheels below this distance."""
 FREE_FROM_M = 1.0
 """ai_brain goes ahead from this distance on."""
 RANGE_M = 3.0
 """Right end of the bar."""
+
+
+class Bounds(NamedTuple):
+    """Which distances are near, in metres; as in the course until the gate tells of its own."""
+
+    stop_below_m: float = 0.5
+    """safety_stop holds the wheels below this distance."""
+    free_from_m: float = FREE_FROM_M
+    """From here on nothing slows them."""
+
+
+COURSE = Bounds()
 
 
 class Zone(Enum):
@@ -35,13 +46,13 @@ class Zone(Enum):
         return self.value[1]
 
 
-def zone_of(metres: float, stop_below_m: float = STOP_BELOW_M) -> Zone:
+def zone_of(metres: float, bounds: Bounds = COURSE) -> Zone:
     """The zone of a distance in metres; +inf is free, -inf too close, nan blind."""
     if math.isnan(metres):
         return Zone.BLIND
-    if metres < stop_below_m:
+    if metres < bounds.stop_below_m:
         return Zone.STOP
-    return Zone.CLOSE if metres < FREE_FROM_M else Zone.FREE
+    return Zone.CLOSE if metres < bounds.free_from_m else Zone.FREE
 
 
 def number(metres: float) -> str:

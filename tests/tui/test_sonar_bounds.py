@@ -1,0 +1,83 @@
+"""Gauge and map say near where the safety node does: by the distances that it tells of itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.tui.app_runs import opened
+from tests.tui.panel_stage import rows
+from tests.tui.recorded import (
+    TOPICS,
+    RecordedGraph,
+    RecordedPad,
+    lesson_samples,
+    lesson_update,
+    sample,
+)
+from tui.panels.bounds import bounds_of
+from tui.widgets.sonar import Sonar
+from tui.widgets.sonar_words import COURSE, Bounds
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+
+SAFETY, FRONT = "/safety_state", "/sensor/sonar_front"
+
+
+def told(metres: float = 0.7, **values: str) -> GraphUpdate:
+    """The lesson with a sonar at so many metres and these values of the safety node."""
+    pairs = [{"key": key, "value": value} for key, value in {"verdict": "free", **values}.items()]
+    status = [{"level": b"\x00", "name": "safety_stop", "message": "", "values": pairs}]
+    own = {
+        FRONT: (sample(FRONT, "std_msgs/msg/Float32", {"data": metres}),),
+        SAFETY: (sample(SAFETY, "diagnostic_msgs/msg/DiagnosticArray", {"status": status}),),
+    }
+    return lesson_update(samples={**lesson_samples(), **own})
+
+
+def gone(update: GraphUpdate) -> GraphUpdate:
+    left = (replace(row, publishers=0) if row.name == SAFETY else row for row in TOPICS)
+    return replace(update, topics=tuple(left))
+
+
+async def test_the_gauge_stops_where_the_safety_node_does() -> None:
+    pad = RecordedPad(graph=RecordedGraph(told(critical_m="0.8", slow_m="1.5")))
+    async with opened(pad) as (app, pilot):
+        await pilot.pause()
+        gauge = app.screen.query_one("#front", Sonar)
+        assert "STOP" in rows(gauge)[0]
+        # Somebody sets critical_distance while it runs.
+        pad.graph.show(told(critical_m="0.3", slow_m="1.5"))
+        await pilot.pause()
+        await pilot.pause()
+        assert "CLOSE" in rows(gauge)[0]
+        pad.graph.show(told(1.2, critical_m="0.3", slow_m="1.5"))
+        await pilot.pause()
+        await pilot.pause()
+        assert "CLOSE" in rows(gauge)[0]
+
+
+@pytest.mark.parametrize(
+    ("values", "bounds"),
+    [
+        ({"critical_m": "0.8", "slow_m": "1.5"}, Bounds(0.8, 1.5)),
+        ({"critical_m": "0.3", "slow_m": "0"}, Bounds(0.3, 1.0)),
+        ({"critical_m": "1.3", "slow_m": "0.5"}, Bounds(1.3, 1.3)),
+        ({"critical_m": "0.8"}, Bounds(0.8, 1.0)),
+        ({}, COURSE),
+        ({"critical_m": "nan", "slow_m": "1.5"}, COURSE),
+        ({"critical_m": "-1", "slow_m": "inf"}, COURSE),
+        ({"critical_m": "near"}, COURSE),
+    ],
+)
+def test_bounds_are_those_that_the_node_tells(values: dict[str, str], bounds: Bounds) -> None:
+    assert bounds_of(told(**values), COURSE) == bounds
+
+
+def test_they_stay_between_its_words_and_go_with_it() -> None:
+    own = Bounds(0.8, 1.5)
+    assert bounds_of(lesson_update(samples={}), own) == own
+    assert bounds_of(gone(told(critical_m="0.8")), own) == COURSE
