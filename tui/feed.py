@@ -178,7 +178,8 @@ class Feed:
         """Give an update to the screens that want it."""
         front = self.front
         for screen in self._screens:
-            if screen is front or not update.samples.keys().isdisjoint(screen.follow_topics()):
+            wanted = screen.follow_topics() | screen.keep_topics()
+            if screen is front or not update.samples.keys().isdisjoint(wanted):
                 screen.post_message(GraphChanged(update))
         self._note_rosout(update)
 
@@ -213,13 +214,14 @@ class Feed:
             self._screens.remove(screen)
 
     def ask_for_topics(self) -> None:
-        """Ask the graph for what the screen in front shows, and for what any screen follows."""
+        """Ask the graph for what the screen in front shows, and for what any follows or keeps."""
         graph, front = self.graph, self.front
         if graph is None:
             return
         own = {*FOLLOWED, ROSOUT} if self._hears_rosout else FOLLOWED
         followed = set(own).union(*(screen.follow_topics() for screen in self._screens))
-        graph.watch(set() if front is None else front.watch_topics())
+        kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
+        graph.watch(kept if front is None else kept | front.watch_topics())
         graph.follow(followed)
         graph.watch_goals(set() if front is None else front.watch_goals())
         graph.measure(front is not None and front.measure_all)

@@ -7,11 +7,13 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 from textual.pilot import Pilot
+from textual.widgets import Static
 
 from launcher.events import LogEvent
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, line
 from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines, word
 from tests.tui.snapshots import Look, settle
+from tui import clock
 from tui.app import DeckApp
 from tui.flow import Lane
 from tui.flow_reading import TOPICS
@@ -164,3 +166,13 @@ async def test_it_speaks_another_language_at_once() -> None:
         await at.press("f9")
         assert any("рад, влево" in row for row in at.rows())
         await at.press("f9")
+
+
+async def test_it_says_from_when_on_it_has_collected() -> None:
+    async with stage() as at:
+        shown = str(at.screen.query_one("#flow-lanes", Static).render())
+        since = clock.time_of_day(update().time_s)
+        assert f"collected since {since}" in shown.replace("\N{NO-BREAK SPACE}", " ")
+        await at.show(*voice(5.0))
+        again = str(at.screen.query_one("#flow-lanes", Static).render())
+        assert since in again

@@ -47,6 +47,16 @@ class MapFeed(Panel):
         """The newest of everything; the path is what of it was seen."""
         return {ODOMETRY, TRUTH, GROUND, GOAL, SAFETY_TOPIC, *SONARS.values()}
 
+    def kept(self) -> set[str]:
+        """Where the robot is: the path goes on."""
+        return {ODOMETRY, TRUTH}
+
+    def keep(self, update: GraphUpdate) -> None:
+        """Go on with the path, and draw nothing."""
+        drawing = self.query_one(RoomMap)
+        self._choose_pose(update, drawing)
+        self._show_pose(update, drawing)
+
     def show(self, update: GraphUpdate) -> None:
         """Show what has come."""
         drawing = self.query_one(RoomMap)

@@ -72,6 +72,10 @@ class Panel(Vertical):
         """Return the topics whose newest message is wanted."""
         return set()
 
+    def kept(self) -> set[str]:
+        """Return those of the watched that are wanted also while another tab is in front."""
+        return set()
+
     def followed(self) -> set[str]:
         """Return the topics of which every message is wanted."""
         return set()
@@ -80,10 +84,19 @@ class Panel(Vertical):
         """Show what has come, and why nothing has."""
         raise NotImplementedError
 
-    def take(self, update: GraphUpdate) -> None:
-        """Show what has come, or that it cannot be shown, until something comes that can."""
+    def keep(self, update: GraphUpdate) -> None:
+        """Take in what has come while nobody sees the panel."""
+        self.show(update)
+
+    def take(self, update: GraphUpdate, *, seen: bool = True) -> None:
+        """Show what has come, or that it cannot be shown, until something comes that can.
+
+        While another tab is in front, only what must not be missing later is taken in.
+        """
+        if not seen and update.samples.keys().isdisjoint(self.followed() | self.kept()):
+            return
         try:
-            self.show(update)
+            (self.show if seen else self.keep)(update)
         except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
             self.show_fault(bear(self, error))
         else:

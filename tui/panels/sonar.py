@@ -39,6 +39,10 @@ class SonarFeed(Panel):
         """Both sonars, and what counts as near."""
         return {*TOPICS.values(), SAFETY_TOPIC}
 
+    def kept(self) -> set[str]:
+        """Both sonars: the trend has no gap."""
+        return set(TOPICS.values())
+
     def show(self, update: GraphUpdate) -> None:
         """Show every reading, for the trend."""
         gauges = self.query_one(SonarPanel)

@@ -85,6 +85,10 @@ class DeckScreen(Screen[None], Acting, Working):
         """Return the topics of which every message is wanted, also while another is in front."""
         return set()
 
+    def keep_topics(self) -> set[str]:
+        """Return those of the watched topics that are wanted also while another is in front."""
+        return set()
+
     def watch_goals(self) -> set[str]:
         """Return the actions whose goals of others are wanted while this screen is in front."""
         return set()

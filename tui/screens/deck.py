@@ -220,8 +220,9 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
             if await self.put_up_for(message.update):
                 self._lay_out(self.size.height)
                 self.topics_changed()
+        seen = self.feed.front is self
         for panel in self.panels:
-            panel.take(message.update)
+            panel.take(message.update, seen=seen)
         row = row_of(message.update, COMMANDS)
         self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
 

@@ -51,6 +51,10 @@ class ScreenWithPanels(DeckScreen):
         """What the panels show."""
         return super().watch_topics().union(*(panel.watched() for panel in self.panels))
 
+    def keep_topics(self) -> set[str]:
+        """What has a history in a panel."""
+        return super().keep_topics().union(*(panel.kept() for panel in self.panels))
+
     def follow_topics(self) -> set[str]:
         """What the panels must not miss."""
         return super().follow_topics().union(*(panel.followed() for panel in self.panels))

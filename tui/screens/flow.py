@@ -67,6 +67,8 @@ class FlowScreen(DeckScreen):
         self._held: tuple[Chain, ...] = ()
         """What is shown while paused."""
         self._update: GraphUpdate | None = None
+        self._since_s: float | None = None
+        """Unix time before which nothing was collected."""
 
     def compose_body(self) -> ComposeResult:
         """Lanes above, the timeline, the chosen step below."""
@@ -116,6 +118,7 @@ class FlowScreen(DeckScreen):
         if self.feed.session is not None:
             self._book.clear()
             self._reader = FlowReader()
+            self._since_s = None
             self.paused = False
             self._show()
 
@@ -127,6 +130,9 @@ class FlowScreen(DeckScreen):
     def on_graph_changed(self, message: GraphChanged) -> None:
         """Take what came on the topics."""
         self._update = message.update
+        if self._since_s is None:
+            self._since_s = message.update.time_s
+            self._say_lanes()
         said_by = {
             row.name: ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
             for row in message.update.topics
@@ -263,6 +269,9 @@ class FlowScreen(DeckScreen):
             waiting = len(self._book.chains) - len(self._held)
             more = f" +{waiting}" if waiting > 0 else ""
             pieces.append(Content.styled(_("paused") + more, "bold"))
+        if self._since_s is not None:
+            since = _("collected since {time}").format(time=clock.time_of_day(self._since_s))
+            pieces.append(Content.styled(since.replace(" ", "\N{NO-BREAK SPACE}"), "dim"))
         self.query_one("#flow-lanes", Static).update(Content("  ").join(pieces))
 
     def _say_empty(self) -> None:

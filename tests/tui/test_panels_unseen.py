@@ -1,0 +1,83 @@
+"""Panels with a history go on with it while another tab is in front, and draw nothing meanwhile."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from robot.odometry import Pose
+from tests.tui.app_runs import opened, settle
+from tests.tui.panel_stage import rows
+from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
+from tests.tui.recorded_lesson import NOW_S
+from tests.tui.recorded_map import MAP_SESSION, map_update, odometry, reading
+from tui.panels.camera import CameraFeed
+from tui.panels.panel import Panel
+from tui.widgets.map_panel import RoomMap
+from tui.widgets.sonar import Sonar
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate, Sample
+
+KEPT = {"/sensor/sonar_front", "/sensor/sonar_rear", "/odom"}
+
+
+def pad() -> RecordedPad:
+    return RecordedPad(RecordedSession(MAP_SESSION), RecordedGraph(map_update()))
+
+
+def said(one: Sample) -> GraphUpdate:
+    """Nothing but this has come."""
+    return replace(map_update(), samples={one.topic: (one,)})
+
+
+async def test_the_trend_of_a_sonar_has_no_gap_where_the_tab_was_another() -> None:
+    own = pad()
+    async with opened(own) as (app, pilot):
+        gauge = app.screen.query_one("#front", Sonar)
+        await pilot.press("2")
+        await settle(pilot)
+        for second in range(1, 41):
+            one = replace(reading("front", 0.2), received_s=NOW_S + second)
+            own.graph.show(said(one))
+            await pilot.pause()
+        await pilot.press("1")
+        await settle(pilot)
+        assert "STOP" in rows(gauge)[0]
+        assert list(gauge._values)[-40:] == [0.2] * 40
+
+
+async def test_the_path_goes_on_where_the_tab_was_another() -> None:
+    own = pad()
+    async with opened(own) as (app, pilot):
+        drawing = app.screen.query_one(RoomMap)
+        drawing.forget_path()
+        await pilot.press("2")
+        await settle(pilot)
+        drawn: list[object] = []
+        drawing.settle = lambda: drawn.append(1)  # type: ignore[method-assign]
+        for step in range(11):
+            one = odometry(Pose(0.1 * step, 0.0, 0.0), at_s=100.0 + step)
+            own.graph.show(said(one))
+            await pilot.pause()
+        await settle(pilot)
+        assert drawing._trail.length_m == pytest.approx(1.0)
+        assert len(drawing._trail.pieces) == 1
+        assert drawn == []
+
+
+async def test_only_what_has_a_history_is_asked_for_while_unseen() -> None:
+    own = pad()
+    async with opened(own) as (_app, pilot):
+        assert own.graph.watched > KEPT
+        await pilot.press("2")
+        await settle(pilot)
+        assert own.graph.watched >= KEPT
+        assert "/map" not in own.graph.watched
+        assert "/odom" not in own.graph.followed
+
+
+def test_a_panel_without_a_history_keeps_nothing() -> None:
+    assert CameraFeed().kept() == Panel().kept() == set()
