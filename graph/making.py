@@ -53,12 +53,13 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
     for name, value in tree.items():
         path = f"{field}.{name}" if field else str(name)
         if name not in fields:
-            raise NoSuchFieldError(path, _unknown(str(name), list(fields)))
+            raise NoSuchFieldError(path, no_such_field(str(name), list(fields)))
         setattr(message, name, _made(parse(fields[name]), value, path))
     return message
 
 
-def _unknown(name: str, names: list[str]) -> str:
+def no_such_field(name: str, names: list[str]) -> str:
+    """Say that there is none of this name among these, or which one may be meant."""
     near = get_close_matches(name, names, n=1)
     if near:
         return say("no such field; did you mean {name}?", name=near[0])

@@ -57,6 +57,20 @@ def test_a_message(look: Look, snap_compare: SnapCompare) -> None:
 
 
 @both_languages
+def test_messages_that_fit_an_expression(look: Look, snap_compare: SnapCompare) -> None:
+    """Above the message stands the expression, and beside it that 1 of 1 messages fits."""
+    before = shown("/drive", None, "f", *"m.drive.speed>0")
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+@both_languages
+def test_an_expression_that_is_wrong(look: Look, snap_compare: SnapCompare) -> None:
+    """In red beside the expression: the column, the part, and what is wrong with it."""
+    before = shown("/drive", None, "f", *"speed>0")
+    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+
+
+@both_languages
 def test_a_picture(look: Look, snap_compare: SnapCompare) -> None:
     """The camera is chosen: colour bars over a grey ramp, with encoding, size and rate below."""
     before = shown("/camera/color/image_raw")

@@ -169,6 +169,27 @@ class CopyMessage(TopicsAction):
         target.copy_message()
 
 
+class FilterMessages(TopicsAction):
+    """Only messages that fit an expression."""
+
+    id = "topics.condition"
+    key = "f,а"
+    title = N_("Only if")
+    tooltip = N_("Show only messages for which an expression holds: m.data > 0.5; Esc ends it.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def possible(cls, target: TopicsScreen) -> bool | None:
+        """Where there is a topic whose messages can be seen."""
+        return target.table.chosen is not None and not target.is_covered
+
+    @classmethod
+    async def run(cls, target: TopicsScreen) -> None:
+        """Put the cursor there."""
+        target.filter_messages()
+
+
 class PictureOrTree(TopicsAction):
     """An image as a picture, or as its fields."""
 
@@ -262,6 +283,7 @@ TOPICS_ACTIONS = (
     PlotWindow,
     ClearPlot,
     CopyMessage,
+    FilterMessages,
     PictureOrTree,
     Endpoints,
     SortByNext,

@@ -18,6 +18,7 @@ from tui.actions.topics import TOPICS_ACTIONS, Housekeeping
 from tui.i18n import N_, _, ngettext
 from tui.screens.topics_pictures import TopicsPictures
 from tui.screens.topics_plotting import PlotPlace
+from tui.widgets.echo_filter import EchoFilter
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.field import Field
 from tui.widgets.topic_detail import TopicDetail
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.timer import Timer
 
-    from graph.data import TopicRow
+    from graph.data import Sample, TopicRow
     from tui.messages import GraphChanged, LanguageChanged, SessionChanged
 
 LONGEST_ARRAY = 2000
@@ -72,6 +73,8 @@ class TopicsScreen(TopicsPictures):
         super().__init__()
         self._settling: Timer | None = None
         self._listed: tuple[TopicRow, ...] = ()
+        self._missed: Sample | None = None
+        """What would have been shown while another screen was in front."""
 
     def compose_body(self) -> ComposeResult:
         """The filter above table and message."""
@@ -102,6 +105,8 @@ class TopicsScreen(TopicsPictures):
         """Show rates, and the newest message of the chosen topic."""
         update = message.update
         self.plot.take(update)
+        samples = update.samples.get(self.table.chosen or "", ())
+        self._missed = self.detail.fitting(samples) or self._missed
         if self.feed.front is not self:
             return
         if self.is_time_for_rates(update.time_s):
@@ -111,9 +116,9 @@ class TopicsScreen(TopicsPictures):
             self._count()
         if not self.table.shown:
             self.table.show_words(*self._why_none())
-        samples = update.samples.get(self.table.chosen or "", ())
-        if samples:
-            self.show_message(samples[-1])
+        missed, self._missed = self._missed, None
+        if missed is not None and missed.topic == self.table.chosen:
+            self.show_message(missed)
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget the topics of a session that has ended."""
@@ -140,6 +145,24 @@ class TopicsScreen(TopicsPictures):
         if self._settling is not None:
             self._settling.stop()
         self._settling = self.set_timer(SETTLED_S, self.topics_changed)
+
+    def follow_topics(self) -> set[str]:
+        """Those that are plotted, and the chosen one while an expression looks at each message."""
+        followed = super().follow_topics()
+        if self.is_mounted and self.table.chosen and self.detail.filter.in_force:
+            return {*followed, self.table.chosen}
+        return followed
+
+    @on(EchoFilter.Changed)
+    def _expression_changed(self) -> None:
+        found = self.detail.filter_anew()
+        if found is not None:
+            self.show_message(found)
+        self.topics_changed()
+
+    @on(Input.Submitted, "#echo-filter")
+    def _expression_done(self) -> None:
+        self.detail.echo.focus()
 
     @on(TopicsTable.Opened)
     def _opened(self) -> None:
@@ -170,11 +193,18 @@ class TopicsScreen(TopicsPictures):
             self.show_plot(PlotPlace.BESIDE)
         if self.focused in (self.filter, self.table):
             self.filter.value = ""
+        if self.focused is self.detail.filter.field:
+            self.detail.filter.close()
         self.table.focus()
 
     def focus_filter(self) -> None:
         """Put the cursor into the filter."""
         self.set_focus(self.filter)
+
+    def filter_messages(self) -> None:
+        """Put the cursor into the expression that messages are to fit."""
+        self.detail.show_as_endpoints(False)
+        self.detail.filter.open()
 
     def toggle_housekeeping(self) -> None:
         """Show or hide topics of ROS itself."""

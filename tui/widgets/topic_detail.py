@@ -11,6 +11,7 @@ from textual.widget import Widget
 from graph.data import Trouble
 from text.plain import plain
 from tui.i18n import _
+from tui.widgets.echo_filter import EchoFilter
 from tui.widgets.echo_tree import EchoTree
 from tui.widgets.image_view import ImageView
 from tui.widgets.topic_endpoints import TopicEndpoints
@@ -87,10 +88,13 @@ class TopicDetail(Vertical):
         super().__init__(id=id)
         self._row: TopicRow | None = None
         self._sample: Sample | None = None
+        self._newest: Sample | None = None
+        """Whether it fits the expression or not."""
 
     def compose(self) -> ComposeResult:
         """The head above tree, picture and endpoints, of which one is shown."""
         yield TopicHead()
+        yield EchoFilter()
         yield EchoTree()
         yield ImageView()
         yield TopicEndpoints()
@@ -99,6 +103,11 @@ class TopicDetail(Vertical):
     def echo(self) -> EchoTree:
         """The message as a tree."""
         return self.query_one(EchoTree)
+
+    @property
+    def filter(self) -> EchoFilter:
+        """Which messages are shown."""
+        return self.query_one(EchoFilter)
 
     @property
     def picture(self) -> ImageView:
@@ -119,14 +128,29 @@ class TopicDetail(Vertical):
 
     @property
     def sample(self) -> Sample | None:
-        """The newest message."""
+        """The newest message of those that are shown."""
         return self._sample
+
+    def fitting(self, samples: Sequence[Sample]) -> Sample | None:
+        """Return the newest of these that is to be shown, if one is; all of them are counted."""
+        if samples:
+            self._newest = samples[-1]
+        return self.filter.fitting(samples)
+
+    def filter_anew(self) -> Sample | None:
+        """Return the newest message if it is to be shown; one that is not goes out of sight."""
+        found = self.filter.fitting(() if self._newest is None else (self._newest,))
+        if found is None and not self.filter.is_wrong:
+            self._sample = None
+            self._say()
+        return found
 
     def show_topic(self, row: TopicRow | None) -> None:
         """Show how the topic is now; another topic than before begins without a message."""
         if row is None or self._row is None or row.name != self._row.name:
-            self._sample = None
+            self._sample = self._newest = None
             self.show_as_picture(False)
+            self.filter.show_topic("" if row is None else row.name)
         self._row = row
         self._say()
 
@@ -177,6 +201,7 @@ class TopicDetail(Vertical):
         self._say()
         self.endpoints.relabel()
         self.echo.relabel()
+        self.filter.relabel()
 
     def _say(self) -> None:
         head, row = self.query_one(TopicHead), self._row
@@ -204,6 +229,8 @@ class TopicDetail(Vertical):
     def _say_why_empty(self, topic: str, headline: str, way_out: str) -> None:
         waiting = _("waiting for a message"), _("It is shown as soon as one comes.")
         words = (headline, way_out) if headline else waiting
+        if self.filter.in_force and (self._newest is not None or not headline):
+            words = self.filter.why_none()
         self.echo.show_words(topic, *words)
         if self.as_picture:
             self.picture.show_words(*words)
