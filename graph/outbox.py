@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from graph.dated import Draft, draft
 from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
+from graph.ros import ONLY_LISTENING
+from graph.scan_endpoints import subscriptions
 from graph.types import load_message
 from graph.words import say
 
@@ -45,14 +47,13 @@ class PublishError(Exception):
 class _Line:
     """One publisher and what waits for its subscribers."""
 
+    node: Node
     publisher: Publisher
     cls: type[Any]
     qos: Qos
     expected: int
     """Subscribers that the graph knew when it was made, Deck's own among them."""
     patience_ends_s: float
-    onlookers: int = 0
-    """Deck's own subscribers, who do not count as somebody who heard it."""
     waiting: deque[tuple[Draft | None, Future[int]]] = field(default_factory=deque)
     """A message, None if it has gone out, and who wants to know how many it went to."""
     matched_since_s: float | None = None
@@ -69,7 +70,7 @@ class _Line:
         while self.waiting and (self.is_settled or (all_matched and self.waiting[0][0] is None)):
             message, future = self.waiting.popleft()
             if message is None or self.publish(message, future):
-                future.set_result(max(0, matched - self.onlookers))
+                future.set_result(max(0, matched - self._onlookers()))
 
     def publish(self, message: Draft, future: Future[int]) -> bool:
         """Publish; tell whether that went well, and the future if it did not."""
@@ -81,6 +82,11 @@ class _Line:
             future.set_exception(failure)
             return False
         return True
+
+    def _onlookers(self) -> int:
+        """Deck's own subscribers, who do not count as somebody who heard it, as of this moment."""
+        subscribed = subscriptions(self.node, self.publisher.topic)
+        return sum(end.node.startswith(ONLY_LISTENING) for end in subscribed)
 
     def _settle(self, all_matched: bool, now_s: float) -> None:
         if not all_matched:
@@ -151,16 +157,15 @@ class Outbox:
     def _line(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> _Line:
         refuse_other_type(topic, type_name, ends)
         subscribers = ends.subscribers if ends else ()
-        onlookers = ends.onlookers if ends else 0
         qos = Qos(RELIABLE, TRANSIENT_LOCAL) if latched else to_be_heard(subscribers)
         key = (topic, type_name, latched)
         line = self._lines.get(key)
         if line is None or (line.qos != qos and not line.waiting):
             if line is not None:
                 self._node.destroy_publisher(line.publisher)
+            onlookers = ends.onlookers if ends else 0
             line = self._open(topic, type_name, qos, len(subscribers) + onlookers)
             self._lines[key] = line
-        line.onlookers = onlookers
         return line
 
     def _open(self, topic: str, type_name: str, qos: Qos, expected: int) -> _Line:
@@ -168,7 +173,7 @@ class Outbox:
         publisher = open_publisher(self._node, topic, cls, qos)
         now_s = time.monotonic()
         patience_ends_s = max(now_s + MATCH_WITHIN_S, self._born_s + DISCOVERY_S)
-        return _Line(publisher, cls, qos, expected, patience_ends_s)
+        return _Line(self._node, publisher, cls, qos, expected, patience_ends_s)
 
 
 def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> None:

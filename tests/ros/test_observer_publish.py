@@ -46,22 +46,24 @@ def test_the_very_first_message_reaches_its_subscriber(peer: Peer, watcher: Watc
 
 
 def test_who_hears_it_is_counted_without_the_echo(peer: Peer, watcher: Watcher) -> None:
+    heard = {"/echoed": 1, "/echoed/unheard": 0}
     peer.listen("/echoed", type_name=STRING)
     peer.advertise("/echoed/unheard", type_name=STRING)
-    watcher.observer.watch({"/echoed", "/echoed/unheard"})
+    known(watcher, "/echoed")
+    watcher.wait_for("/echoed/unheard", lambda row: row.publishers, "has a publisher")
+    counts: list[dict[str, int]] = []
+
+    def has_echo() -> bool:
+        futures = {topic: watcher.observer.publish(topic, STRING, {"data": "x"}) for topic in heard}
+        counts.append({topic: future.result(10) for topic, future in futures.items()})
+        return all(watcher.of(topic) for topic in heard)
+
     try:
-        known(watcher, "/echoed")
-        watcher.wait_for("/echoed/unheard", lambda row: row.publishers, "has a publisher")
-        counts = {"/echoed": -1, "/echoed/unheard": -1}
-
-        def counted() -> bool:
-            for topic in counts:
-                future = watcher.observer.publish(topic, STRING, {"data": "x"})
-                counts[topic] = future.result(10)
-            return counts == {"/echoed": 1, "/echoed/unheard": 0}
-
-        # Until the look at the graph after the echo was opened.
-        wait_until(counted, lambda: f"counts {counts}")
+        # The echo is opened while the publishers are there, and counted at no moment.
+        assert not has_echo()
+        watcher.observer.watch(heard)
+        wait_until(has_echo, "an echo of both")
+        assert counts == [heard] * len(counts)
     finally:
         watcher.observer.watch(())
 
