@@ -226,13 +226,17 @@ class DeckApp(App[int], Acting):
     def on_graph_ready(self, message: GraphReady) -> None:
         """Take the update that waits; a fault of the stop does not keep it from the screens."""
         del message
-        update = self.feed.take_update()
+        before, update = self.feed.update, self.feed.take_update()
         if update is None:
             return
         try:
             self.brake.see(update)
         finally:
             self.feed.hand_over(update)
+        front = self.feed.front
+        if self.feed.watching and front and (before is None or before.nodes != update.nodes):
+            # Their number stands in the title.
+            front.show_frame()
         if self.strangers.see(update, self.feed.nodes):
             self._tell_of_strangers()
 

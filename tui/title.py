@@ -19,6 +19,7 @@ from tui.actions.app import (
 from tui.emergency import held_reason
 from tui.emergency_words import stop_words
 from tui.i18n import _, ngettext, pick, said
+from tui.widgets.watched import robot_nodes
 
 if TYPE_CHECKING:
     from launcher.status import SessionInfo
@@ -85,7 +86,7 @@ def _held(state: Emergency) -> Sequence[str]:
 def _watched(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     """Return the domain, and how many nodes others have started in it."""
     update = app.feed.update
-    count = 0 if update is None else len(update.nodes)
+    count = 0 if update is None else len(robot_nodes(update))
     found = ngettext("{n} node", "{n} nodes", count).format(n=count)
     domain = _("domain {domain}").format(domain=session.domain)
     watching = _("watching {domain}").format(domain=domain)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
@@ -21,10 +22,12 @@ from tests.tui.recorded import (
 )
 from tests.tui.recorded_lesson import topic
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tui import title
 from tui.app import DeckApp
 from tui.orders import Order, WatchOrder
 from tui.screens.deck import LessonDeck
 from tui.watching import WATCH, watched
+from tui.widgets.title_bar import TitleBar
 
 NOTHING = lesson_update(topics=(), samples={}, nodes=(), services=())
 
@@ -85,6 +88,28 @@ async def test_it_says_that_deck_has_started_nothing_and_who_runs() -> None:
     async with watching(robot()) as (pilot, _graph):
         assert "Deck has started nothing here" in words_of(pilot)
         assert "8 nodes run here: ai_brain" in words_of(pilot)
+
+
+async def test_title_and_words_count_the_same_nodes_whenever_they_come() -> None:
+    async with watching(NOTHING) as (pilot, graph):
+
+        def counts() -> tuple[str, str]:
+            """In the title, and beside it."""
+            found = re.search(r"(\d+) nodes?", title.states(deck_of(pilot).deck)[0])
+            shown = "".join(deck_of(pilot).query_one(TitleBar).render_line(0).text)
+            assert found is not None
+            assert found[0] in shown
+            told = re.search(r"(\d+ nodes?) run", words_of(pilot))
+            return found[0], told[1] if told else ""
+
+        graph.show(lesson_update(nodes=tuple(NodeRow(f"/{name}") for name in ("a", "b"))))
+        await settle(pilot)
+        assert counts() == ("2 nodes", "2 nodes")
+        # Another Deck, and a tool: no list shows them without being asked.
+        names = ("/a", "/b", "/c", "/_deck_observer_7", "/_ros2cli_12")
+        graph.show(lesson_update(nodes=tuple(map(NodeRow, names))))
+        await settle(pilot)
+        assert counts() == ("3 nodes", "3 nodes")
 
 
 async def test_an_empty_domain_says_so() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from graph.housekeeping import is_housekeeping
 from text.plain import plain
 from tui.i18n import _, ngettext
 
@@ -13,9 +14,14 @@ if TYPE_CHECKING:
 MOST_NAMES = 12
 
 
+def robot_nodes(update: GraphUpdate) -> list[str]:
+    """Return the full names of the nodes that count: those that lists show without being asked."""
+    return [node.name for node in update.nodes if not is_housekeeping(node.name)]
+
+
 def watched_words(update: GraphUpdate, domain: int) -> str:
     """The nodes that are there, and that they are not Deck's to start or stop."""
-    names = [plain(node.name.lstrip("/"), 60) for node in update.nodes]
+    names = [plain(name.lstrip("/"), 60) for name in robot_nodes(update)]
     if not names:
         words = _(
             "Nobody is here yet. Start a node with ROS_DOMAIN_ID={domain}, or look elsewhere:"
