@@ -72,7 +72,7 @@ class Observer(Asking):
         self._wake.set()
         atexit.unregister(self.stop)
         if self._thread is None:
-            self._refuse_orders(ObserverError("the observer was never started"))
+            self._refuse_orders(ObserverError(say("the observer was never started")))
         elif self._thread is not threading.current_thread():
             self._thread.join(STOP_WITHIN_S)
 
@@ -98,7 +98,7 @@ class Observer(Asking):
         self._wake.set()
 
     def _run(self, on_update: Callable[[GraphUpdate], None]) -> None:
-        end = ObserverError("the observer has been stopped")
+        end = ObserverError(say("the observer has been stopped"))
         try:
             # This imports rclpy; the screen need not wait for it.
             station = Station(open_ros(self._domain, self._discovery))

@@ -19,7 +19,12 @@ T = TypeVar("T")
 
 
 class ObserverError(Exception):
-    """The observer cannot work, or has been stopped; str() says why."""
+    """The observer cannot work, or has been stopped; `words` says why."""
+
+    def __init__(self, words: str) -> None:
+        """Say why, as `graph.words.say` makes it."""
+        super().__init__(words)
+        self.words = words
 
 
 class Order(Protocol):

@@ -58,7 +58,7 @@ class _Repeated:
                 held = self.message
                 self.publisher.publish(held if isinstance(held, bytes) else held.dated())
             except Exception as error:  # noqa: BLE001 - told in its row
-                self.error = str(error)
+                self.error = getattr(error, "words", "") or str(error)
             else:
                 self.sent += 1
             # Counted on from when it was due, not from when it went out.
@@ -133,7 +133,7 @@ class Publications:
             try:
                 publisher = open_publisher(self._node, repeated.topic, repeated.cls, qos)
             except PublishError as error:
-                repeated.error = str(error)
+                repeated.error = error.words
                 continue
             self._node.destroy_publisher(repeated.publisher)
             repeated.publisher, repeated.qos = publisher, qos

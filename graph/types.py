@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from graph.type_packages import how_to_install, install_names
+from graph.words import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -66,7 +67,11 @@ def _load(type_name: str, kind: str) -> type[Any]:
         raise UnknownTypeError(
             type_name,
             parts[0],
-            f"'{type_name}' is not the name of a type; write it as package/{kind}/Name",
+            say(
+                "'{type}' is not the name of a type; write it as package/{kind}/Name",
+                type=type_name,
+                kind=kind,
+            ),
         )
     package, _, name = parts
     try:
@@ -82,7 +87,7 @@ def _load(type_name: str, kind: str) -> type[Any]:
         raise UnknownTypeError(type_name, package, _missing(error, package, kind)) from error
     except Exception as error:
         # A broken package may raise anything, and must not take the observer along.
-        reason = f"package {package} is installed and cannot be used: {error}"
+        reason = _broken(package, error)
         raise UnknownTypeError(type_name, package, reason) from error
     if found is None:
         raise UnknownTypeError(type_name, package, _no_such_name(module, package, kind, name))
@@ -95,14 +100,34 @@ def _import_type_support(found: Any) -> None:  # noqa: ANN401 - generated, witho
         found.__import_type_support__()
 
 
-def _missing(error: ModuleNotFoundError, package: str, kind: str) -> str:
+def _missing(error: ModuleNotFoundError, package: str, kind: str) -> Words:
     if error.name == f"{package}.{kind}":
-        what = {"msg": "messages", "srv": "services", "action": "actions"}[kind]
-        return f"package {package} is installed and has no {what}"
-    return f"package {package} is installed and cannot be used: {error}"
+        return {
+            "msg": say("package {package} is installed and has no messages", package=package),
+            "srv": say("package {package} is installed and has no services", package=package),
+            "action": say("package {package} is installed and has no actions", package=package),
+        }[kind]
+    return _broken(package, error)
 
 
-def _no_such_name(module: object, package: str, kind: str, name: str) -> str:
+def _broken(package: str, error: Exception) -> Words:
+    return say(
+        "package {package} is installed and cannot be used: {error}", package=package, error=error
+    )
+
+
+def _no_such_name(module: object, package: str, kind: str, name: str) -> Words:
+    wanted = f"{kind}/{name}"
     near = get_close_matches(name, [n for n in dir(module) if n[0].isupper()], n=1)
-    hint = f"; did you mean {package}/{kind}/{near[0]}?" if near else ""
-    return f"package {package} is installed in a version without {kind}/{name}{hint}"
+    if not near:
+        return say(
+            "package {package} is installed in a version without {name}",
+            package=package,
+            name=wanted,
+        )
+    return say(
+        "package {package} is installed in a version without {name}; did you mean {near}?",
+        package=package,
+        name=wanted,
+        near=f"{package}/{kind}/{near[0]}",
+    )

@@ -50,7 +50,7 @@ class CameraTf(LessonNode):
         Text("child", "camera_link", "The frame of the camera", fixed=True),
         _metres("x", 0.15, "Forward"),
         _metres("y", 0.0, "To the left"),
-        _metres("z", 0.25, "Up"),
+        _metres("z", 0.25, "Upwards"),
         _radians("roll", "About x"),
         _radians("pitch", "About y, + looks down"),
         _radians("yaw", "About z, + looks left"),

@@ -6,6 +6,7 @@ import importlib
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ from nodes._node import LessonNode
 from nodes._parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, ROOT, Peer
+from tui.catalogue import read_po
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,6 +51,15 @@ def test_every_parameter_is_described_and_takes_its_own_default(module: str) -> 
             assert setting.low < setting.high
         descriptor = setting.descriptor()
         assert descriptor.description == setting.about
+
+
+@pytest.mark.parametrize("module", [*MODULES, "camera"])
+def test_the_screen_has_every_description_in_russian(module: str) -> None:
+    catalogue = read_po("ru")
+    for setting in settings_of(module):
+        entry = catalogue.get(setting.about)
+        assert entry is not None, setting.about
+        assert re.search("[а-яё]|JPEG", str(entry.string), re.IGNORECASE), setting.about
 
 
 @given(st.floats() | st.integers() | st.booleans() | st.text() | st.none())

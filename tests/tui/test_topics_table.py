@@ -110,6 +110,7 @@ def test_ages_are_whole(age: float | None, shown: str) -> None:
         ({"measured": False, "hz": None}, "– not measured"),
         ({"age_s": None, "hz": None}, "· waiting"),
         ({"detail": "peers disagree"}, "! peers disagree"),
+        ({"detail": "peers disagree", "facts": {"types": "a, b"}}, "! types differ"),
         ({}, ""),
     ],
 )

@@ -140,8 +140,12 @@ def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, fl
     if row is None:
         return Trouble.NO_PUBLISHER, topic, None
     # Nobody there, or nobody speaking, is said by the headline already.
-    told = row.trouble in {None, Trouble.NO_PUBLISHER, Trouble.QUIET} or not row.detail
-    return row.trouble, topic if told else f"{topic}: {row.detail}", row.age_s
+    if row.trouble in {None, Trouble.NO_PUBLISHER, Trouble.QUIET} or not row.detail:
+        return row.trouble, topic, row.age_s
+    # The first frame does without.
+    from tui.widgets.topic_words import advice
+
+    return row.trouble, f"{topic}: {advice(row)[1]}", row.age_s
 
 
 def first_published(update: GraphUpdate, topics: Iterable[str]) -> str:

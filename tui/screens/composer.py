@@ -24,6 +24,7 @@ from tui.widgets.outcome import Outcome
 from tui.widgets.outcome_story import FOLLOWED, SENT_TO, Story
 from tui.widgets.templates import TEMPLATES
 from tui.widgets.topic_words import names
+from tui.widgets.yaml_words import reason_words
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -212,7 +213,7 @@ class ComposerScreen(DeckScreen):
             story.failure = _("ROS did not take it within {n} s").format(n=f"{SENT_WITHIN_S:g}")
             self._say()
         except Exception as error:  # noqa: BLE001 - whatever it was, it is told
-            story.failure = str(error) or type(error).__name__
+            story.failure = reason_words(error)
             self._say()
 
     def choose_template(self) -> None:

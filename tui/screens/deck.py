@@ -162,8 +162,11 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
 
     def _tell_if_lost(self, sent: Future[int]) -> None:
         error = None if sent.cancelled() else sent.exception()
-        if error is not None:
-            self.notify(plain(str(error)), severity="error", markup=False)
+        if isinstance(error, Exception):
+            # The first frame does without.
+            from tui.widgets.yaml_words import reason_words
+
+            self.notify(reason_words(error), severity="error", markup=False)
 
     def focus_usual(self) -> None:
         """Go to the nodes."""
@@ -213,7 +216,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
     async def on_graph_changed(self, message: GraphChanged) -> None:
         """Feed the panels; a dead graph is told where they are."""
         if message.update.error:
-            self.notify(plain(message.update.error), severity="error", markup=False)
+            self.notify(said(message.update.error), severity="error", markup=False)
             return
         if self.feed.watching:
             self.set_class(self.driven, "-driven")

@@ -56,7 +56,7 @@ class ParameterDialog(Dialog[bool]):
         row = self._row
         lines = [Content.styled(plain(row.type_name), "$text-muted")]
         if row.description:
-            lines.insert(0, Content(plain(row.description, LONGEST)))
+            lines.insert(0, Content(plain(_(row.description), LONGEST)))
         allowed = allowed_words(row)
         if allowed:
             lines.append(Content(_("Allowed: {words}").format(words=allowed)))

@@ -15,7 +15,7 @@ from tui import title
 from tui.actions import bindings
 from tui.actions.publish import OpenPublish
 from tui.actions.topics import TOPICS_ACTIONS, Housekeeping
-from tui.i18n import N_, _, ngettext
+from tui.i18n import N_, _, ngettext, said
 from tui.screens.topics_pictures import TopicsPictures
 from tui.screens.topics_plotting import PlotPlace
 from tui.widgets.echo_filter import EchoFilter
@@ -245,7 +245,7 @@ class TopicsScreen(TopicsPictures):
         if self.feed.link is None:
             return _("no lesson is running"), ""
         if update is not None and update.error:
-            return _("ROS cannot be observed"), update.error
+            return _("ROS cannot be observed"), said(update.error)
         if title.starting(self.deck):
             return _("no topics yet"), _("Nodes are starting.")
         listed = () if update is None else tuple(filter(self._is_listed, update.topics))

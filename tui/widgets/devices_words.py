@@ -10,7 +10,7 @@ from rich.cells import cell_len
 from text.plain import plain
 from tui.device_reading import STALE_S, TOPIC, Device
 from tui.figures import elapsed
-from tui.i18n import _
+from tui.i18n import _, said
 from tui.widgets.devices_table import grouped, state
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ HEAD = "nodes.head_controller"
 
 def whole(device: Device, now_s: float, width: int) -> str:
     """Message, and below it as many figures as fit into one line of so many cells."""
-    said = state(device, now_s).text
-    lines = [f"{plain(device.name)} · {said} · {device.message}", ""]
+    word = state(device, now_s).text
+    lines = [f"{plain(device.name)} · {word} · {device.message}", ""]
     for figure in _figures(device):
         longer = f"{lines[1]} · {figure}" if lines[1] else figure
         if cell_len(longer) <= width:
@@ -82,7 +82,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
     if feed.session is None:
         return [_("no lesson is running")]
     if update is not None and update.error:
-        return [_("ROS cannot be observed"), plain(update.error)]
+        return [_("ROS cannot be observed"), said(update.error)]
     row = next((row for row in update.topics if row.name == TOPIC), None) if update else None
     if row is not None and row.publishers:
         said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
@@ -95,14 +95,14 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
     if drivers:
         words = _("{nodes} have not said anything on {topic} yet: see Deck (1) and Logs (4).")
         return [words.format(nodes=", ".join(map(plain, drivers)), topic=TOPIC)]
-    said = [_("No driver says anything on {topic}.").format(topic=TOPIC)]
+    lines = [_("No driver says anything on {topic}.").format(topic=TOPIC)]
     if feed.replay is not None:
-        return [*said, _("This recording has none of its messages.")]
+        return [*lines, _("This recording has none of its messages.")]
     if not feed.watching:
-        said.append(_("This lesson has no drivers: its nodes make up what they tell."))
+        lines.append(_("This lesson has no drivers: its nodes make up what they tell."))
     if lessons:
-        said.append(_("Drivers run in: {lessons}.").format(lessons=", ".join(lessons)))
-    return said
+        lines.append(_("Drivers run in: {lessons}.").format(lessons=", ".join(lessons)))
+    return lines
 
 
 async def lessons_with_drivers() -> tuple[str, ...]:

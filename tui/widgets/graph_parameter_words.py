@@ -55,7 +55,7 @@ def allowed_words(row: ParameterRow) -> str:
     if row.step:
         parts.append(_("step {n}").format(n=_number(row.step)))
     if row.constraints:
-        parts.append(plain(row.constraints, LONGEST))
+        parts.append(plain(_(row.constraints), LONGEST))
     return ", ".join(parts)
 
 

@@ -220,7 +220,7 @@ async def _outcome(call: Call, name: str, future: Future[CallResult]) -> CallRes
     try:
         return await asyncio.wrap_future(future)
     except Exception as error:  # noqa: BLE001 - whatever it was, it is told
-        why = str(error) or type(error).__name__
+        why = getattr(error, "words", "") or str(error) or type(error).__name__
         return CallResult(name, False, None, why, now_s() - call.asked_s)
 
 

@@ -103,7 +103,7 @@ class TypePane(GraphPane):
             found = await asyncio.to_thread(definition, name)
         except UnknownTypeError as error:
             if name == self.name_shown:
-                self._failure = str(error) or type(error).__name__
+                self._failure = error.reason
                 self.redraw()
             return
         if name == self.name_shown:

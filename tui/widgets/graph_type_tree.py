@@ -113,7 +113,7 @@ class GraphTypeTree(Tree["str | None"], Working):
             # The first look at a package imports it, which takes its time.
             found = await asyncio.to_thread(definition, type_name)
         except UnknownTypeError as error:
-            node.add_leaf(Text(plain(said(str(error)), LONGEST), "italic"))
+            node.add_leaf(Text(plain(said(error.reason), LONGEST), "italic"))
             return
         for part in found.parts:
             _fill(node, part.fields, part.constants)

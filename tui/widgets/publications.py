@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.plain import plain
-from tui.i18n import _
+from tui.i18n import _, said
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Publications(Rows):
 
 def _row(one: Publication) -> Row:
     if one.error:
-        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(one.error, 200)}", "bad")
+        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(said(one.error), 200)}", "bad")
         return Row(str(one.number), (words,))
     heard = Cell(str(one.subscribers), "" if one.subscribers else "warn")
     cells = (Cell(plain(one.topic, 200)), Cell(f"{one.hz:g}"), Cell(str(one.sent)), heard)

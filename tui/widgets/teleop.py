@@ -36,6 +36,7 @@ from tui.teleop_route import (
 from tui.widgets.drawing import Drawing, Line
 from tui.widgets.teleop_view import Driving, drawn
 from tui.widgets.wheels_reading import Wheels, wheels_in
+from tui.widgets.yaml_words import reason_words
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -166,7 +167,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
     def _held(self, done: Future[int]) -> None:
         """Told on the observer's thread."""
         error = None if done.cancelled() else done.exception()
-        words = "" if error is None else str(error)
+        words = reason_words(error) if isinstance(error, Exception) else ""
         if words != self._error:
             self._error = words
             self.app.call_later(self.redraw)

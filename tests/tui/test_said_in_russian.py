@@ -1,0 +1,92 @@
+"""What comes from below the screens in English is shown in the language of the screen."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from graph.data import ParameterRow, Trouble
+from graph.images import ImageError, to_rgb
+from graph.orders import ObserverError
+from graph.replay_refusals import Refusals
+from graph.types import UnknownTypeError, load_message
+from tests.tui.app_runs import opened
+from tests.tui.recorded import lesson_update, topic
+from tui.i18n import said, set_language
+from tui.panels.panel import trouble_of
+from tui.screens.deck import LessonDeck
+from tui.screens.graph_parameter import ParameterDialog
+from tui.widgets.topics_table_columns import state_text
+from tui.widgets.yaml_words import reason_words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@pytest.fixture(autouse=True)
+def russian() -> Iterator[None]:
+    set_language("ru")
+    yield
+    set_language("en")
+
+
+def latin(words: str) -> bool:
+    """Whether there is no word of Russian in it."""
+    return not any("а" <= char <= "я" for char in words.lower())
+
+
+def test_what_a_recording_refuses() -> None:
+    refused: Future[int] = Refusals().publish("/x", "std_msgs/msg/String", {})
+    error = refused.exception(1)
+    assert isinstance(error, ObserverError)
+    assert reason_words(error) == "это запись: услышать некому"
+
+
+async def test_a_command_that_a_recording_refuses_is_told_in_russian() -> None:
+    async with opened() as (app, pilot):
+        set_language("ru")
+        assert isinstance(app.screen, LessonDeck)
+        app.screen._tell_if_lost(Refusals().publish("/x", "std_msgs/msg/String", {}))
+        await pilot.pause()
+        (told,) = [one.message for one in app._notifications]
+        assert told == "это запись: услышать некому"
+
+
+@pytest.mark.parametrize(
+    "name", ["std_msgs", "std_msgs/msg/Strin", "no_such_msgs/msg/Any", "std_msgs/srv/Any"]
+)
+def test_a_type_that_is_not_there(name: str) -> None:
+    with pytest.raises(UnknownTypeError) as found:
+        load_message(name)
+    assert not latin(said(found.value.reason))
+    assert not latin(reason_words(found.value))
+
+
+def test_a_picture_that_cannot_be_shown() -> None:
+    with pytest.raises(ImageError) as found:
+        to_rgb({"width": 0, "height": 1, "step": 0, "encoding": "rgb8", "data": b""})
+    assert said(found.value.words) == "изображение пустое: 0 × 1"
+
+
+def test_peers_that_disagree_about_a_type() -> None:
+    facts = {"types": "a/msg/A, b/msg/B", "shown": "a/msg/A"}
+    row = replace(topic("/x", "a/msg/A", 1.0), detail="peers disagree", facts=facts)
+    assert state_text(row) == "! типы разные"
+
+
+def test_a_panel_whose_type_is_not_installed() -> None:
+    facts = {"type": "a/msg/A", "package": "a", "reason": "package a is not installed"}
+    row = topic("/x", "a/msg/A", None, trouble=Trouble.UNKNOWN_TYPE, detail="no", facts=facts)
+    _trouble, words, _age = trouble_of(lesson_update(topics=(row,)), "/x")
+    assert words.startswith("/x: a/msg/A: установите пакет a или подключите (source)")
+
+
+def test_what_a_parameter_is_for() -> None:
+    row = ParameterRow("critical_distance", "double", 0.5, "Nearer than this is danger")
+    dialog = ParameterDialog("/safety_node", row, lambda _value: None)  # type: ignore[arg-type, return-value]
+    assert "Ближе этого — опасность" in dialog.words().plain
+    foreign = ParameterDialog("/x", replace(row, description="gain"), dialog._apply)
+    assert "gain" in foreign.words().plain
