@@ -19,6 +19,7 @@ from tui.i18n import said, set_language
 from tui.panels.panel import trouble_of
 from tui.screens.deck import LessonDeck
 from tui.screens.graph_parameter import ParameterDialog
+from tui.widgets.graph_parameter_words import allowed_words
 from tui.widgets.topics_table_columns import state_text
 from tui.widgets.yaml_words import reason_words
 
@@ -90,3 +91,22 @@ def test_what_a_parameter_is_for() -> None:
     assert "Ближе этого — опасность" in dialog.words().plain
     foreign = ParameterDialog("/x", replace(row, description="gain"), dialog._apply)
     assert "gain" in foreign.words().plain
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        (ParameterRow("a", "double", 1.0, "", "0.1 .. 60 s", False, 0.1, 60.0), "0.1…60 с"),
+        (ParameterRow("a", "double", 1.0, "", "0 .. 1", False, 0.0, 1.0), "0…1"),
+        (
+            ParameterRow("a", "integer", 1, "", "0 .. 9 rad/s", True, 0, 9),
+            "только чтение, 0…9 рад/с",
+        ),
+        (ParameterRow("a", "double", 1.0, "", "0 .. 1 furlong", False, 0.0, 1.0), "0…1 furlong"),
+        (ParameterRow("a", "double", 1.0, "", "0 .. 2 s", False, 0.0, 1.0), "0…1, 0 .. 2 s"),
+        (ParameterRow("a", "string", "", "", "text, may be empty"), "текст, можно пустой"),
+        (ParameterRow("a", "string", "", "", "as you like"), "as you like"),
+    ],
+)
+def test_what_a_parameter_may_be(row: ParameterRow, words: str) -> None:
+    assert allowed_words(row) == words

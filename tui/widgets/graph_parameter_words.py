@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from graph.yaml_scalars import in_quotes, unquoted
 from text.plain import is_plain, plain
-from tui.i18n import _
+from tui.i18n import N_, _
 
 if TYPE_CHECKING:
     from graph.data import ParameterRow, Value
 
 LONGEST = 400
+UNITS = (
+    N_("m"), N_("s"), N_("ms"), N_("Hz"), N_("V"), N_("rad"), N_("deg"), N_("m/s"), N_("rad/s"),
+    N_("deg/s"),
+)  # fmt: skip
+MEASURE = re.compile(r"(?P<least>\S+) \.\. (?P<greatest>\S+)(?: (?P<unit>\S+))?")
+"""How Deck's own nodes write a range into their constraints."""
 
 
 def typed(value: Value | None) -> str:
@@ -47,15 +54,22 @@ def value_text(value: Value | None) -> str:
 
 def allowed_words(row: ParameterRow) -> str:
     """Return the range, the step, and whether it can be changed at all."""
-    parts = []
+    parts, constraints = [], row.constraints
     if row.read_only:
         parts.append(_("read-only"))
     if row.least is not None and row.greatest is not None:
-        parts.append(f"{_number(row.least)}…{_number(row.greatest)}")
+        least, greatest = _number(row.least), _number(row.greatest)
+        words = f"{least}…{greatest}"
+        told = MEASURE.fullmatch(constraints)
+        if told is not None and (told["least"], told["greatest"]) == (least, greatest):
+            # The same once more, with its unit.
+            unit, constraints = told["unit"] or "", ""
+            words = f"{words} {_(unit) if unit in UNITS else plain(unit, LONGEST)}".rstrip()
+        parts.append(words)
     if row.step:
         parts.append(_("step {n}").format(n=_number(row.step)))
-    if row.constraints:
-        parts.append(plain(_(row.constraints), LONGEST))
+    if constraints:
+        parts.append(plain(_(constraints), LONGEST))
     return ", ".join(parts)
 
 
