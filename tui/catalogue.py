@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -62,10 +63,14 @@ def compile_all() -> list[Path]:
     from babel.messages import mofile
 
     written: list[Path] = []
+    # Its header would else tell when it was made, and each making would be another file.
+    timeless = datetime(2000, 1, 1, tzinfo=timezone.utc)
     for path in sorted(LOCALE.glob(f"*/LC_MESSAGES/{DOMAIN}.po")):
         target = path.with_suffix(".mo")
         with target.open("wb") as file:
-            mofile.write_mo(file, read_po(path.parent.parent.name))
+            catalogue = read_po(path.parent.parent.name)
+            catalogue.creation_date = catalogue.revision_date = timeless
+            mofile.write_mo(file, catalogue)
         written.append(target)
     return written
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import gettext
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from launcher.words import say
+from tui import catalogue
 from tui.catalogue import missing, po_path, read_po
 from tui.i18n import _, detect, language, ngettext, pick, said, set_language
 
@@ -91,6 +94,16 @@ def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
             assert said == tuple(entry.string), "run: python -m tui.i18n compile"
         else:
             assert compiled.gettext(entry.id) == entry.string, "run: python -m tui.i18n compile"
+
+
+def test_compiling_the_same_catalogue_again_makes_the_same_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = po_path("ru").with_suffix(".mo").read_bytes()
+    shutil.copytree(catalogue.LOCALE, tmp_path / "locale")
+    monkeypatch.setattr(catalogue, "LOCALE", tmp_path / "locale")
+    (made,) = catalogue.compile_all()
+    assert made.read_bytes() == kept
 
 
 def test_translations_fill_in_the_same_values() -> None:
