@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from tui.i18n import language
 from tui.orders import Lesson
+from tui.panels.made import PANELS
 from tui.watching import watched
 
 if TYPE_CHECKING:
@@ -28,6 +29,11 @@ if TYPE_CHECKING:
     from tui.orders import Order, ReplayOrder
     from tui.replay import ReplayLink
     from tui.seams import GraphLink, SessionLink
+
+OF_ROS = ("rclpy.node", "rclpy.event_handler", "rclpy.serialization", "sensor_msgs.msg")
+"""What the observer needs in nearly every lesson."""
+OF_SCREEN = ("tui.screens.deck", "tui.widgets.half_blocks")
+"""What shows a lesson, besides its panels."""
 
 
 class LivePad:
@@ -60,10 +66,12 @@ class LivePad:
     async def prepare(self) -> None:
         """Import, here and in a supervisor, what is the same for every profile."""
         await self._start_ahead()
-        await _imported("launcher.client", "graph.observer")
+        await _imported("launcher.client", "launcher.supervisor_beside", "graph.observer")
         # Without ROS there is a word for it, later: the nodes' own and the observer's.
         with contextlib.suppress(ImportError):
-            await _imported("rclpy.node")
+            await _imported(*OF_ROS)
+        # Once a lesson is chosen the processors are for its nodes.
+        await _imported(*OF_SCREEN, *(module for module, _made in PANELS.values()))
 
     async def _start_ahead(self) -> None:
         async with self._starting:
