@@ -14,8 +14,8 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-STATE_DIR = "DECK_STATE_DIR"
-"""Environment variable with the folder of what Deck remembers."""
+from robot.stop_place import stop_place
+
 _LONGEST = 4096
 
 
@@ -34,31 +34,18 @@ class Stop(NamedTuple):
     """Why nothing more is known of it."""
 
 
-def stops_folder() -> Path:
-    """Return `stops` in `DECK_STATE_DIR`, `$XDG_STATE_HOME/deck`, or `~/.local/state/deck`.
-
-    Raises:
-        RuntimeError: if this user has no home.
-    """
-    chosen = os.environ.get(STATE_DIR)
-    if chosen:
-        return Path(chosen) / "stops"
-    state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-    return Path(state) / "deck" / "stops"
-
-
 class StopMemory:
     """What is remembered of the stop in one domain."""
 
     def __init__(self, domain: int, writer: str) -> None:
         """`writer` is the full name of the node."""
-        self._name = str(domain)
+        self._domain = domain
         self._draft = f".{domain}{writer.replace('/', '.')}"
 
     def recall(self) -> Stop | None:
         """Return the stop that is remembered, None if none is."""
         try:
-            with (stops_folder() / self._name).open("rb") as file:
+            with self._place().open("rb") as file:
                 text = file.read(_LONGEST)
         except (FileNotFoundError, RuntimeError):
             return None
@@ -70,24 +57,28 @@ class StopMemory:
         """Write it down, unless a stop is remembered already; return why that failed."""
         document = {"since": stop.since_s, "by": stop.by, "publishers": stop.publishers}
         try:
-            folder = stops_folder()
-            if os.path.lexists(folder / self._name):
+            place = self._place()
+            folder = place.parent
+            if os.path.lexists(place):
                 return ""
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             _write(folder / self._draft, json.dumps(document).encode())
-            (folder / self._draft).replace(folder / self._name)
+            (folder / self._draft).replace(place)
             _flush(folder)
         except (OSError, RuntimeError) as error:
             return _reason(error)
         return ""
 
+    def _place(self) -> Path:
+        return stop_place(os.environ, self._domain)
+
     def forget(self) -> str:
         """Remember no stop any more; return why that failed."""
         try:
-            folder = stops_folder()
+            place = self._place()
             with contextlib.suppress(FileNotFoundError):
-                (folder / self._name).unlink()
-                _flush(folder)
+                place.unlink()
+                _flush(place.parent)
         except (OSError, RuntimeError) as error:
             return _reason(error)
         return ""

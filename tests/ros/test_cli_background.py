@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from launcher.client import running
+from nodes._stop_memory import Stop, StopMemory
 from tests.deck_process import DeckProcess, alive, deck
 from tests.ros.supervised import end_sessions
 from tests.unit.profile_files import written
@@ -63,6 +64,27 @@ def test_from_up_to_down(tmp_path: Path, ros_domain: int) -> None:
     assert (down.process.returncode, down.lines) == (0, ["one stopped, 2 nodes"])
     assert not any(map(alive, pids))
     assert deck("ps").errors[0].startswith("nothing runs in the background")
+
+
+def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(
+    tmp_path: Path, ros_domain: int
+) -> None:
+    path = str(written(tmp_path, ONE, "one.yaml"))
+    told = (
+        f"■ EMERGENCY STOP in domain {ros_domain}: its robot does not move until the stop is"
+        f" released; `deck watch --domain {ros_domain}`, then Ctrl+R"
+    )
+    memory = StopMemory(ros_domain, "/safety_stop")
+    assert memory.keep(Stop(1.0, "topic")) == ""
+    assert told in deck("run", path, "--for", "0").errors
+    assert told in deck("up", path).errors
+    assert told in deck("ps").lines
+    (session,) = json.loads("\n".join(deck("ps", "--json").lines))
+    assert session["emergency_stop"] is True
+    assert memory.forget() == ""
+    assert told not in deck("ps").lines
+    (session,) = json.loads("\n".join(deck("ps", "--json").lines))
+    assert session["emergency_stop"] is False
 
 
 def test_logs_follow_without_a_gap_until_ctrl_c(tmp_path: Path) -> None:

@@ -21,9 +21,10 @@ from launcher.events import LogEvent
 from text.plain import plain
 from tui.cli.company import warn_of_company
 from tui.cli.health import settled, well
-from tui.cli.output import Paint, json_text, say_error, write
+from tui.cli.output import RED, Paint, json_text, say_error, write
 from tui.cli.report import TextReport
 from tui.cli.sessions import as_json, show
+from tui.cli.stop_in_force import stop_is_kept, stop_words
 from tui.doctor.login import before_logout, look
 from tui.i18n import _, language, ngettext, said
 
@@ -92,6 +93,8 @@ async def _up(options: Namespace) -> int:
         await link.aclose()
     for line in before_logout(look(), os.environ):
         say_error(line)
+    if stop_is_kept(profile.domain):
+        say_error(stop_words(profile.domain))
     if healthy:
         write(_("`deck attach` shows it, `deck down` stops it"))
     else:
@@ -145,6 +148,8 @@ async def _ps(options: Namespace) -> int:
         if index:
             write("")
         show(session, nodes)
+        if stop_is_kept(session.domain):
+            write(Paint(sys.stdout)(stop_words(session.domain), RED))
         if names.count(session.name) > 1:
             write(_("to name this one: {run_id}").format(run_id=session.run_id))
     return 0

@@ -17,8 +17,9 @@ from launcher.status import NodeState
 from tui.cli.company import warn_of_company
 from tui.cli.health import over, settled, well
 from tui.cli.line_writer import LineWriter
-from tui.cli.output import Paint, drop_output
+from tui.cli.output import Paint, drop_output, say_error
 from tui.cli.report import JsonReport, Summary, TextReport
+from tui.cli.stop_in_force import stop_is_kept, stop_words
 from tui.i18n import _, language, ngettext, said
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ def run_command(options: Namespace) -> int:
         ports=serial_ports,
     )
     warn_of_company(profile)
+    if stop_is_kept(profile.domain):
+        say_error(stop_words(profile.domain))
     return asyncio.run(_main(profile, options))
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tui.cli.health import well
 from tui.cli.output import BOLD, DIM, RED, Paint, table, write
 from tui.cli.report import status_fields
+from tui.cli.stop_in_force import stop_is_kept
 from tui.i18n import _, pick, said
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, obje
         "foreground": session.foreground,
         "supervisor_pid": session.supervisor_pid,
         "log_dir": session.log_dir,
+        "emergency_stop": stop_is_kept(session.domain),
         "nodes": [
             {
                 **status_fields(node),
