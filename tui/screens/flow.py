@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
@@ -68,7 +69,7 @@ class FlowScreen(DeckScreen):
         """What is shown while paused."""
         self._update: GraphUpdate | None = None
         self._since_s: float | None = None
-        """Unix time before which nothing was collected."""
+        """Unix time, a recording's own in a replay, before which nothing was collected."""
 
     def compose_body(self) -> ComposeResult:
         """Lanes above, the timeline, the chosen step below."""
@@ -130,9 +131,7 @@ class FlowScreen(DeckScreen):
     def on_graph_changed(self, message: GraphChanged) -> None:
         """Take what came on the topics."""
         self._update = message.update
-        if self._since_s is None:
-            self._since_s = message.update.time_s
-            self._say_lanes()
+        self._note_since(message.update)
         said_by = {
             row.name: ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
             for row in message.update.topics
@@ -140,6 +139,14 @@ class FlowScreen(DeckScreen):
         }
         if not self._take(self._reader.messages(message.update.samples, said_by)):
             self._say_empty()
+
+    def _note_since(self, update: GraphUpdate) -> None:
+        came = [one.received_s for topic in TOPICS for one in update.samples.get(topic, ())[:1]]
+        since_s = min(came, default=math.inf)
+        # Earlier than before: a recording was turned back.
+        if since_s < (math.inf if self._since_s is None else self._since_s):
+            self._since_s = since_s
+            self._say_lanes()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Say everything anew."""
