@@ -218,12 +218,22 @@ def test_shared_memory() -> None:
     stale = judge_shared_memory(SharedMemoryFacts(stale=3, stale_bytes=1_500_000))
     assert bad(stale) == [("shm.stale", "warn")]
     assert "3 segments" in text(stale, "shm.stale")
+    (mend,) = [one.mend for one in stale if one.key == "shm.stale"]
+    assert "rm /dev/shm" not in mend, "those of other users are there too"
+    assert "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -delete" in mend
     half = judge_shared_memory(SharedMemoryFacts(unfinished=("/dev/shm/fastrtps_port7001",)))
     assert bad(half) == [("shm.unfinished", "warn")]
     assert "/dev/shm/fastrtps_port7001: half made" in text(half, "shm.unfinished")
     foreign = judge_shared_memory(SharedMemoryFacts(foreign=("/dev/shm/fastrtps_port7001",)))
     assert bad(foreign) == [("shm.foreign", "fail")]
     assert foreign[-1].mend == "sudo rm /dev/shm/fastrtps_port7001"
+
+
+@pytest.mark.parametrize("term", ["xterm", "screen", "linux"])
+def test_a_terminal_of_few_colours_is_told_how_to_have_more(term: str) -> None:
+    colour = [one for one in judge_terminal(TerminalFacts(environ={"TERM": term})) if one.mend]
+    assert [one.key for one in colour] == ["terminal.colour"]
+    assert "TERM=xterm-256color" in colour[0].mend
 
 
 @pytest.mark.parametrize(

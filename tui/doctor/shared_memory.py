@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 LEAST_FREE = 64 * 2**20
 """Bytes; Fast DDS takes half a megabyte for each node and more for pictures."""
+DELETE_MINE = "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -delete"
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,8 @@ def judge(facts: SharedMemoryFacts) -> list[Finding]:
             facts.stale,
         )
         text = words.format(count=facts.stale, size=facts.stale_bytes / 1e6)
-        mend = _("with no ROS node running: rm /dev/shm/fastrtps_*")
+        # By name alone it would be other users' as well.
+        mend = _("with no ROS node of yours running: {command}").format(command=DELETE_MINE)
         found.append(warn("shm.stale", text, mend))
     return found
 

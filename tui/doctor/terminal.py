@@ -83,8 +83,11 @@ def _colour(facts: TerminalFacts) -> Finding:
         word in term for word in TRUECOLOR_TERMS
     ):
         return ok("terminal.colour", _("16 million colours"))
+    if "256color" not in term:
+        mend = _("if the terminal can, export TERM=xterm-256color")
+        return warn("terminal.colour", _("16 colours or fewer: hues come close"), mend)
     mend = _("if the terminal can, export COLORTERM=truecolor (SSH does not pass it on)")
-    return warn("terminal.colour", _("256 colours or fewer: pictures look coarse"), mend)
+    return warn("terminal.colour", _("256 colours: pictures look coarse"), mend)
 
 
 def _size(facts: TerminalFacts) -> Finding:
