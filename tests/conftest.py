@@ -76,7 +76,8 @@ def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.fixture(scope="session")
 def domain_pool() -> Iterator[DomainPool]:
     """The domains of this run."""
-    pool = DomainPool(Path("/tmp") / f"deck-test-domains-{os.getuid()}")
+    folder = Path("/tmp") / f"deck-test-domains-{os.getuid()}"
+    pool = DomainPool(folder, machine="deck-test-domain")
     yield pool
     pool.let_go()
 

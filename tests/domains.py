@@ -1,9 +1,10 @@
-"""ROS domains for tests, each held by one test of this user's at a time."""
+"""ROS domains for tests, each held by one test of this machine's at a time."""
 
 from __future__ import annotations
 
 import fcntl
 import os
+import socket
 from pathlib import Path
 
 from launcher.process_shm import SHARED_MEMORY, names, port_numbers, sweep
@@ -20,8 +21,15 @@ class DomainPool:
     has left in it, a discovery that is not over or a lease that has not run out, is gone by then.
     """
 
-    def __init__(self, folder: Path, shared_memory: Path = SHARED_MEMORY) -> None:
-        """Hold none yet; `folder` is that of all runs of this user."""
+    def __init__(
+        self, folder: Path, shared_memory: Path = SHARED_MEMORY, machine: str | None = None
+    ) -> None:
+        """Hold none yet; `folder` is that of all runs of this user, `machine` that of all users.
+
+        The latter names abstract sockets, which need no permission on a common folder.
+        """
+        self._machine = machine
+        self._sockets: dict[int, socket.socket] = {}
         self._folder = folder
         self._shared_memory = shared_memory
         self._folder.mkdir(exist_ok=True)
@@ -49,6 +57,8 @@ class DomainPool:
             ports = (number for number in self._ports() if domain_of(number) == domain)
             sweep([f"fastrtps_port{number}" for number in ports], self._shared_memory)
             os.close(self._held.pop(domain))
+            if domain in self._sockets:
+                self._sockets.pop(domain).close()
 
     def _ports(self) -> list[int]:
         found = names(self._shared_memory)
@@ -68,7 +78,22 @@ class DomainPool:
         except BlockingIOError:
             os.close(lock)
             return False
+        if not self._lock_for_all_users(domain):
+            os.close(lock)
+            return False
         self._held[domain] = lock
+        return True
+
+    def _lock_for_all_users(self, domain: int) -> bool:
+        if self._machine is None:
+            return True
+        bound = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            bound.bind(f"\0{self._machine}-{domain}")
+        except OSError:
+            bound.close()
+            return False
+        self._sockets[domain] = bound
         return True
 
     def _next(self) -> int:

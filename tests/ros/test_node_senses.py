@@ -62,12 +62,13 @@ def test_the_vision_stub_takes_both_orders_and_refuses_what_is_no_picture(
     with NodeProcess("nodes.vlm_agent_stub", ros_domain, params={"period": 0.2}) as node:
         node.wait_for_words("[WARN]", "No picture yet")
         for encoding in ("bgr8", "rgb8"):
-            peer.say(CAMERA, picture(encoding))
-            node.wait_for_words("Picture 4x2 -> JPEG")
-        peer.say(CAMERA, picture("16UC1"))
-        node.wait_for_words("refused: encoding 16UC1, but only bgr8 and rgb8")
-        peer.say(CAMERA, picture(width=4000))
-        node.wait_for_words("refused: 4000x2 pixels, 12 bytes a row")
+            with peer.saying(CAMERA, picture(encoding)):
+                node.wait_for_words("Picture 4x2 -> JPEG")
+        assert "refused" not in node.output
+        with peer.saying(CAMERA, picture("16UC1")):
+            node.wait_for_words("refused: encoding 16UC1, but only bgr8 and rgb8")
+        with peer.saying(CAMERA, picture(width=4000)):
+            node.wait_for_words("refused: 4000x2 pixels, 12 bytes a row")
         node.wait_for_words("No new picture")
 
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.process_ports import FIRST
 from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers
 from launcher.process_table import (
     NODE_MARK,
@@ -23,6 +22,7 @@ from launcher.process_table import (
 )
 from launcher.process_usage import proportional_memory
 from launcher.status import NodeState, Severity
+from tests.domains import domain_of
 from tests.ros.supervised import (
     SLEEPER,
     Launch,
@@ -261,12 +261,12 @@ def _python_path() -> list[str]:
     return [before] if before else []
 
 
-def is_of_a_domain(segment: str) -> bool:
-    return all(number >= FIRST for number in port_numbers([segment]))
+def is_of_domain(segment: str, domain: int) -> bool:
+    return all(domain_of(number) == domain for number in port_numbers([segment]))
 
 
 async def test_a_killed_nodes_shared_memory_is_given_back_and_its_port_is_nobodys(
-    start: Launch, tmp_path: Path
+    start: Launch, tmp_path: Path, ros_domain: int
 ) -> None:
     """Who has talked to it would go on talking to it, and not to a newcomer on its port."""
     client = await start({"node": module(tmp_path, "talker_module", TALKER)})
@@ -275,8 +275,9 @@ async def test_a_killed_nodes_shared_memory_is_given_back_and_its_port_is_nobody
     for _ in range(3):
         status = await until_state(client, "node", NodeState.READY)
         assert status.pid is not None
-        # Those below are of all domains: another test's node may have made one anew by then.
-        segments = {name for name in held_segments(status.pid) if is_of_a_domain(name)}
+        # Ports that are of all domains, or another's, may be somebody else's by then.
+        held = held_segments(status.pid)
+        segments = {name for name in held if is_of_domain(name, ros_domain)}
         (port,) = port_numbers(segments)
         assert port not in dead
         dead.add(port)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.domains import DomainPool
+from tests.domains import DOMAINS, DomainPool
 
 
 @pytest.fixture
@@ -61,3 +61,17 @@ def test_ports_of_killed_nodes_go_with_their_domain(pool: DomainPool, shared_mem
         pool.let_go(domain)
         left = {path.name for path in shared_memory.iterdir() if not path.name.endswith("_el")}
         assert left == {others.name, alive.name}
+
+
+def test_runs_of_two_users_have_no_domain_in_common(tmp_path: Path) -> None:
+    """Each has a folder of its own, and may not write into the files of the other."""
+    first, second = (
+        DomainPool(tmp_path / user, tmp_path, f"deck-test-{os.getpid()}") for user in ("a", "b")
+    )
+    taken = {first.take() for _ in range(3)}
+    try:
+        assert not taken & {second.take() for _ in range(3)}
+        first.let_go()
+        assert taken & {second.take() for _ in range(len(DOMAINS) - 3)}
+    finally:
+        second.let_go()
