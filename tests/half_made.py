@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import time
 from typing import TYPE_CHECKING
@@ -26,13 +27,19 @@ def half_made(ros_domain: int) -> Iterator[list[Path]]:
     The numbers are those of RTPS 2.5, section 9.6.2.3, for the unicast of users.
     """
     first = 7411 + 250 * ros_domain
-    paths = [SHARED_MEMORY / f"fastrtps_port{first + 2 * at}" for at in range(PARTICIPANTS)]
+    every = (SHARED_MEMORY / f"fastrtps_port{port}" for port in range(first, first + 200, 2))
+    # What another user's node has left is not to be written to; a node goes on to the next one.
+    paths = list(itertools.islice(itertools.filterfalse(_is_anothers, every), PARTICIPANTS))
     for path in paths:
         path.write_bytes(HALF_MADE)
     yield paths
     for path in paths:
         path.unlink(missing_ok=True)
         path.with_name(f"{path.name}_el").unlink(missing_ok=True)
+
+
+def _is_anothers(path: Path) -> bool:
+    return path.exists() and path.stat().st_uid != os.geteuid()
 
 
 def make_old(paths: Iterable[Path], age_s: float = 60.0) -> None:
