@@ -1,7 +1,7 @@
 """Make or bring up to date the virtual environment that `make` works in.
 
 Usage: environment.py VENV, run by the Python that the environment is to be made of; it calls itself
-as environment.py --build-interfaces FOLDER. What comes from a package index is in locked/.
+as environment.py --build-interfaces WHEELS FOLDER. What comes from a package index is in locked/.
 """
 
 from __future__ import annotations
@@ -10,13 +10,18 @@ import contextlib
 import fcntl
 import hashlib
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+# Run by its path, with no environment yet: what lies beside it is found by its bare name.
+from wheel_cache import WheelCache
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +30,10 @@ ROOT = Path(__file__).resolve().parent.parent
 WORK = ROOT / "build" / "setup"
 LOCKED = ROOT / "locked"
 TAIL = 25
+TICK_S = 1.0
 BUILD = "--build-interfaces"
+PLAIN = re.compile(r"[\w/.,:=@%+~ -]+")
+"""Paths that CMake and the shells it starts take as they are."""
 REQUIRE = ("install", "--require-hashes", "--requirement")
 """What follows is installed at its locked version only, if it is the very file that was locked."""
 
@@ -81,18 +89,30 @@ class Step:
             )
 
     def finish(self) -> None:
-        """Wait for the command and say how long it took."""
-        say(f"  {self.what} ... ", end="")
+        """Wait for the command, show that time passes, and say how long it took."""
+        screen = sys.stderr.isatty()
+        if not screen:
+            say(f"  {self.what} ... ", end="")
         try:
-            code = self.process.wait()
+            while True:
+                try:
+                    code = self.process.wait(TICK_S if screen else None)
+                    break
+                except subprocess.TimeoutExpired:
+                    say(f"\r  {self.what} ... {self.seconds()}", end="")
         except KeyboardInterrupt:
             self.abandon()
             raise
-        say(f"{time.monotonic() - self.started:.0f} s" if code == 0 else "failed")
+        ended = self.seconds() if code == 0 else "failed"
+        say(f"\r\x1b[K  {self.what} ... {ended}" if screen else ended)
         if code < 0:
             raise ChildProcessError(f"{self.what}: killed by signal {-code}")
         if code:
             raise StepError(self.what, self.log)
+
+    def seconds(self) -> str:
+        """Return how long the command has taken so far."""
+        return f"{time.monotonic() - self.started:.0f} s"
 
     def abandon(self) -> None:
         """Stop the command and what it has started, if it is still under way."""
@@ -173,17 +193,29 @@ class Environment:
             return
         wheels = WORK / "wheels"
         shutil.rmtree(wheels, ignore_errors=True)
-        # The build has a Python environment of its own and need not wait for this one.
-        build = Step("Message types, meanwhile", sys.executable, __file__, BUILD, wheels)
-        try:
+        builder = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+        kept = WheelCache(wanted, builder)
+        if kept.fetch(wheels):
             self.install_deck()
-            build.finish()
-        finally:
-            build.abandon()
+        else:
+            self.build(wheels)
+            kept.keep(wheels)
         self.interfaces.unlink(missing_ok=True)
         force = ("--force-reinstall", "--no-deps", "--no-index")
         Step("Installing them", *pip(self.python, "install", *force, *wheels.iterdir())).finish()
         self.interfaces.write_text(wanted)
+
+    def build(self, wheels: Path) -> None:
+        """Install Deck and build the message types, which need not wait for each other."""
+        with folder_for_cmake() as folder:
+            build = Step(
+                "Message types, meanwhile", sys.executable, __file__, BUILD, wheels, folder
+            )
+            try:
+                self.install_deck()
+                build.finish()
+            finally:
+                build.abandon()
 
     def install_deck(self) -> None:
         """Install Deck itself, editable, after ROS 2, its libraries and the tools of the tests."""
@@ -198,22 +230,43 @@ def pip(python: Path, *words: str | Path) -> tuple[str | Path, ...]:
     return (python, "-m", "pip", "--disable-pip-version-check", *words)
 
 
-def build_interfaces(wheels: Path) -> None:
+@contextlib.contextmanager
+def folder_for_cmake() -> Iterator[Path]:
+    """Yield a folder to build in: in this tree, or elsewhere if its path is not for shells.
+
+    The commands that rosidl writes into makefiles do not quote what stands in a path.
+    """
+    inside = WORK / "build-environment"
+    if PLAIN.fullmatch(str(inside)):
+        yield inside
+        return
+    for place in (tempfile.gettempdir(), "/var/tmp", "/tmp"):
+        if PLAIN.fullmatch(place) and os.access(place, os.W_OK | os.X_OK):
+            with tempfile.TemporaryDirectory(prefix="deck-build-", dir=place) as folder:
+                yield Path(folder)
+            return
+    raise OSError(f"{ROOT}: CMake cannot build in a folder of that name; move it elsewhere")
+
+
+def build_interfaces(wheels: Path, folder: Path) -> None:
     """Build the wheel of the message types, in an environment of what is locked for it."""
-    folder = WORK / "build-environment"
+    sources = folder / "interfaces"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(ROOT / "interfaces", sources)
+    folder /= "environment"
     python = folder / "bin" / "python"
     environ = os.environ | {"PIP_NO_COMPILE": "1"}
     # Pythons that a build starts must not load what is half there.
     environ["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     environ["PATH"] = f"{python.parent}{os.pathsep}{environ.get('PATH', os.defpath)}"
-    made = ("wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, "./interfaces")
+    made = ("wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, sources)
     for command in (
         (sys.executable, "-m", "venv", "--clear", folder),
         pip(python, *REQUIRE, LOCKED / "interfaces.txt"),
         pip(python, *made),
     ):
         subprocess.run(command, cwd=ROOT, env=environ, check=True, close_fds=False)
-    shutil.rmtree(folder)
+    shutil.rmtree(folder.parent)
 
 
 def read(path: Path) -> bytes:
@@ -228,7 +281,8 @@ def set_up(environment: Environment) -> None:
         if environment.is_sound() and environment.ready.stat().st_mtime > asked:
             return
         version = "{}.{}.{}".format(*sys.version_info)
-        say(f"deck: setting up {environment.folder} with Python {version}, 1 to 3 minutes at first")
+        say(f"deck: setting up {environment.folder} with Python {version}")
+        say("  1 to 3 minutes at first, more on a busy machine")
         WORK.mkdir(parents=True, exist_ok=True)
         environment.update()
         say("deck: set-up complete")
@@ -253,7 +307,7 @@ def main(folder: str) -> int:
 if __name__ == "__main__":
     if sys.argv[1] == BUILD:
         try:
-            build_interfaces(Path(sys.argv[2]))
+            build_interfaces(Path(sys.argv[2]), Path(sys.argv[3]))
         except subprocess.CalledProcessError as failed:
             sys.exit(failed.returncode)
     else:

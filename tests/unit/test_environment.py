@@ -161,7 +161,7 @@ def test_a_failing_step_shows_the_end_of_its_log_and_where_it_lies(
     monkeypatch.setattr(environment, "WORK", tmp_path)
 
     def fails(_self: object) -> None:
-        words = "import sys; print('\\n'.join(map(str, range(100)))); sys.exit('no network')"
+        words = "import sys; print(*range(100), sep='\\n', flush=True); sys.exit('no network')"
         environment.Step("Libraries", sys.executable, "-c", words).finish()
 
     monkeypatch.setattr(environment.Environment, "update", fails)
@@ -235,7 +235,7 @@ def test_what_comes_from_an_index_is_the_very_file_that_was_locked(
     monkeypatch.setattr(environment.subprocess, "run", run)
     (tmp_path / "work" / "wheels").mkdir(parents=True)
     environment.Environment(tmp_path).install_deck()
-    environment.build_interfaces(tmp_path / "work" / "wheels")
+    environment.build_interfaces(tmp_path / "work" / "wheels", tmp_path / "build")
     installs = [words for words in commands if "install" in words or "wheel" in words]
     assert len(installs) == 4
     for words in installs:
@@ -258,3 +258,16 @@ def test_what_is_abandoned_ends_with_all_that_it_has_started(
         lambda: not child.is_running() or child.status() == psutil.STATUS_ZOMBIE,
         "the child to end",
     )
+
+
+def test_a_build_goes_elsewhere_from_a_path_that_shells_do_not_take(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(environment, "WORK", tmp_path / "a tree")
+    with environment.folder_for_cmake() as folder:
+        assert folder == tmp_path / "a tree" / "build-environment"
+    monkeypatch.setattr(environment, "WORK", tmp_path / "o'brien")
+    with environment.folder_for_cmake() as folder:
+        assert "'" not in str(folder)
+        (folder / "half").touch()
+    assert not folder.exists()
