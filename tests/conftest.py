@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import os
 import shutil
@@ -10,6 +11,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -29,7 +31,21 @@ os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 STATE_DIR = "DECK_STATE_DIR"
-os.environ[STATE_DIR] = tempfile.mkdtemp(prefix="deck-test-state-")
+_STATE = "deck-test-state-"
+
+
+def _clear_states() -> None:
+    """Remove what runs of this user have left that were killed."""
+    for folder in Path(tempfile.gettempdir()).glob(f"{_STATE}*-*"):
+        pid = folder.name.removeprefix(_STATE).partition("-")[0]
+        with contextlib.suppress(OSError):
+            ours = pid.isdigit() and folder.lstat().st_uid == os.geteuid()
+            if ours and not psutil.pid_exists(int(pid)):
+                shutil.rmtree(folder)
+
+
+_clear_states()
+os.environ[STATE_DIR] = tempfile.mkdtemp(prefix=f"{_STATE}{os.getpid()}-")
 """Set for the whole run: nodes that a module shares, started anew by a test, remember alike."""
 
 

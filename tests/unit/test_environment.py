@@ -271,3 +271,24 @@ def test_a_build_goes_elsewhere_from_a_path_that_shells_do_not_take(
         assert "'" not in str(folder)
         (folder / "half").touch()
     assert not folder.exists()
+
+
+def test_on_a_terminal_the_seconds_of_a_step_are_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(environment, "WORK", tmp_path)
+    monkeypatch.setattr(environment, "ROOT", tmp_path)
+    monkeypatch.setattr(environment, "TICK_S", 0.01)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    told: list[str] = []
+
+    def say(text: str, end: str = "\n") -> None:
+        told.append(text + end)
+        if len(told) == 3:
+            (tmp_path / "go").touch()
+
+    monkeypatch.setattr(environment, "say", say)
+    environment.Step("Build", "/bin/sh", "-c", "until [ -e go ]; do sleep 0.01; done").finish()
+    assert all(line.startswith("\r  Build ... ") for line in told[:3])
+    assert told[-1].startswith("\r\x1b[K  Build ... ")
+    assert told[-1].endswith(" s\n")
