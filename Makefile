@@ -1,4 +1,5 @@
-# Everything lands in .venv; nothing is installed outside this folder.
+# Everything lands in .venv; nothing is installed outside this folder. The built message types are
+# kept in ~/.cache/deck besides, see scripts/wheel_cache.py.
 
 PROFILE ?=
 ARGS ?=
