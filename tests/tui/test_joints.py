@@ -9,9 +9,17 @@ import pytest
 
 from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
-from tests.tui.recorded import RecordedGraph, RecordedPad, joints, lesson_samples, lesson_update
+from tests.tui.recorded import (
+    RecordedGraph,
+    RecordedPad,
+    joints,
+    lesson_samples,
+    lesson_update,
+    sample,
+)
 from tui.panels.joints import ANOTHER_S, Joints
 from tui.widgets.head import HeadPanel
+from tui.widgets.sonar import Sonar
 from tui.widgets.wheels import WheelsPanel
 
 if TYPE_CHECKING:
@@ -26,8 +34,8 @@ READ = joints(TOPIC, rear_left_wheel_joint=(0.0, 1.0))
 
 def heard(*samples: tuple[Sample, float]) -> Joints:
     known = Joints(TOPIC, AWAITED)
-    for sample, at_s in samples:
-        known.hear(replace(sample, received_s=at_s), read=sample is READ)
+    for one, at_s in samples:
+        known.hear(replace(one, received_s=at_s), read=one is READ)
     return known
 
 
@@ -71,6 +79,34 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
         await pilot.pause()
         await pilot.pause()
         assert "have come" not in " ".join(rows(panel))
+
+
+async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
+    topic = "/sensor/sonar_front"
+    words = sample(topic, "std_msgs/msg/String", {"data": "1.5"})
+    samples = {**lesson_samples(), topic: (words,)}
+    pad = RecordedPad(graph=RecordedGraph(lesson_update(samples=samples)))
+    async with opened(pad, size=(160, 60)) as (app, pilot):
+        await pilot.pause()
+        panel = app.screen.query_one("#front", Sonar)
+        told = " ".join(" ".join(rows(panel)).split())
+        assert "messages come, but of another type" in told
+        assert f"{topic}: std_msgs/String comes; awaited: std_msgs/Float32" in told
+        # A look at which nothing has come changes nothing.
+        pad.graph.show(lesson_update(samples={}))
+        await pilot.pause()
+        await pilot.pause()
+        assert "of another type" in " ".join(rows(panel))
+        pad.graph.show(lesson_update())
+        await pilot.pause()
+        await pilot.pause()
+        assert "1.84" in " ".join(rows(panel)) or "FREE" in " ".join(rows(panel))
+
+
+def test_a_joint_state_of_another_type_is_told() -> None:
+    told = heard((sample(TOPIC, "std_msgs/msg/String", {"data": "x"}), 5.0)).instead
+    assert told is not None
+    assert told.detail == f"{TOPIC}: std_msgs/String comes; awaited: sensor_msgs/JointState"
 
 
 def test_values_give_way_once_nothing_but_other_joints_comes() -> None:

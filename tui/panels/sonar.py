@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from tui.emergency import SAFETY_TOPIC
 from tui.i18n import N_
 from tui.panels.bounds import bounds_of
-from tui.panels.panel import ALWAYS, Panel, row_of, trouble_of
+from tui.panels.other_type import other_type
+from tui.panels.panel import ALWAYS, Panel, newest, row_of, trouble_of
 from tui.widgets.sonar import SonarPanel
 from tui.widgets.sonar_words import COURSE
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate
 
+TYPE = "std_msgs/msg/Float32"
 TOPICS = {"front": "/sensor/sonar_front", "rear": "/sensor/sonar_rear"}
 
 
@@ -57,6 +59,8 @@ class SonarFeed(Panel):
                 metres = sample.value.get("data")
                 if isinstance(metres, (int, float)):
                     gauges.show(place, float(metres), sample.received_s)
+            if topic in update.samples:
+                gauges.show_instead(place, other_type(newest(update, topic), TYPE))
             gauges.show_trouble(place, *trouble_of(update, topic))
 
     def words_changed(self) -> None:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.events import Resize
 
+    from tui.widgets.drawing import Instead
+
 KEPT = 240
 BIG_FROM = 5
 """Lines from which on the number is big."""
@@ -144,6 +146,10 @@ class SonarPanel(Container):
     def show(self, place: str, metres: float, time_s: float) -> None:
         """Take a reading of the sonar at `front` or `rear`."""
         self._sonar(place).show(metres, time_s)
+
+    def show_instead(self, place: str, words: Instead | None) -> None:
+        """Say these words in place of the sonar at `front` or `rear`; none: show it again."""
+        self._sonar(place).show_instead(words)
 
     def show_trouble(
         self, place: str, trouble: Trouble | None, detail: str = "", age_s: float | None = None

@@ -1,0 +1,28 @@
+"""Messages of another type than a panel reads: said in place of values, which cannot come."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from text.plain import plain
+from tui.i18n import _
+from tui.widgets.drawing import Instead
+
+if TYPE_CHECKING:
+    from graph.data import Sample
+
+LONGEST = 200
+
+
+def other_type(sample: Sample | None, awaited: str) -> Instead | None:
+    """Return which type comes and which is awaited; None if that is the same, or nothing comes."""
+    if sample is None or sample.type_name == awaited:
+        return None
+    words = _("{topic}: {type} comes; awaited: {awaited}").format(
+        topic=sample.topic, type=_short(sample.type_name), awaited=_short(awaited)
+    )
+    return Instead(_("messages come, but of another type"), plain(words, LONGEST))
+
+
+def _short(type_name: str) -> str:
+    return type_name.replace("/msg/", "/")
