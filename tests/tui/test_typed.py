@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tui.app import DeckApp
 
 HOME = Look((120, 40), "en")
+NAMES = "#topics-filter, #graph-filter"
 SIGNS = {"slash": "/", "space": " "}
 
 
@@ -42,7 +43,7 @@ def type_at_once(app: DeckApp, *keys: str, then: Event | None = None) -> None:
 
 async def until_filter_is(app: DeckApp, words: str) -> None:
     def found() -> list[str]:
-        return [filter_.value for filter_ in app.screen.query(Input)]
+        return [filter_.value for filter_ in app.screen.query(Input).filter(NAMES)]
 
     await until(lambda: found() == [words], lambda: f"{words!r} in the filter, but {found()}")
 
