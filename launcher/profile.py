@@ -192,8 +192,9 @@ def _ready(name: str, node: NodeDocument) -> Ready | None:
     """Return the condition as written, else for `run` that the node is in the graph."""
     if node.ready is None:
         return None if node.run is None else Ready("node", name)
+    ready = node.ready
     for kind in ("topic", "service", "node"):
-        found = getattr(node.ready, kind)
+        found = getattr(ready, kind)
         if found is not None:
-            return Ready(kind, found, node.ready.within)
+            return Ready(kind, found, ready.type or "", ready.rate or 0.0, ready.within)
     return None

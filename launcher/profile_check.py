@@ -59,6 +59,14 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
                 say("expected exactly one of topic, service, node"),
                 say("write ready: {topic: /chatter, within: 10}"),
             )
+        for key in ("type", "rate"):
+            if getattr(node.ready, key) is not None and node.ready.topic is None:
+                problems.add(
+                    place_of(tree, (*where, "ready", key), key=True),
+                    (*where, "ready", key),
+                    say("`{key}` is of a topic, and there is none here", key=key),
+                    say("write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1}"),
+                )
 
 
 def check_run(

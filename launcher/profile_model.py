@@ -23,6 +23,7 @@ Panel = Literal["sonar", "wheels", "map", "camera", "head", "voice", "composer"]
 NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 LONGEST_NODE_NAME = 255
 ROS_NAME = re.compile(r"[~/]?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
+TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 PEER = re.compile(r"[A-Za-z0-9:][A-Za-z0-9.:%_-]*")
 ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
@@ -52,6 +53,14 @@ def _module(value: object) -> object:
 def _ros_name(value: object) -> object:
     if isinstance(value, str) and not ROS_NAME.fullmatch(value):
         raise refuse(say("{value!r} is no ROS name; write it as /sensor/sonar_front", value=value))
+    return value
+
+
+def _type_name(value: object) -> object:
+    if isinstance(value, str) and not TYPE_NAME.fullmatch(value):
+        raise refuse(
+            say("{value!r} is no message type; write it as std_msgs/msg/Float32", value=value)
+        )
     return value
 
 
@@ -114,6 +123,7 @@ Texts = Annotated[
     ),
 ]
 RosName = Annotated[str, BeforeValidator(_ros_name)]
+TypeName = Annotated[str, BeforeValidator(_type_name)]
 _SCALARS: dict[str, Any] = {"type": ["string", "number", "boolean"]}
 Command = Annotated[
     tuple[str, ...],
@@ -166,6 +176,17 @@ class ReadyDocument(Document):
     """When a node counts as ready: one of topic, service and node."""
 
     topic: RosName | None = Field(None, description="Ready when somebody publishes this topic.")
+    type: TypeName | None = Field(
+        None,
+        description="Of the topic: only publishers of this type count, `std_msgs/msg/Float32`.",
+    )
+    rate: float | None = Field(
+        None,
+        gt=0,
+        le=1000,
+        description="Of the topic: messages must come so many times a second; nine tenths of it"
+        " will do.",
+    )
     service: RosName | None = Field(None, description="Ready when this service is offered.")
     node: RosName | None = Field(None, description="Ready when this node is in the ROS graph.")
     within: float = Field(10.0, gt=0, le=3600, description="Seconds that this may take.")

@@ -30,6 +30,10 @@ class Ready:
     """`topic`, `service` or `node`."""
     name: str
     """As in the profile: a ROS name, absolute or not."""
+    type: str = ""
+    """Of a topic: the type awaited, `std_msgs/msg/Float32`; empty: any."""
+    rate_hz: float = 0.0
+    """Of a topic: how often messages must come; 0: none need come."""
     within_s: float = DEFAULT_WITHIN_S
 
 

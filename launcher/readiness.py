@@ -11,14 +11,14 @@ import contextlib
 import json
 import os
 import signal
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import TYPE_CHECKING
 
 from launcher.process_signal import send
 from launcher.process_spawner import SpawnError, SpawnRequest
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from launcher.process_exit import Reaper
     from launcher.process_spawner import Born, Spawner
@@ -36,6 +36,20 @@ class Condition:
     kind: str
     """`node`, `topic` (a publisher of it) or `service`."""
     name: str
+    type: str = ""
+    """Of a topic: only a publisher of this type counts, `std_msgs/msg/Float32`; empty: any."""
+    rate_hz: float = 0.0
+    """Of a topic: messages come at least this often; 0: none need come."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What there is of a topic whose condition does not hold."""
+
+    types: tuple[str, ...]
+    """Of its publishers."""
+    rate_hz: float | None = None
+    """Of the messages that come; None if that is not awaited, or cannot be measured."""
 
 
 class UnwatchableError(Exception):
@@ -57,8 +71,9 @@ class Readiness:
         self._spawner = spawner
         self._reaper = reaper
         self._env = env
-        self._waiters: dict[asyncio.Future[None], Condition] = {}
+        self._waiters: dict[asyncio.Future[None], tuple[Condition, Callable[[Seen], None]]] = {}
         self._holding: frozenset[Condition] = frozenset()
+        self._seen: dict[Condition, Seen] = {}
         self._task: asyncio.Task[None] | None = None
         self._linger: asyncio.TimerHandle | None = None
 
@@ -68,8 +83,8 @@ class Readiness:
             self._task = asyncio.create_task(self._watch())
             self._stop_later()
 
-    async def until(self, condition: Condition) -> None:
-        """Return once `condition` holds.
+    async def until(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+        """Return once `condition` holds; `tell` what is there instead whenever that changes.
 
         Raises:
             UnwatchableError: if that cannot be found out.
@@ -77,7 +92,9 @@ class Readiness:
         if condition in self._holding:
             return
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._waiters[future] = condition
+        self._waiters[future] = condition, tell
+        if condition in self._seen:
+            tell(self._seen[condition])
         self.expect()
         try:
             await future
@@ -102,6 +119,7 @@ class Readiness:
 
     def _stop(self) -> None:
         self._holding = frozenset()
+        self._seen = {}
         if self._task is not None:
             self._task.cancel()
             self._task = None
@@ -142,18 +160,29 @@ class Readiness:
         )
         try:
             async for line in reader:
-                self._learn(frozenset(self._conditions[i] for i in json.loads(line)))
+                told = json.loads(line)
+                self._learn(
+                    frozenset(self._conditions[position] for position in told["met"]),
+                    {
+                        self._conditions[position]: Seen(tuple(types), rate_hz)
+                        for position, types, rate_hz in told["seen"]
+                    },
+                )
         finally:
             transport.close()
 
-    def _learn(self, holding: frozenset[Condition]) -> None:
-        self._holding = holding
-        for future, condition in self._waiters.items():
-            if condition in holding and not future.done():
+    def _learn(self, holding: frozenset[Condition], seen: dict[Condition, Seen]) -> None:
+        before, self._holding, self._seen = self._seen, holding, seen
+        for future, (condition, tell) in self._waiters.items():
+            if future.done():
+                continue
+            if condition in holding:
                 future.set_result(None)
+            elif condition in seen and seen[condition] != before.get(condition):
+                tell(seen[condition])
 
     def _request(self) -> SpawnRequest:
-        wanted = json.dumps([[condition.kind, condition.name] for condition in self._conditions])
+        wanted = json.dumps([astuple(condition) for condition in self._conditions])
         return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
 
     async def _see_off(self, born: Born, within_s: float = 3.0) -> None:

@@ -19,6 +19,8 @@ from launcher.supervisor_words import (
     NOT_EXECUTABLE,
     NOT_FOUND,
     end_words,
+    instead,
+    late,
     stopped_words,
     what,
     who,
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
     from launcher.process_table import Process
     from launcher.process_usage import Usage
+    from launcher.readiness import Seen
     from launcher.supervisor_plan import NodePlan
     from launcher.supervisor_surroundings import RunningProcess, Surroundings
 
@@ -263,22 +266,28 @@ class Node:
             self._around.say(self.plan.name, Severity.WARN, words)
 
     async def _become_ready(self) -> None:
-        plan = self.plan
-        if plan.ready is None:
+        plan, condition = self.plan, self.plan.ready
+        if condition is None:
             self._become(NodeState.RUNNING, serves=True)
             return
-        self._become(NodeState.STARTING, say("waits for {what}", what=what(plan.ready)))
+        self._become(NodeState.STARTING, say("waits for {what}", what=what(condition)))
         clock = self._around.clock
-        ready = asyncio.ensure_future(self._around.ready(plan.ready))
+        seen: Seen | None = None
+
+        def tell(found: Seen) -> None:
+            nonlocal seen
+            seen = found
+            if self.state is NodeState.STARTING:
+                self._become(NodeState.STARTING, instead(condition, found))
+            elif self.state is NodeState.RUNNING:
+                self._become(NodeState.RUNNING, late(condition, found, plan.within_s))
+
+        ready = asyncio.ensure_future(self._around.ready(condition, tell))
         came = asyncio.Event()
         ready.add_done_callback(lambda _ready: came.set())
         try:
             if not await clock.wait(came, plan.within_s):
-                words = say(
-                    "not ready within {seconds:g} s: no {what}",
-                    seconds=plan.within_s,
-                    what=what(plan.ready),
-                )
+                words = late(condition, seen, plan.within_s)
                 self._become(NodeState.RUNNING, words)
                 self._around.say(plan.name, Severity.WARN, words)
                 if not await clock.wait(came, LATE_S):

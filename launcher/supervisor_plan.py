@@ -185,7 +185,9 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         env={**env, **node.env},
         cwd=str(node.cwd) if node.cwd is not None else os.getcwd(),  # noqa: PTH109
         needs=tuple(node.needs),
-        ready=None if ready is None else Condition(ready.kind, ready.name),
+        ready=None
+        if ready is None
+        else Condition(ready.kind, ready.name, ready.type, ready.rate_hz),
         within_s=10.0 if ready is None else ready.within_s,
         restart=node.restart,
         optional=node.optional,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from launcher.logs_book import LogBook
-    from launcher.readiness import Condition
+    from launcher.readiness import Condition, Seen
     from launcher.supervisor_clock import Clock
     from launcher.supervisor_plan import NodePlan, Plan
     from launcher.supervisor_process import NodeProcess, ProcessLauncher
@@ -144,9 +144,9 @@ class Session:
         self.processes[plan.name] = (process.pid, process.started_ticks)
         return process
 
-    async def ready(self, condition: Condition) -> None:
-        """Return when the condition holds; raises `UnwatchableError`."""
-        await self._readiness.until(condition)
+    async def ready(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+        """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
+        await self._readiness.until(condition, tell)
 
     def missing(self, plan: NodePlan) -> str:
         """Say which needed nodes are not there yet; empty if all are."""

@@ -8,9 +8,10 @@ from launcher.process_stop import Target
 
 if TYPE_CHECKING:
     import asyncio
+    from collections.abc import Callable
 
     from launcher.process_exit import Exit
-    from launcher.readiness import Condition
+    from launcher.readiness import Condition, Seen
     from launcher.status import Severity
     from launcher.supervisor_clock import Clock
     from launcher.supervisor_node import Node
@@ -35,8 +36,8 @@ class Surroundings(Protocol):
     async def launch(self, plan: NodePlan) -> RunningProcess:
         """Start the node's process; raises `SpawnError`."""
 
-    async def ready(self, condition: Condition) -> None:
-        """Return when the condition holds; raises `UnwatchableError`."""
+    async def ready(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+        """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
 
     def missing(self, plan: NodePlan) -> str:
         """Say which needed nodes are not there yet; empty if all are."""

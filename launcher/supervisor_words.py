@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from launcher.process_exit import Exit
     from launcher.process_table import Process
-    from launcher.readiness import Condition
+    from launcher.readiness import Condition, Seen
     from launcher.supervisor_plan import NodePlan
 
 NOT_EXECUTABLE, NOT_FOUND = 126, 127
@@ -50,10 +50,46 @@ def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
 def what(condition: Condition) -> str:
     """What is waited for."""
     if condition.kind == "topic":
+        if condition.type:
+            return say("publisher of {name} ({type})", name=condition.name, type=condition.type)
         return say("publisher of {name}", name=condition.name)
     if condition.kind == "service":
         return say("service {name}", name=condition.name)
     return say("node {name} in the graph", name=condition.name)
+
+
+def instead(condition: Condition, seen: Seen) -> str:
+    """What there is in place of what is waited for: another type, or too few messages."""
+    if condition.type and condition.type not in seen.types:
+        return say(
+            "{name} is published as {types}, awaited is {type}",
+            name=condition.name,
+            types=", ".join(seen.types),
+            type=condition.type,
+        )
+    if seen.rate_hz is None:
+        return say(
+            "how often {name} comes cannot be measured: {types} is not installed",
+            name=condition.name,
+            types=", ".join(seen.types),
+        )
+    return say(
+        "{name} comes at {rate:.2g} Hz, awaited are {wanted:g} Hz",
+        name=condition.name,
+        rate=seen.rate_hz,
+        wanted=condition.rate_hz,
+    )
+
+
+def late(condition: Condition, seen: Seen | None, within_s: float) -> str:
+    """That the time to become ready is up, and why."""
+    if seen is None:
+        return say(
+            "not ready within {seconds:g} s: no {what}", seconds=within_s, what=what(condition)
+        )
+    return say(
+        "not ready within {seconds:g} s: {why}", seconds=within_s, why=instead(condition, seen)
+    )
 
 
 def who(left: Sequence[Process], most: int = 3) -> str:

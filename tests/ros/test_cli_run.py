@@ -77,6 +77,39 @@ def test_nodes_that_fail_are_named_and_the_exit_code_says_so(tmp_path: Path) -> 
     assert "not ready within 0.5 s" in nodes["late"]["detail"]
 
 
+def test_a_node_of_ones_own_that_publishes_another_type_is_not_well(tmp_path: Path) -> None:
+    """In place of a shipped one in a shipped lesson: a slip of `Float32` and `String`."""
+    (tmp_path / "my_sonar.py").write_text(
+        """\
+import sys, rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import String
+rclpy.init(args=sys.argv)
+node = rclpy.create_node("sonar_front")
+node.create_publisher(String, "/sensor/sonar_front", 10)
+try: rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException): pass
+"""
+    )
+    path = written(
+        tmp_path,
+        """\
+        extends: 02-sonar-safety
+        nodes:
+          sonar_front:
+            run: ./my_sonar.py
+            ready: {topic: /sensor/sonar_front, type: std_msgs/msg/Float32, within: 2}
+        """,
+    )
+    run = deck("run", str(path), "--for", "0.5", "--json")
+    nodes = {node["node"]: node for node in run.events()[-1]["nodes"]}
+    assert (run.process.returncode, nodes["sonar_front"]["healthy"]) == (1, False)
+    assert nodes["sonar_front"]["detail"] == (
+        "not ready within 2 s: /sensor/sonar_front is published as std_msgs/msg/String,"
+        " awaited is std_msgs/msg/Float32"
+    )
+
+
 def test_a_supervisor_that_is_killed_is_the_reason_for_programs(tmp_path: Path) -> None:
     path = written(tmp_path, "nodes: {a: {exec: [sleep, 100]}}")
     run = DeckProcess("run", str(path), "--json")

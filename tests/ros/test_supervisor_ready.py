@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import signal
 import textwrap
 from pathlib import Path
@@ -58,6 +59,21 @@ def main():
 
 if __name__ == "__main__":
     main()
+"""
+
+TICKER = """
+import sys
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import Float32
+
+rclpy.init(args=sys.argv)
+node = rclpy.create_node("ticker")
+publisher = node.create_publisher(Float32, "/ticks", 10)
+node.create_timer(0.02, lambda: publisher.publish(Float32()))
+try: rclpy.spin(node)
+except (KeyboardInterrupt, ExternalShutdownException): pass
+rclpy.try_shutdown()
 """
 
 
@@ -202,6 +218,38 @@ async def test_a_node_that_is_late_says_so_and_becomes_ready_all_the_same(
     assert client.nodes["eager"].detail == "waits for late (not ready)"
     await until_state(client, "late", NodeState.READY)
     await running_pid(client, "eager")
+
+
+async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(
+    start: Launch, tmp_path: Path
+) -> None:
+    """Nodes that await it would never hear a message; the row tells what is there instead."""
+    talker = module(tmp_path, "talker_module", TALKER)
+    ticker = module(tmp_path, "ticker_module", TICKER)
+    client = await start(
+        {
+            "wrong": {
+                **talker,
+                "ready": {"topic": "/said", "type": "std_msgs/msg/Float32", "within": 3},
+            },
+            "right": {**talker, "ready": {"topic": "/said", "type": "std_msgs/msg/String"}},
+            "seldom": {**ticker, "ready": {"topic": "/ticks", "rate": 500, "within": 3}},
+            "often": {**ticker, "ready": {"topic": "/ticks", "rate": 10}},
+        }
+    )
+    await until_state(client, "right", NodeState.READY)
+    await until_state(client, "often", NodeState.READY)
+    status = await until_state(client, "wrong", NodeState.RUNNING)
+    assert status.detail == (
+        "not ready within 3 s: /said is published as std_msgs/msg/String,"
+        " awaited is std_msgs/msg/Float32"
+    )
+    await until_state(client, "seldom", NodeState.RUNNING)
+    await until(
+        lambda: re.search(r"/ticks comes at [1-9]\S* Hz", client.nodes["seldom"].detail),
+        "the rate that is measured",
+    )
+    assert client.nodes["seldom"].detail.endswith("awaited are 500 Hz")
 
 
 async def test_a_node_that_never_gets_ready_leaves_others_waiting_till_started_by_hand(

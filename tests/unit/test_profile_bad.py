@@ -22,7 +22,7 @@ BAD = {
     ),
     "unknown key near nothing": (
         "nodes: {a: {exec: [x], ready: {zzz: 1, node: b}}}",
-        "1:32: nodes.a.ready.zzz: unknown key (known are topic, service, node, within)",
+        "1:32: nodes.a.ready.zzz: unknown key (known are topic, type, rate, service, node, within)",
     ),
     "number where text belongs": (
         "nodes: {a: {run: 12}}",
@@ -260,6 +260,20 @@ BAD = {
             "1:31: nodes.a.ready: expected exactly one of topic, service, node (write"
             " ready: {topic:"
             " /chatter, within: 10})"
+        ),
+    ),
+    "a type that is none": (
+        "nodes: {a: {exec: [x], ready: {topic: b, type: Float32}}}",
+        (
+            "1:48: nodes.a.ready.type: 'Float32' is no message type; write it as"
+            " std_msgs/msg/Float32"
+        ),
+    ),
+    "a rate without a topic": (
+        "nodes: {a: {exec: [x], ready: {service: b, rate: 5}}}",
+        (
+            "1:44: nodes.a.ready.rate: `rate` is of a topic, and there is none here (write"
+            " ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1})"
         ),
     ),
     "a directory that is not there": (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -12,11 +13,14 @@ from launcher.process_exit import Exit
 from launcher.process_spawner import SpawnError
 from launcher.process_table import Process
 from launcher.process_usage import Usage
-from launcher.readiness import Condition, UnwatchableError
+from launcher.readiness import Condition, Seen, UnwatchableError
 from launcher.status import NodeState, Severity
 from launcher.supervisor_node import LATE_S, Node
 from launcher.supervisor_plan import NodePlan
 from tests.unit.manual_clock import ManualClock, settle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 PLAN = NodePlan(name="sonar", command="nodes.sonar", argv=("sonar",), restart="on-failure")
 
@@ -79,7 +83,8 @@ class FakeSession:
         self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
         return self.process
 
-    async def ready(self, _condition: Condition) -> None:
+    async def ready(self, _condition: Condition, tell: Callable[[Seen], None]) -> None:
+        self.tell = tell
         if not self.watchable:
             raise UnwatchableError
         await self.is_ready.wait()
@@ -149,6 +154,21 @@ async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: Fak
     session.is_ready.set()
     await settle()
     assert (node.state, node.detail, node.serves) == (NodeState.READY, "", True)
+
+
+async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(
+    session: FakeSession,
+) -> None:
+    awaited = Condition("topic", "/sonar", "std_msgs/msg/Float32", 5)
+    node = await started(session, replace(PLAN, ready=awaited, within_s=7))
+    session.tell(Seen(("std_msgs/msg/String",)))
+    wrong = "/sonar is published as std_msgs/msg/String, awaited is std_msgs/msg/Float32"
+    assert (node.state, node.detail) == (NodeState.STARTING, wrong)
+    await session.clock.advance(7)
+    assert (node.state, node.detail) == (NodeState.RUNNING, f"not ready within 7 s: {wrong}")
+    session.tell(Seen(("std_msgs/msg/Float32",), 1.25))
+    assert node.detail == "not ready within 7 s: /sonar comes at 1.2 Hz, awaited are 5 Hz"
+    assert not node.serves
 
 
 async def test_readiness_is_not_watched_for_ever(session: FakeSession) -> None:
