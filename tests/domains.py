@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import re
 import socket
 from pathlib import Path
 
@@ -12,6 +13,10 @@ from launcher.process_shm_unfinished import discard_unfinished
 
 DOMAINS = range(1, 102)
 """Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
+SPARE = range(215, 231)
+"""And these, for a machine on which other users have left something in all the others."""
+_PART = re.compile(r"(?:sem\.)?fastrtps_port(\d+)(?:_el|_mutex)?")
+"""Whichever of them is another user's, the port cannot be opened."""
 
 
 class DomainPool:
@@ -43,30 +48,46 @@ class DomainPool:
         given other ones than tests reckon with: such a domain is the last choice.
         """
         discard_unfinished(self._shared_memory)
-        strange = {domain_of(number) for number in self._ports() if self._is_strange(number)}
-        for choice in (set(DOMAINS) - strange, strange):
-            for _ in DOMAINS:
-                domain = self._next()
+        parts = filter(None, map(_PART.fullmatch, names(self._shared_memory)))
+        strange = {domain_of(int(part[1])) for part in parts if self._is_strange(part[0])}
+        for some, choice in (
+            (DOMAINS, set(DOMAINS) - strange),
+            (SPARE, set(SPARE) - strange),
+            (DOMAINS, strange),
+        ):
+            for _ in some:
+                domain = self._next(some)
                 if domain in choice and self._lock(domain):
                     return domain
-        raise RuntimeError("every ROS domain from 1 to 101 is held by a test")
+        raise RuntimeError("every ROS domain is held by a test")
 
     def let_go(self, *domains: int) -> None:
         """Give domains back, without the ports of killed nodes; all if none is named."""
         for domain in domains or tuple(self._held):
             ports = (number for number in self._ports() if domain_of(number) == domain)
             sweep([f"fastrtps_port{number}" for number in ports], self._shared_memory)
+            self._remove_semaphores(domain)
             os.close(self._held.pop(domain))
             if domain in self._sockets:
                 self._sockets.pop(domain).close()
+
+    def _remove_semaphores(self, domain: int) -> None:
+        """Remove what Fast DDS leaves of each port: no other user could open one of that number."""
+        for name in names(self._shared_memory):
+            part = _PART.fullmatch(name)
+            if part is None or not name.startswith("sem.") or domain_of(int(part[1])) != domain:
+                continue
+            port = self._shared_memory / f"fastrtps_port{part[1]}"
+            if not port.exists() and not self._is_strange(name):
+                (self._shared_memory / name).unlink(missing_ok=True)
 
     def _ports(self) -> list[int]:
         found = names(self._shared_memory)
         return port_numbers(name for name in found if name.removeprefix("fastrtps_port").isdigit())
 
-    def _is_strange(self, port: int) -> bool:
+    def _is_strange(self, name: str) -> bool:
         try:
-            owner = (self._shared_memory / f"fastrtps_port{port}").lstat().st_uid
+            owner = (self._shared_memory / name).lstat().st_uid
         except FileNotFoundError:
             return False
         return owner != os.geteuid()
@@ -96,7 +117,7 @@ class DomainPool:
         self._sockets[domain] = bound
         return True
 
-    def _next(self) -> int:
+    def _next(self, some: range) -> int:
         """The domain whose turn it is, and it will be that of the next one."""
         with (self._folder / "turn").open("a+") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
@@ -104,7 +125,7 @@ class DomainPool:
             turn = int(file.read() or 0)
             file.truncate(0)
             file.write(str(turn + 1))
-        return DOMAINS[turn % len(DOMAINS)]
+        return some[turn % len(some)]
 
 
 def domain_of(port: int) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.domains import DOMAINS, DomainPool
+from tests.domains import DOMAINS, SPARE, DomainPool
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def make_port(folder: Path, domain: int) -> Path:
 def test_where_another_user_has_ports_is_the_last_choice(
     pool: DomainPool, shared_memory: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for domain in range(1, 102):
+    for domain in (*DOMAINS, *SPARE):
         if domain != 77:
             make_port(shared_memory, domain)
     monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
@@ -75,3 +75,27 @@ def test_runs_of_two_users_have_no_domain_in_common(tmp_path: Path) -> None:
         assert taken & {second.take() for _ in range(len(DOMAINS) - 3)}
     finally:
         second.let_go()
+
+
+def test_semaphores_of_ports_go_with_them(pool: DomainPool, shared_memory: Path) -> None:
+    domain = pool.take()
+    first = 7411 + 250 * domain
+    for port in (first, first + 2, first + 250):
+        (shared_memory / f"sem.fastrtps_port{port}_mutex").touch()
+    (shared_memory / f"fastrtps_port{first + 2}").touch()
+    pool.let_go(domain)
+    assert sorted(path.name for path in shared_memory.iterdir()) == [
+        f"fastrtps_port{first + 2}",
+        f"sem.fastrtps_port{first + 2}_mutex",
+        f"sem.fastrtps_port{first + 250}_mutex",
+    ]
+
+
+def test_where_others_are_everywhere_there_are_domains_to_spare(
+    pool: DomainPool, shared_memory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for domain in DOMAINS:
+        (shared_memory / f"sem.fastrtps_port{7411 + 250 * domain}_mutex").touch()
+    us = os.geteuid()
+    monkeypatch.setattr("tests.domains.os.geteuid", lambda: us + 1)
+    assert pool.take() in SPARE
