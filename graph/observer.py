@@ -94,7 +94,10 @@ class Observer(Asking):
 
     def _look_at(self, **changes: frozenset[str] | bool) -> None:
         with self._lock:
-            self._interest = replace(self._interest, **changes)  # type: ignore[arg-type]
+            wanted = replace(self._interest, **changes)  # type: ignore[arg-type]
+            if wanted == self._interest:
+                return
+            self._interest = wanted
         self._wake.set()
 
     def _run(self, on_update: Callable[[GraphUpdate], None]) -> None:
@@ -126,7 +129,8 @@ class Observer(Asking):
                 if now_s >= next_look_s or self._interest is not interest:
                     interest = self._interest
                     period_s = LOOK_AT_GRAPH_S if station.is_idle else self._period_s
-                    next_look_s = max(now_s, next_look_s + period_s)
+                    # In step, save that a look out of turn does not put off the next.
+                    next_look_s = max(now_s, min(next_look_s, now_s) + period_s)
                     self._look(station, interest, on_update)
             except Exception as error:
                 # The graph is in motion while it is looked at: the next look has another chance.

@@ -200,3 +200,20 @@ def test_one_that_is_stopped_before_it_was_started_refuses_what_it_was_asked_for
     observer.stop()
     with pytest.raises(ObserverError, match="never started"):
         future.result(1)
+
+
+def test_whoever_wants_something_else_again_and_again_does_not_put_off_the_next_look(
+    ros_domain: int,
+) -> None:
+    peer, watcher = Peer("teller", ros_domain), Watcher(ros_domain)
+    peer.advertise("/beat", type_name="std_msgs/msg/Float32")
+    # As each key in the field of an expression does.
+    for number in range(100):
+        topic = f"/wanted_{number}"
+        watcher.observer.watch([topic])
+        wait_until(lambda topic=topic: watcher.row(topic), f"{topic}")
+    watcher.observer.watch(["/beat"])
+    peer.repeat("/beat", value={"data": 1.0}, hz=20)
+    wait_until(lambda: len(watcher.of("/beat")) > 2, "messages", within_s=10)
+    watcher.close()
+    peer.close()
