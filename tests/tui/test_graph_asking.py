@@ -314,7 +314,7 @@ async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: R
     await action.press("f7", "enter")
     await action.wait(lambda: action.graph.canceled_of_others)
     assert action.graph.canceled_of_others == [(ACTION, THEIRS)]
-    # What has ended is left alone, and so are those of others without being chosen.
+    # What has ended is left alone, and Deck's own come before those of others.
     pane.asked_rows.choose(MINE)
     await action.press("f7")
     assert action.graph.canceled_goals == [1]
@@ -323,6 +323,19 @@ async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: R
     action.screen.names.focus()
     await action.press("d")
     assert action.graph.forgotten_goals == []
+
+
+async def test_the_newest_goal_of_others_is_meant_where_the_chosen_one_has_ended(
+    action: Room,
+) -> None:
+    await action.show(graph_update(seen_goals=SEEN[:1]))
+    await action.wait_for("3f2a9c1e ✓ succeeded")
+    assert "f7 Cancel" not in action.seen()
+    await action.show(graph_update(seen_goals=SEEN))
+    await action.wait_for("f7 Cancel")
+    await action.press("f7")
+    await action.wait_for("Cancel a goal of another client?")
+    assert THEIRS in action.seen()
 
 
 async def test_why_a_goal_of_another_client_was_not_cancelled_is_told(action: Room) -> None:

@@ -159,10 +159,14 @@ class ActionPane(AskPane):
 
     @property
     def can_cancel(self) -> bool:
-        """Whether the chosen goal, or else any, has not ended."""
-        chosen = self.chosen
-        can_chosen = chosen is not None and not chosen.ended
-        return can_chosen or any(not goal.ended for goal in self.goals)
+        """Whether any goal has not ended."""
+        return self._to_cancel is not None
+
+    @property
+    def _to_cancel(self) -> Goal | SeenGoal | None:
+        """The chosen goal; if that one has ended, the newest that has not, Deck's own first."""
+        goals: list[Goal | SeenGoal | None] = [self.chosen, *self.goals, *self.of_others]
+        return next((goal for goal in goals if goal is not None and not goal.ended), None)
 
     @property
     def is_waiting(self) -> bool:
@@ -170,15 +174,12 @@ class ActionPane(AskPane):
         return False
 
     def cancel(self) -> None:
-        """Cancel the chosen goal; if that one has ended, the newest of Deck's own that has not."""
-        graph, goal = self.deck.feed.graph, self.chosen
-        if isinstance(goal, SeenGoal) and not goal.ended:
+        """Cancel a goal; one of another client only after a question."""
+        graph, goal = self.deck.feed.graph, self._to_cancel
+        if isinstance(goal, SeenGoal):
             self.post_message(self.CancelWanted(goal, _words(goal)))
-            return
-        own = goal if isinstance(goal, Goal) and not goal.ended else None
-        own = own or next((one for one in self.goals if not one.ended), None)
-        if graph is not None and own is not None:
-            graph.cancel_goal(own.number)
+        elif graph is not None and goal is not None:
+            graph.cancel_goal(goal.number)
 
     @property
     def can_forget(self) -> bool:
