@@ -44,7 +44,7 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
     """Return a message of the class with these fields, the others at their defaults.
 
     Takes what `to_tree` returns, and what YAML or JSON give: lists for arrays, integers for
-    floats. Raises FieldError.
+    floats, a text for the UTF-8 bytes of it in an array of bytes. Raises FieldError.
     """
     if not isinstance(tree, Mapping):
         raise FieldError(field, say("expected fields by name, got {value}", value=_shown(tree)))
@@ -89,6 +89,8 @@ def _one(kind: FieldType, value: Value, path: str) -> object:
 
 
 def _many(kind: FieldType, value: Value, path: str) -> object:
+    if isinstance(value, str) and kind.element in BYTES:
+        value = _encoded(value, path)
     if isinstance(value, (bytes, bytearray, memoryview)) and kind.element in BYTES:
         _check_length(kind, len(value), path)
         return _packed(kind, value)
@@ -151,11 +153,15 @@ def _text(kind: FieldType, value: Value, path: str) -> str:
         )
     if "\0" in value:
         raise FieldError(path, say("a text of ROS cannot hold the character NUL"))
+    _encoded(value, path)
+    return value
+
+
+def _encoded(value: str, path: str) -> bytes:
     try:
-        value.encode()
+        return value.encode()
     except UnicodeEncodeError as error:
         raise FieldError(path, say("{value} is no valid Unicode", value=_shown(value))) from error
-    return value
 
 
 def _boolean(value: Value, path: str) -> bool:

@@ -97,6 +97,14 @@ def test_nothing_a_person_types_leads_to_more_than_a_field_error(type_name: str,
         ("sensor_msgs/msg/JointState", {"name": "wheel"}, "name: expected a list, got 'wheel'"),
         ("sensor_msgs/msg/CameraInfo", {"k": [1.0]}, "k: expected 9 elements, got 1"),
         ("std_msgs/msg/ByteMultiArray", {"data": [0, 300]}, "data[1]: expected 0 to 255, got 300"),
+        ("std_msgs/msg/ByteMultiArray", {"data": "\ud800"}, "data: '\\ud800' is no valid Unicode"),
+        ("std_msgs/msg/Float32MultiArray", {"data": "a"}, "data: expected a list, got 'a'"),
+        ("sensor_msgs/msg/CameraInfo", {"k": "123456789"}, "k: expected a list"),
+        (
+            "unique_identifier_msgs/msg/UUID",
+            {"uuid": "short"},
+            "uuid: expected 16 elements, got 5",
+        ),
         (
             "diagnostic_msgs/msg/DiagnosticArray",
             {"status": [{"level": 0}, {"level": -1}]},
@@ -111,11 +119,15 @@ def test_what_does_not_fit_names_its_field(type_name: str, tree: dict[str, Any],
 
 
 def test_what_people_write_is_understood() -> None:
-    """Integers for floats, lists for bytes, part of the fields only."""
+    """Integers for floats, lists and texts for bytes, part of the fields only."""
     assert to_message(load_message("std_msgs/msg/Float64"), {"data": 3}).data == 3.0
     assert to_message(load_message("std_msgs/msg/Int32"), {"data": 3.0}).data == 3
     sound = to_message(load_message("std_msgs/msg/ByteMultiArray"), {"data": [0, 255]})
     assert b"".join(sound.data) == b"\x00\xff"
+    said = to_message(load_message("std_msgs/msg/ByteMultiArray"), {"data": "Привет"})
+    assert b"".join(said.data) == "Привет".encode()
+    drawn = to_message(load_message("sensor_msgs/msg/Image"), {"data": "ab"})
+    assert bytes(drawn.data) == b"ab"
     image = to_message(load_message("sensor_msgs/msg/Image"), {"data": [1, 2], "width": 2})
     assert (bytes(image.data), image.width, image.height) == (b"\x01\x02", 2, 0)
 
