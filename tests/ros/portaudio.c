@@ -38,8 +38,8 @@ static HostApi api = {1, 8, "ALSA", 0, -1, -1};
 
 static void path_after(const char *line, const char *word, char *path) {
     const char *found = strstr(line, word);
-    snprintf(path, sizeof paths[0], "%s", found + strlen(word) + strspn(found + strlen(word), " \""));
-    path[strcspn(path, "\"\n")] = 0;
+    snprintf(path, sizeof paths[0], "%s", found + strlen(word) + strspn(found + strlen(word), " "));
+    path[strcspn(path, "\n")] = 0;
 }
 
 int Pa_Initialize(void) {

@@ -24,13 +24,13 @@ pcm.{microphone} {{
     type file
     slave.pcm {{ type null }}
     file /dev/null
-    infile "{folder}/said"
+    infile {folder}/said
     format raw
 }}
 pcm.deckspeaker {{
     type file
     slave.pcm {{ type null }}
-    file "{folder}/played"
+    file {folder}/played
     format raw
 }}
 """

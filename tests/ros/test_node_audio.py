@@ -6,6 +6,7 @@ import os
 import signal
 import struct
 import subprocess
+import tempfile
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -39,14 +40,16 @@ def stand_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(params=libraries())
 def card(
-    request: pytest.FixtureRequest, tmp_path: Path, stand_in: Path, monkeypatch: pytest.MonkeyPatch
+    request: pytest.FixtureRequest, stand_in: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[SoundCard]:
     if request.param == "stand-in":
         monkeypatch.setenv("LD_LIBRARY_PATH", str(stand_in), prepend=os.pathsep)
-    card = SoundCard(tmp_path)
-    monkeypatch.setenv("ALSA_CONFIG_PATH", str(card.configuration))
-    yield card
-    card.close()
+    # ALSA takes a blank in the path of its configuration for the end of it.
+    with tempfile.TemporaryDirectory(prefix="deck-test-card-", dir="/tmp") as folder:
+        card = SoundCard(Path(folder))
+        monkeypatch.setenv("ALSA_CONFIG_PATH", str(card.configuration))
+        yield card
+        card.close()
 
 
 @pytest.fixture(scope="module")
