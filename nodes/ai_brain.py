@@ -19,9 +19,10 @@ from nodes._head_client import HeadAnswer, HeadClient
 from nodes._life import run
 from nodes._node import LessonNode
 from nodes._parameters import Number
+from nodes._sensor import SensorListener
 from nodes._sound import from_message, to_message
 from nodes._speech import Phrase
-from nodes._topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, NEWEST, SONAR_FRONT, SPEAKER
+from nodes._topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, SONAR_FRONT, SPEAKER
 from robot.brain import Decision, decide, spoken
 from robot.safety import Reading, look
 from robot.sound import text_in
@@ -99,8 +100,8 @@ class AiBrain(LessonNode):
         self._command = self.create_publisher(String, AI_COMMAND, DEPTH)
         self._speaker = self.create_publisher(ByteMultiArray, SPEAKER, DEPTH)
         self._head = HeadClient(self, lambda: self.number("head_timeout"))
-        self.create_subscription(Image, CAMERA, self._see, NEWEST, raw=True)
-        self.create_subscription(Float32, SONAR_FRONT, self._measure, DEPTH)
+        SensorListener(self, Image, CAMERA, self._see, depth=1, raw=True)
+        SensorListener(self, Float32, SONAR_FRONT, self._measure)
         self.create_subscription(ByteMultiArray, MICROPHONE, self._hear, DEPTH)
         self.say.info(_STARTED)
 

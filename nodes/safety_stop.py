@@ -34,6 +34,7 @@ from nodes._parameters import Number, Switch, Text
 from nodes._safety_eyes import Eyes, shares
 from nodes._safety_gate import Gate, Moment
 from nodes._safety_words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
+from nodes._sensor import SensorListener
 from nodes._topics import DEPTH, SAFETY_STATE, SONAR_FRONT, SOURCES
 from robot.safety import Sight, Verdict, Zone, allowed, where
 
@@ -90,9 +91,9 @@ class SafetyStop(LessonNode):
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
         # In this order, which is that of their callbacks: of all that waits a stop comes first.
         self._emergency = EmergencyStop(self, self._emergency_changed)
-        self.create_subscription(Float32, self.text("front_topic"), self._see_front, DEPTH)
+        SensorListener(self, Float32, self.text("front_topic"), self._see_front)
         if self._eyes.rear is not None:
-            self.create_subscription(Float32, self.text("rear_topic"), self._see_rear, DEPTH)
+            SensorListener(self, Float32, self.text("rear_topic"), self._see_rear)
         self._gate = Gate(self, self._judge, self._reason) if self.switch("gate") else None
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
         self.say.info(STARTED, metres=self.number("critical_distance"))

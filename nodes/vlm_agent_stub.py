@@ -16,8 +16,9 @@ from nodes._life import run
 from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Text, Whole
 from nodes._pictures import BadPictureError, bgr
+from nodes._sensor import SensorListener
 from nodes._speech import Phrase
-from nodes._topics import CAMERA, NEWEST
+from nodes._topics import CAMERA
 
 _STARTED = Phrase("Waiting for pictures on {topic}", "Жду кадры в {topic}")
 _NONE = Phrase("No picture yet on {topic}", "Кадров в {topic} пока нет")
@@ -49,7 +50,7 @@ class VlmAgentStub(LessonNode):
         """Serialized: decoding ten pictures a second to use one in thirty would be a waste."""
         self._any = False
         topic = self.text("topic")
-        self.create_subscription(Image, topic, self._keep, NEWEST, raw=True)
+        SensorListener(self, Image, topic, self._keep, depth=1, raw=True)
         self._timer = self.every(self.number("period"), self._look)
         self.say.info(_STARTED, topic=topic)
 
