@@ -71,6 +71,11 @@ def only_one() -> Iterator[None]:
 class Step:
     """One command of the set-up, under way, with a log of its own."""
 
+    ended = 0
+    """How many have been waited for, those that could be left out included."""
+    total = 0
+    """How many there are in all."""
+
     def __init__(self, what: str, *command: str | Path, **environ: str) -> None:
         self.what = what
         self.log = WORK / f"{what.split(maxsplit=1)[0].lower()}.log"
@@ -91,20 +96,21 @@ class Step:
     def finish(self) -> None:
         """Wait for the command, show that time passes, and say how long it took."""
         screen = sys.stderr.isatty()
+        line = heading(self.what)
         if not screen:
-            say(f"  {self.what} ... ", end="")
+            say(line, end="")
         try:
             while True:
                 try:
                     code = self.process.wait(TICK_S if screen else None)
                     break
                 except subprocess.TimeoutExpired:
-                    say(f"\r  {self.what} ... {self.seconds()}", end="")
+                    say(f"\r{line}{self.seconds()}", end="")
         except KeyboardInterrupt:
             self.abandon()
             raise
         ended = self.seconds() if code == 0 else "failed"
-        say(f"\r\x1b[K  {self.what} ... {ended}" if screen else ended)
+        say(f"\r\x1b[K{line}{ended}" if screen else ended)
         if code < 0:
             raise ChildProcessError(f"{self.what}: killed by signal {-code}")
         if code:
@@ -119,6 +125,17 @@ class Step:
         if self.process.poll() is None:
             os.killpg(self.process.pid, signal.SIGKILL)
             self.process.wait()
+
+
+def heading(what: str) -> str:
+    """Return the beginning of the line of the next step."""
+    Step.ended += 1
+    return f"  {Step.ended} of {Step.total}: {what} ... "
+
+
+def wanted_interfaces() -> str:
+    """Return a digest of what the message types are built of."""
+    return fingerprint(ROOT / "interfaces") + fingerprint(LOCKED)
 
 
 def fingerprint(folder: Path) -> str:
@@ -156,7 +173,10 @@ class Environment:
 
     def update(self) -> None:
         """Bring the environment to what pyproject.toml and interfaces/ ask for."""
-        if not self.is_sound():
+        sound = self.is_sound()
+        changed = not sound or read(self.interfaces) != wanted_interfaces().encode()
+        Step.ended, Step.total = 0, (not sound) + 2 + 2 * changed
+        if not sound:
             self.begin()
             Step("Virtual environment", sys.executable, "-m", "venv", self.folder).finish()
         # What pip left half done looks whole to the next pip. When pip itself gives
@@ -187,7 +207,7 @@ class Environment:
 
     def install(self) -> None:
         """Install Deck with all it needs, and the message types if they have changed."""
-        wanted = fingerprint(ROOT / "interfaces") + fingerprint(LOCKED)
+        wanted = wanted_interfaces()
         if read(self.interfaces) == wanted.encode():
             self.install_deck()
             return
@@ -197,6 +217,7 @@ class Environment:
         kept = WheelCache(wanted, builder)
         if kept.fetch(wheels):
             self.install_deck()
+            say(f"{heading('Message types')}kept from an earlier set-up")
         else:
             self.build(wheels)
             kept.keep(wheels)

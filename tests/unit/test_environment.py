@@ -37,6 +37,7 @@ def made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
         return SimpleNamespace(finish=finish)
 
+    step.ended = step.total = 0  # type: ignore[attr-defined]
     monkeypatch.setattr(environment, "Step", step)
     monkeypatch.setattr(environment.Environment, "install", lambda _self: steps.append("install"))
     return SimpleNamespace(tree=tree, subject=subject, steps=steps)
@@ -279,6 +280,8 @@ def test_on_a_terminal_the_seconds_of_a_step_are_counted(
     monkeypatch.setattr(environment, "WORK", tmp_path)
     monkeypatch.setattr(environment, "ROOT", tmp_path)
     monkeypatch.setattr(environment, "TICK_S", 0.01)
+    monkeypatch.setattr(environment.Step, "ended", 2)
+    monkeypatch.setattr(environment.Step, "total", 5)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     told: list[str] = []
 
@@ -289,6 +292,6 @@ def test_on_a_terminal_the_seconds_of_a_step_are_counted(
 
     monkeypatch.setattr(environment, "say", say)
     environment.Step("Build", "/bin/sh", "-c", "until [ -e go ]; do sleep 0.01; done").finish()
-    assert all(line.startswith("\r  Build ... ") for line in told[:3])
-    assert told[-1].startswith("\r\x1b[K  Build ... ")
+    assert all(line.startswith("\r  3 of 5: Build ... ") for line in told[:3])
+    assert told[-1].startswith("\r\x1b[K  3 of 5: Build ... ")
     assert told[-1].endswith(" s\n")
