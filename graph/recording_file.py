@@ -21,11 +21,11 @@ from rosbags.interfaces import (
     MessageDefinition,
     MessageDefinitionFormat,
 )
-from rosbags.rosbag2.enums import CompressionMode
-from rosbags.rosbag2.storage_mcap import McapWriter, PendingChunk
+from rosbags.rosbag2.storage_mcap import PendingChunk
 
 from graph.bag_errors import not_made
 from graph.bag_metadata import VERSION, BagTopic, as_yaml, information, write
+from graph.recording_mcap import McapFile
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -60,7 +60,7 @@ class BagFile:
         self._renewed_s = 0.0
         try:
             folder.mkdir(parents=True)
-            self._storage = McapWriter(folder, CompressionMode.NONE)
+            self._storage = McapFile(folder)
             self._keep_room()
             self._storage.bio.flush()
             self._renew()
@@ -94,12 +94,12 @@ class BagFile:
         self._connections[topic.number] = connection
         self._renewed_s = 0.0
 
-    def write(self, topic: BagTopic, stamp_ns: int, raw: bytes) -> None:
-        """Write a message as it is; `stamp_ns` is unix time. Raises OSError."""
+    def write(self, topic: BagTopic, stamp_ns: int, sent_ns: int, raw: bytes) -> None:
+        """Write a message as it is, with the unix times it came and was sent. Raises OSError."""
         chunks = len(self._storage.chunks)
         topic.messages += 1
         topic.bytes += len(raw)
-        self._storage.write(self._connections[topic.number], stamp_ns, raw)
+        self._storage.put(self._connections[topic.number], stamp_ns, sent_ns, raw)
         if len(self._storage.chunks) > chunks:
             self._chunk_closed()
 

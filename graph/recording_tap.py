@@ -95,7 +95,8 @@ class RecordingTap:
                 number = info["publication_sequence_number"]
                 if number is not None:
                     self.lost += self._sequences.missing(number, self.publishers)
-                taken.append(Message(stamp_ns, self.topic, raw))
+                sent_ns = info["source_timestamp"] or stamp_ns
+                taken.append(Message(stamp_ns, self.topic, raw, sent_ns))
         return taken
 
     def close(self) -> None:

@@ -36,6 +36,8 @@ class Message(NamedTuple):
     """When the middleware received it, unix time."""
     topic: BagTopic
     raw: bytes
+    sent_ns: int
+    """When it was sent, by the clock of its sender."""
 
 
 class RecordingWriter:
@@ -117,7 +119,7 @@ class RecordingWriter:
                 if isinstance(item, NewTopic):
                     self._file.add_topic(item.topic, item.text)
                 else:
-                    self._file.write(item.topic, item.stamp_ns, item.raw)
+                    self._file.write(item.topic, item.stamp_ns, item.sent_ns, item.raw)
                     with self._news:
                         self._waiting_bytes -= len(item.raw)
                 flush_at_s = self._flush_at(flush_at_s)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -126,6 +127,22 @@ def test_latched_messages_of_before_are_recorded_and_later_topics_taken_up(
         status = recorder.stop()
     assert {row.name for row in status.topics} == {"/tf_static", "/late"}
     assert set(read_by_mcap(tmp_path / "bag")) == {"/tf_static", "/late"}
+
+
+def test_a_message_has_the_time_it_was_sent_beside_that_of_its_arrival(
+    ros_domain: int, tmp_path: Path
+) -> None:
+    recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
+    with Peer(ros_domain) as peer:
+        sent_after_ns = time.time_ns()
+        peer.publisher("/map_name", String, LATCHED).publish(String(data="kitchen"))
+        begun_ns = time.time_ns()
+        recorder.start()
+        recorded(recorder, "/map_name", 1)
+        recorder.stop()
+    with (tmp_path / "bag" / "bag.mcap").open("rb") as file:
+        ((_schema, _channel, message),) = make_reader(file).iter_messages()
+    assert sent_after_ns <= message.publish_time <= begun_ns <= message.log_time
 
 
 def test_only_the_chosen_topics_are_recorded_and_absent_ones_are_named(

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from mcap.reader import make_reader
+from mcap.stream_reader import CRCValidationError
 
 from graph.bag import open_bag
 from graph.bag_metadata import BagTopic
@@ -30,9 +31,9 @@ class SlowFile(BagFile):
         super().__init__(folder)
         self.gate = threading.Event()
 
-    def write(self, topic: BagTopic, stamp_ns: int, raw: bytes) -> None:
+    def write(self, topic: BagTopic, stamp_ns: int, sent_ns: int, raw: bytes) -> None:
         self.gate.wait(30)
-        super().write(topic, stamp_ns, raw)
+        super().write(topic, stamp_ns, sent_ns, raw)
 
 
 def test_what_finds_the_buffer_full_is_dropped_and_counted(tmp_path: Path) -> None:
@@ -40,7 +41,7 @@ def test_what_finds_the_buffer_full_is_dropped_and_counted(tmp_path: Path) -> No
     writer = RecordingWriter(file, limit_bytes=10_000)
     writer.add_topic(big, TEXT)
     for number in range(30):
-        writer.put([Message(1 + number, big, bytes(1_000))])
+        writer.put([Message(1 + number, big, bytes(1_000), 1)])
     assert writer.waiting_bytes <= 10_000
     assert writer.dropped["/big"] == 20
     file.gate.set()
@@ -55,7 +56,7 @@ def test_a_flush_has_all_on_the_disk(tmp_path: Path) -> None:
     file, big = BagFile(tmp_path / "bag"), topic()
     writer = RecordingWriter(file)
     writer.add_topic(big, TEXT)
-    writer.put([Message(1_000, big, b"\x00\x01\x00\x00" + b"here it is")])
+    writer.put([Message(1_000, big, b"\x00\x01\x00\x00" + b"here it is", 900)])
     wait_until(lambda: b"here it is" in file.path.read_bytes(), "the message on the disk")
     # As if the process were gone now.
     with open_bag(tmp_path / "bag") as bag:
@@ -89,7 +90,7 @@ def test_a_disk_that_fills_up_leaves_a_whole_bag(tmp_path: Path, room: int) -> N
     writer = RecordingWriter(file)
     writer.add_topic(big, TEXT)
     for number in range(100):
-        writer.put([Message(1 + number, big, bytes([number]) * 100_000)])
+        writer.put([Message(1 + number, big, bytes([number]) * 100_000, 1)])
     assert writer.finish(30)
     assert "No space left on device" in str(writer.error)
     with file.path.open("rb") as stream:
@@ -118,3 +119,21 @@ def test_what_is_missing_is_found_in_the_numbers(
 ) -> None:
     sequences = Sequences()
     assert sum(sequences.missing(number, publishers) for number in numbers) == missing
+
+
+def test_other_readers_find_both_times_and_check_the_sums(tmp_path: Path) -> None:
+    file, big = BagFile(tmp_path / "bag"), topic()
+    writer = RecordingWriter(file)
+    writer.add_topic(big, TEXT)
+    for number in range(5):
+        writer.put([Message(1_000 + number, big, bytes([number]) * 400_000, 900 + number)])
+    assert writer.finish(30)
+    with file.path.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        times = [(one.log_time, one.publish_time) for _s, _c, one in reader.iter_messages()]
+    assert times == [(1_000 + number, 900 + number) for number in range(5)]
+    whole = bytearray(file.path.read_bytes())
+    whole[whole.index(bytes([3]) * 400_000) + 9] = 77
+    file.path.write_bytes(whole)
+    with file.path.open("rb") as stream, pytest.raises(CRCValidationError):
+        list(make_reader(stream, validate_crcs=True).iter_messages())
