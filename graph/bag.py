@@ -61,6 +61,22 @@ class Bag:
         return self.path.stem if self.path.suffix in SUFFIXES else self.path.name
 
     @property
+    def damage(self) -> Words | None:
+        """What was left out so far because it cannot be read; grows while messages are read."""
+        lost = self._reader.lost
+        if not lost:
+            return None
+        first_ns = min(each.at_ns for each in lost)
+        return say(
+            "{path} is damaged: messages lost: {messages}, damaged places: {places}, the first "
+            "{seconds} s after the beginning. All others are played",
+            path=self.path,
+            messages=sum(each.messages for each in lost),
+            places=len(lost),
+            seconds=f"{max(0, first_ns - self.start_ns) / 1e9:.1f}",
+        )
+
+    @property
     def topics(self) -> tuple[TopicInBag, ...]:
         """Every topic, sorted by name."""
         return tuple(sorted(self._topics.values(), key=lambda topic: topic.name))
@@ -75,8 +91,8 @@ class Bag:
     ) -> Iterator[tuple[TopicInBag, int, bytes]]:
         """Yield topic, unix time in nanoseconds and raw message in the order of their times.
 
-        `names`: of which topics, all if empty. Raises BagError where the bag turns out to be
-        damaged.
+        `names`: of which topics, all if empty. Chunks of an MCAP that are damaged are left out, see
+        `damage`; raises BagError where a bag of another kind turns out to be damaged.
         """
         wanted = [each for each in self._reader.connections if not names or each.topic in names]
         try:

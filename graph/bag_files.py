@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import heapq
-import struct
+from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING, Protocol
 
-from rosbags.rosbag2 import Reader
-from rosbags.rosbag2.storage_mcap import McapReader
-
+from graph.bag_mcap import Lost, SparingMcap, SparingReader, sound_parts
 from graph.words import Words, say
 
 if TYPE_CHECKING:
@@ -18,11 +16,8 @@ if TYPE_CHECKING:
 
     from rosbags.interfaces import Connection
 
-MAGIC = b"\x89MCAP0\r\n"
 OUT_OF_ORDER_NS = 3_000_000_000
 """Messages of a cut bag may be so much out of order: it was written topic by topic."""
-FOOTER, DATA_END = 0x02, 0x0F
-RECORD_HEAD = struct.Struct("<BQ")
 Raw = tuple["Connection", int, bytes]
 
 
@@ -34,6 +29,10 @@ class BagReader(Protocol):
     end_ns: int
     message_count: int
     distro: str
+
+    @property
+    def lost(self) -> list[Lost]:
+        """What has turned out to be damaged so far."""
 
     def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
         """Yield messages of these connections in the order of their times."""
@@ -47,13 +46,18 @@ class WholeBag:
 
     def __init__(self, path: Path) -> None:
         """Raises whatever the library does for what it cannot read."""
-        self._reader = Reader(path)
+        self._reader = SparingReader(path)
         self._reader.open()
         self.connections = list(self._reader.connections)
         self.message_count = self._reader.message_count
         self.start_ns = self._reader.start_time if self.message_count else 0
         self.end_ns = self._reader.end_time - 1 if self.message_count else 0
         self.distro = self._reader.ros_distro or ""
+
+    @property
+    def lost(self) -> list[Lost]:
+        """What has turned out to be damaged so far."""
+        return self._reader.lost
 
     def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
         """Yield messages of these connections in the order of their times."""
@@ -64,6 +68,39 @@ class WholeBag:
         self._reader.close()
 
 
+class _CutFile:
+    """One MCAP file without an end, looked through once."""
+
+    def __init__(self, path: Path, stack: ExitStack) -> None:
+        """Raises ValueError and what the library raises."""
+        self._reader = reader = SparingMcap(path)
+        reader.bio = stack.enter_context(path.open("rb"))
+        self._sound, self.lost, end, size = sound_parts(path)
+        self.lost_bytes = size - end
+        self.counts: Counter[int] = Counter()
+        spans = []
+        for reader.data_start, reader.data_end in self._sound:
+            reader.meta_scan()
+            assert reader.statistics is not None
+            self.counts.update(reader.statistics.channel_message_counts)
+            if reader.statistics.message_count:
+                spans.append((reader.statistics.start_time, reader.statistics.end_time))
+        self.start_ns = min((first for first, _last in spans), default=0)
+        self.end_ns = max((last for _first, last in spans), default=0)
+        self.connections = [
+            each._replace(msgcount=self.counts[each.id]) for each in reader.connections
+        ]
+        nameless = self.counts.total() - sum(each.msgcount for each in self.connections)
+        if nameless:
+            # What they are was told in a chunk that is damaged.
+            self.lost.append(Lost(self.start_ns, nameless))
+
+    def messages(self, wanted: Collection[Connection], start_ns: int | None) -> Iterator[Raw]:
+        reader = self._reader
+        for reader.data_start, reader.data_end in self._sound:
+            yield from reader.messages_scan(wanted, start_ns)
+
+
 class CutFiles:
     """MCAP files of which the last has no end: read up to the last whole record."""
 
@@ -72,25 +109,28 @@ class CutFiles:
     def __init__(self, paths: list[Path]) -> None:
         """Look through the files once. Raises ValueError and what the library raises."""
         self._stack = ExitStack()
-        self._readers: list[McapReader] = []
-        self._lost_bytes = 0
-        self._is_cut = False
+        self._files: list[WholeBag | _CutFile] = []
         try:
             for path in paths:
-                self._readers.append(self._opened(path))
+                self._files.append(self._opened(path))
         except BaseException:
             self._stack.close()
             raise
-        self.connections = [each for reader in self._readers for each in reader.connections]
-        told = [reader.statistics for reader in self._readers if reader.statistics]
-        spoken = [each for each in told if each.message_count]
-        self.message_count = sum(each.message_count for each in told)
-        self.start_ns = min((each.start_time for each in spoken), default=0)
-        self.end_ns = max((each.end_time for each in spoken), default=0)
+        self.connections = [each for file in self._files for each in file.connections]
+        self.message_count = sum(each.msgcount for each in self.connections)
+        spoken = [file for file in self._files if file.end_ns]
+        self.start_ns = min((each.start_ns for each in spoken), default=0)
+        self.end_ns = max((each.end_ns for each in spoken), default=0)
+
+    @property
+    def lost(self) -> list[Lost]:
+        """What has turned out to be damaged so far."""
+        return [lost for file in self._files for lost in file.lost]
 
     def missing(self, path: Path) -> Words | None:
         """Return what is not there, and how the bag is made whole for other programs."""
-        if not self._is_cut:
+        cut = [file for file in self._files if isinstance(file, _CutFile)]
+        if not cut:
             return None
         return say(
             "{path} was cut short: the recording has not ended in order. {messages} messages are "
@@ -98,55 +138,28 @@ class CutFiles:
             "`ros2 bag reindex` mends the index",
             path=path,
             messages=self.message_count,
-            bytes=self._lost_bytes,
+            bytes=sum(file.lost_bytes for file in cut),
         )
 
     def messages(self, start_ns: int | None, wanted: Collection[Connection]) -> Iterator[Raw]:
         """Yield messages of these connections in the order of their times."""
-        for reader in self._readers:
-            own = [each for each in reader.connections if each in wanted]
-            yield from in_order(reader.messages_scan(own, start_ns))
+        for file in self._files:
+            own = [each for each in file.connections if each in wanted]
+            if isinstance(file, WholeBag):
+                yield from file.messages(start_ns, own)
+            else:
+                yield from in_order(file.messages(own, start_ns))
 
     def close(self) -> None:
         """Let go of the files."""
         self._stack.close()
 
-    def _opened(self, path: Path) -> McapReader:
-        reader = McapReader(path)
+    def _opened(self, path: Path) -> WholeBag | _CutFile:
         with suppress(Exception):
-            reader.open()
-            self._stack.callback(reader.close)
-            return reader
-        self._is_cut = True
-        reader = McapReader(path)
-        reader.bio = self._stack.enter_context(path.open("rb"))
-        reader.data_start, reader.data_end, size = whole_records(path)
-        self._lost_bytes += size - reader.data_end
-        reader.meta_scan()
-        reader.connections = [
-            each._replace(msgcount=reader.statistics.channel_message_counts.get(each.id, 0))
-            for each in reader.connections
-            if reader.statistics
-        ]
-        return reader
-
-
-def whole_records(path: Path) -> tuple[int, int, int]:
-    """Return where the records of an MCAP file begin, where the last whole one ends, its size.
-
-    Raises ValueError for a file that is no MCAP at all.
-    """
-    size = path.stat().st_size
-    with path.open("rb") as file:
-        if file.read(len(MAGIC)) != MAGIC:
-            raise ValueError(f"{path} does not begin as an MCAP file does")
-        begin = end = len(MAGIC)
-        while len(head := file.read(RECORD_HEAD.size)) == RECORD_HEAD.size:
-            code, length = RECORD_HEAD.unpack(head)
-            if code in {FOOTER, DATA_END} or end + RECORD_HEAD.size + length > size:
-                break
-            end = file.seek(length, 1)
-    return begin, end, size
+            whole = WholeBag(path)
+            self._stack.callback(whole.close)
+            return whole
+        return _CutFile(path, self._stack)
 
 
 def in_order(messages: Iterator[Raw]) -> Iterator[Raw]:

@@ -186,7 +186,7 @@ class Replay(Refusals):
             if not self._state.paused:
                 self._advance(player, now_s - before_s)
             before_s = now_s
-            self._set(position_s=player.position_s, ended=player.ended)
+            self._set(position_s=player.position_s, ended=player.ended, damage=player.damage or "")
             update = self._update(player)
             if update.samples or ordered or update.topics != told:
                 told = update.topics

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from graph.bag import Bag, TopicInBag
+    from graph.words import Words
 
 BEFORE_NS = int(WINDOW_S / NANOSECONDS)
 """What is read before the place that is jumped to: rates and newest messages are there at once."""
@@ -38,6 +39,11 @@ class Player:
     def position_s(self) -> float:
         """Seconds since the first message."""
         return (self.now_ns - self._bag.start_ns) * NANOSECONDS
+
+    @property
+    def damage(self) -> Words | None:
+        """What was left out so far because it cannot be read."""
+        return self._bag.damage
 
     def seek(self, position_s: float) -> None:
         """Put the playhead there, and take what came shortly before."""

@@ -27,6 +27,8 @@ class ReplayState:
     """All there are in the bag."""
     cut: str = ""
     """What is missing of a bag that was cut short, in words that can be translated."""
+    damage: str = ""
+    """What was left out so far because it cannot be read, in words that can be translated."""
     error: str = ""
     """Why it cannot go on, in words that can be translated."""
 

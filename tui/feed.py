@@ -14,6 +14,7 @@ from textual.message import Message
 
 from tui.emergency import FOLLOWED
 from tui.history import KEPT_LINES, LogHistory
+from tui.i18n import _
 from tui.inbox import GraphInbox
 from tui.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
 from tui.rosout import TOPIC as ROSOUT
@@ -58,6 +59,13 @@ class Feed:
     def replay(self) -> Replay | None:
         """The recording that is played in place of a robot, None for a robot."""
         return getattr(self.link, "replay", None)
+
+    @property
+    def blind(self) -> str:
+        """What to say above the reason why nothing can be seen: ROS is no matter of a replay."""
+        if self.replay is not None:
+            return _("The recording cannot be read")
+        return _("ROS cannot be observed")
 
     @property
     def watching(self) -> bool:

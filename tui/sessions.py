@@ -15,6 +15,7 @@ from tui.i18n import _, said
 from tui.watching import WATCH
 
 if TYPE_CHECKING:
+    from graph.replay import Replay
     from launcher.status import SessionInfo, Stray
     from tui.app import DeckApp
     from tui.orders import Order
@@ -37,6 +38,8 @@ class Sessions:
         self.parting_words = ""
         """Said on the terminal after the screen has gone."""
         self._strays_asked: set[Stray] = set()
+        self._damaged: Replay | None = None
+        """The recording of which it was told that it is damaged."""
         self._going_back = asyncio.Lock()
         """Held while the screens of a session that has been closed are taken away."""
         self._leaving = False
@@ -121,8 +124,17 @@ class Sessions:
             await self._app.show_screen("topics")
         replay = self._app.feed.replay
         if replay is not None and replay.state.cut:
-            words = plain(said(replay.state.cut), 600)
-            self._app.notify(words, severity="warning", timeout=20, markup=False)
+            self._warn(replay.state.cut)
+
+    def tell_damage(self, words: str) -> None:
+        """Say that something in the recording cannot be read, when that is first come to."""
+        replay = self._app.feed.replay
+        if replay is not None and self._damaged is not replay:
+            self._damaged = replay
+            self._warn(words)
+
+    def _warn(self, words: str) -> None:
+        self._app.notify(plain(said(words), 600), severity="warning", timeout=20, markup=False)
 
     async def _refuse(self, error: LauncherError) -> None:
         """Say why nothing was opened: where it was picked, or by ending."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
 
+from graph.bag import Bag, TopicInBag
+from graph.bag_errors import unreadable
 from graph.replay import Replay
 from tests.tui.replayed import BagPad, replayed
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
@@ -30,6 +33,11 @@ async def until(pilot: Pilot[int], condition: object) -> None:
             return
         await pilot.pause(0.02)
     pytest.fail("it has not come")
+
+
+def text_of(app: DeckApp) -> str:
+    """What stands on the screen, its lines put one after the other."""
+    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
 
 
 def shown(look: Look, bag: Path, screen: str, position_s: float = 6.2) -> DeckApp:
@@ -147,6 +155,39 @@ async def test_what_is_no_bag_ends_with_a_word_and_two(tmp_path: Path, name: str
         await until(pilot, lambda: app.sessions.parting_words)
     assert app.return_code == 2
     assert "there is no such file or folder" in app.sessions.parting_words
+
+
+@pytest.mark.parametrize("key", ["2", "5", "7"])
+async def test_a_bag_that_cannot_be_read_is_not_put_down_to_ros(
+    drive: Path, monkeypatch: pytest.MonkeyPatch, key: str
+) -> None:
+    def fail(bag: Bag, *_asked: object) -> Iterator[tuple[TopicInBag, int, bytes]]:
+        raise unreadable(bag.path, OSError(5, "Input/output error"))
+
+    monkeypatch.setattr(Bag, "messages", fail)
+    async with replayed(drive) as (app, pilot, _replay):
+        await pilot.press(key)
+        await until(pilot, lambda: "The recording cannot be read" in text_of(app))
+        assert "Input/output error" in text_of(app)
+        assert "ROS cannot be observed" not in text_of(app)
+
+
+async def test_a_damaged_place_is_told_when_it_is_come_to(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "walk", seconds=5000, hz=20)
+    file = bag / "walk.mcap"
+    wrong = bytearray(file.read_bytes())
+    wrong[len(wrong) // 3 : len(wrong) // 3 + 2000] = b"\xff" * 2000
+    file.write_bytes(wrong)
+    async with replayed(bag) as (app, pilot, replay):
+        assert "⚠ damaged" not in text_of(app)
+        replay.seek(4900.0)
+        await until(pilot, lambda: replay.state.position_s == 4900.0)
+        replay.seek(1600.0)
+        replay.step()
+        await until(pilot, lambda: "⚠ damaged" in text_of(app))
+        await until(pilot, lambda: app._notifications)
+        (told,) = app._notifications
+        assert "is damaged: messages lost: " in told.message
 
 
 async def test_leaving_lets_go_of_the_bag(drive: Path) -> None:

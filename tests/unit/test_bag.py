@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from io import BytesIO
 from pathlib import Path
 
 import pytest
+from mcap.reader import make_reader
 
 from graph.bag import open_bag
 from graph.bag_errors import BagError
@@ -131,14 +133,66 @@ def test_a_bag_cut_in_its_first_breath_is_empty_but_opens(tmp_path: Path) -> Non
         assert bag.length_s == 0.0
 
 
-def test_a_damaged_middle_is_a_word_when_it_is_come_to(tmp_path: Path, long_bag: bytes) -> None:
+def damaged(file: Path, long_bag: bytes, share: float = 1.0) -> None:
+    """Write the long bag, or its first part, with 2000 wrong bytes at a third of it."""
+    wrong = bytearray(long_bag[: int(len(long_bag) * share)])
+    middle = len(long_bag) // 3
+    wrong[middle : middle + 2000] = b"\xff" * 2000
+    file.write_bytes(wrong)
+
+
+def test_a_damaged_chunk_costs_that_chunk_and_is_told(tmp_path: Path, long_bag: bytes) -> None:
     file = write_bag(tmp_path / "walk") / "walk.mcap"
-    whole = bytearray(long_bag)
-    middle = len(whole) // 3
-    whole[middle : middle + 2000] = b"\xff" * 2000
-    file.write_bytes(whole)
-    with open_bag(tmp_path / "walk") as bag, pytest.raises(BagError, match="cannot be read"):
+    damaged(file, long_bag)
+    with open_bag(file) as bag:
+        assert bag.damage is None
+        stamps = [stamp for _topic, stamp, _raw in bag.messages()]
+        assert stamps == sorted(stamps)
+        assert stamps[-1] == bag.end_ns, "what comes after it is read"
+        lost = bag.messages_count - len(stamps)
+        assert 0 < lost < bag.messages_count / 2
         list(bag.messages())
+        assert f"messages lost: {lost}, damaged places: 1," in str(bag.damage), "counted once"
+
+
+def test_a_damaged_chunk_of_a_bag_without_an_end_costs_that_chunk(
+    tmp_path: Path, long_bag: bytes
+) -> None:
+    file = write_bag(tmp_path / "walk") / "walk.mcap"
+    file.write_bytes(long_bag[: int(len(long_bag) * 0.9)])
+    with open_bag(file) as bag:
+        whole = len(list(bag.messages()))
+    damaged(file, long_bag, 0.9)
+    with open_bag(file) as bag:
+        found = len(list(bag.messages()))
+        assert whole / 2 < found == bag.messages_count < whole
+        assert f"messages lost: {whole - found}, damaged places: 1," in str(bag.damage)
+        assert "was cut short" in str(bag.cut)
+
+
+def test_a_chunk_whose_own_head_is_damaged_is_left_out(tmp_path: Path, long_bag: bytes) -> None:
+    file = write_bag(tmp_path / "walk") / "walk.mcap"
+    summary = make_reader(BytesIO(long_bag)).get_summary()
+    assert summary is not None
+    place = summary.chunk_indexes[1].chunk_start_offset
+    wrong = bytearray(long_bag)
+    wrong[place : place + 40] = bytes(40)
+    file.write_bytes(wrong)
+    with open_bag(file) as bag:
+        found = len(list(bag.messages()))
+        assert f"messages lost: {bag.messages_count - found}," in str(bag.damage)
+
+
+def test_a_bag_of_which_the_first_chunk_is_damaged_names_what_nobody_can_name(
+    tmp_path: Path, long_bag: bytes
+) -> None:
+    file = write_bag(tmp_path / "walk") / "walk.mcap"
+    wrong = bytearray(long_bag[: int(len(long_bag) * 0.9)])
+    wrong[3000:5000] = bytes(2000)
+    file.write_bytes(wrong)
+    with open_bag(file) as bag:
+        assert bag.messages_count == len(list(bag.messages()))
+        assert "is damaged: messages lost: " in str(bag.damage)
 
 
 def test_several_files_of_one_bag_are_read_though_the_last_is_cut(

@@ -209,9 +209,8 @@ class GraphFrame(DeckScreen):
                 self.refresh_bindings()
             key = self.deck.keys_of(Housekeeping)[0]
             words = why_empty(
-                self.feed.update, self.trail.kind, self.listed.get(self.trail.kind, []),
-                running=self.feed.link is not None, all_key=key,
-            )  # fmt: skip
+                self.feed, self.trail.kind, self.listed.get(self.trail.kind, []), all_key=key
+            )
             self.query_one("#graph-words", Words).show(*(words if not shown else ("", "")))
             return
         if switcher.current != pane.id:

@@ -245,7 +245,7 @@ class TopicsScreen(TopicsPictures):
         if self.feed.link is None:
             return _("no lesson is running"), ""
         if update is not None and update.error:
-            return _("ROS cannot be observed"), said(update.error)
+            return self.feed.blind, said(update.error)
         if title.starting(self.deck):
             return _("no topics yet"), _("Nodes are starting.")
         listed = () if update is None else tuple(filter(self._is_listed, update.topics))

@@ -82,7 +82,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
     if feed.session is None:
         return [_("no lesson is running")]
     if update is not None and update.error:
-        return [_("ROS cannot be observed"), said(update.error)]
+        return [feed.blind, plain(said(update.error))]
     row = next((row for row in update.topics if row.name == TOPIC), None) if update else None
     if row is not None and row.publishers:
         said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))

@@ -10,20 +10,19 @@ from tui.widgets.graph_place import Kind
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from graph.data import GraphUpdate
+    from tui.feed import Feed
     from tui.widgets.graph_index import Entry
 
 
-def why_empty(
-    update: GraphUpdate | None, kind: Kind, listed: Sequence[Entry], *, running: bool, all_key: str
-) -> tuple[str, str]:
+def why_empty(feed: Feed, kind: Kind, listed: Sequence[Entry], *, all_key: str) -> tuple[str, str]:
     """Return headline and way out for a list that shows none of `listed`."""
-    if not running:
+    update = feed.update
+    if feed.link is None:
         return _("no lesson is running"), ""
     if update is None:
         return _("the graph is being looked at"), _("Nodes are starting.")
     if update.error:
-        return _("ROS cannot be observed"), said(update.error)
+        return feed.blind, said(update.error)
     if any(not entry.housekeeping for entry in listed):
         return _("nothing fits the filter"), _("Escape in the filter shows all again.")
     if listed:

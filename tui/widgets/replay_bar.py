@@ -87,6 +87,8 @@ class ReplayBar(Widget):
             paused_before = self._state is not None and self._state.paused
             self._state = state
             self.refresh()
+            if state.damage:
+                cast("DeckApp", self.app).sessions.tell_damage(state.damage)
             if state.paused != paused_before:
                 self.screen.refresh_bindings()
 
@@ -145,6 +147,8 @@ class ReplayBar(Widget):
         warning = self.get_visual_style("replay-bar--warn")
         if state.error:
             parts.append((" " + _("⚠ cannot be played on") + " ", warning))
+        elif state.damage:
+            parts.append((" " + _("⚠ damaged") + " ", warning))
         elif state.cut:
             parts.append((" " + _("⚠ cut short") + " ", warning))
         return Content.assemble(*parts)
