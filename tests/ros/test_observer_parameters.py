@@ -85,6 +85,24 @@ def set_them(watcher: Watcher, node: str = "/robot", **values: Any) -> SetResult
     return watcher.observer.set_parameters(node, values, timeout_s=30).result(40)
 
 
+def test_a_change_by_another_client_is_told(watcher: Watcher, node: Any) -> None:
+    """What a screen that shows them follows in order to read them anew."""
+    watcher.observer.follow(["/parameter_events"])
+    try:
+
+        def told() -> bool:
+            node.set_parameters([Parameter("gear", value=1)])
+            return any(
+                event["node"] == "/robot"
+                and [one["name"] for one in event["changed_parameters"]] == ["gear"]
+                for event in watcher.of("/parameter_events")
+            )
+
+        wait_until(told, "the event")
+    finally:
+        watcher.observer.follow(())
+
+
 def test_all_parameters_come_with_types_values_and_descriptors(watcher: Watcher) -> None:
     found = rows(watcher)
     assert found["speed"] == ParameterRow(

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from concurrent.futures import Future
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from textual.widgets import Input
 
-from graph.data import ParametersResult
+from graph.data import GraphUpdate, ParametersResult, Sample
 from tests.tui.graph_room import Room, opened
 from tests.tui.snapshots import settle
 from tui.screens.graph_parameter import ParameterDialog
+from tui.widgets.graph_parameters import PARAMETER_EVENTS
 
 NODE = "/sonar_front"
 
@@ -61,6 +63,51 @@ async def test_another_value_is_set_and_read_back(room: Room) -> None:
     await room.wait(lambda: room.app.screen is room.screen)
     assert room.graph.set_to == [(NODE, {"rate": "2.5"})]
     await room.wait(lambda: room.graph.asked_parameters == [NODE, NODE])
+
+
+def changed(room: Room, node: str) -> GraphUpdate:
+    """The graph in which a node tells that `rate` was set from outside."""
+    value = {"node": node, "changed_parameters": [{"name": "rate"}]}
+    event = Sample(PARAMETER_EVENTS, "rcl_interfaces/msg/ParameterEvent", 0.0, 0.0, 99, value)
+    return replace(room.graph.update, samples={PARAMETER_EVENTS: (event,)})
+
+
+async def test_a_change_from_outside_is_read_at_once(room: Room) -> None:
+    """`ros2 param set` in another window; what other nodes change asks this one nothing."""
+    assert PARAMETER_EVENTS in room.graph.followed
+    await room.press("p")
+    await room.wait_for("5 parameters")
+    await room.show(changed(room, "/camera"))
+    assert room.graph.asked_parameters == [NODE]
+    await room.show(changed(room, NODE))
+    assert room.graph.asked_parameters == [NODE, NODE]
+    await room.press("p")
+    await room.show(changed(room, NODE))
+    assert room.graph.asked_parameters == [NODE, NODE], "they are not shown"
+
+
+async def test_changes_faster_than_the_answers_are_read_once_more(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that asked anew at each of them would never see an answer."""
+    asked: list[Future[ParametersResult]] = []
+
+    def ask(_node: str) -> Future[ParametersResult]:
+        asked.append(Future())
+        return asked[-1]
+
+    monkeypatch.setattr(room.graph, "parameters", ask)
+    await room.press("p")
+    for _round in range(3):
+        await room.show(changed(room, NODE))
+    assert len(asked) == 1
+    asked[0].set_result(ParametersResult(NODE, (), "the first answer"))
+    await room.wait_for("the first answer")
+    await room.wait(lambda: len(asked) == 2)
+    asked[1].set_result(ParametersResult(NODE, (), "the second answer"))
+    await room.wait_for("the second answer")
+    await settle(room.pilot)
+    assert len(asked) == 2
 
 
 async def test_a_refusal_keeps_the_dialog_open_and_says_why(room: Room) -> None:

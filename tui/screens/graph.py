@@ -18,6 +18,7 @@ from tui.widgets.graph_action import ActionPane
 from tui.widgets.graph_index import chosen_of
 from tui.widgets.graph_map import GraphMap, middle_of
 from tui.widgets.graph_pane import GraphPane
+from tui.widgets.graph_parameters import PARAMETER_EVENTS
 from tui.widgets.graph_place import LISTED, Kind, Place
 from tui.widgets.graph_tabs import GraphTabs
 from tui.widgets.graph_type_tree import GraphTypeTree
@@ -45,8 +46,10 @@ class GraphScreen(GraphFrame):
         self.redraw()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show who is there now."""
+        """Show who is there now, and parameters that somebody has changed."""
         self.take(message.update)
+        if self.node_pane is not None and self.node_pane.shows_parameters:
+            self.node_pane.parameters.hear(message.update.samples.get(PARAMETER_EVENTS, ()))
 
     def on_status_changed(self, message: StatusChanged) -> None:
         """Show what processes have become."""

@@ -20,6 +20,7 @@ from tui.widgets.graph_list import GraphList
 from tui.widgets.graph_map import GraphMap, middle_of
 from tui.widgets.graph_node import NodePane
 from tui.widgets.graph_pane import GraphPane, Words
+from tui.widgets.graph_parameters import PARAMETER_EVENTS
 from tui.widgets.graph_place import LISTED, Kind
 from tui.widgets.graph_service import ServicePane
 from tui.widgets.graph_tabs import GraphTabs
@@ -162,6 +163,10 @@ class GraphFrame(DeckScreen):
         """Return the action that is shown."""
         here = self.trail.here
         return {here.name} if here is not None and here.kind is Kind.ACTION else set()
+
+    def follow_topics(self) -> set[str]:
+        """Return where nodes tell that a parameter has changed, shown now or in a moment."""
+        return {PARAMETER_EVENTS}
 
     def take(self, update: GraphUpdate | None) -> None:
         """Show this graph from now on."""

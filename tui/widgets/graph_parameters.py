@@ -17,16 +17,19 @@ from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from concurrent.futures import Future
 
     from textual.app import ComposeResult
 
-    from graph.data import ParameterRow, ParametersResult
+    from graph.data import ParameterRow, ParametersResult, Sample
     from tui.app import DeckApp
 
 ROOMY = 70
 """Cells from which on there are columns for type and limits."""
 TICK_S = 0.5
+PARAMETER_EVENTS = "/parameter_events"
+"""Where every node tells what was changed of its parameters, by whomever."""
 
 
 class GraphParameters(Vertical, Working):
@@ -46,6 +49,8 @@ class GraphParameters(Vertical, Working):
         self._result: ParametersResult | None = None
         self._asked_s: float | None = None
         self._question = 0
+        self._changed = False
+        """Whether somebody has changed one since the node was asked."""
 
     def compose(self) -> ComposeResult:
         """Title, words, table."""
@@ -91,14 +96,27 @@ class GraphParameters(Vertical, Working):
         self._node = node
         if graph is not None and node:
             self._question += 1
+            self._changed = False
             self._asked_s = clock.now()
             self.run_worker(self._take(graph.parameters(node), self._question), exit_on_error=False)
         self.redraw()
+
+    def hear(self, events: Iterable[Sample]) -> None:
+        """Read them anew if these messages of /parameter_events tell of this node."""
+        if not any(event.value.get("node") == self._node for event in events):
+            return
+        if self._asked_s is None:
+            self.read(self._node)
+        else:
+            # The answer that is awaited may be older; one asked anew each time might never come.
+            self._changed = True
 
     async def _take(self, future: Future[ParametersResult], question: int) -> None:
         result: Any = await asyncio.wrap_future(future)
         if question == self._question:
             self._result, self._asked_s = result, None
+            if self._changed:
+                self.read(self._node)
             self.redraw()
 
     def _tick(self) -> None:
