@@ -11,10 +11,10 @@ import re
 import sys
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from graph.fields import FieldType, parse
-from graph.types import load_message
+from graph.types import load_action, load_message
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -79,8 +79,17 @@ def _installed(type_name: str) -> str:
         path = Path(prefix, "share", package, kind, f"{name}.msg")
         if path.is_file():
             return path.read_text(encoding="utf-8", errors="replace").rstrip() + "\n"
-    fields: dict[str, str] = load_message(type_name).get_fields_and_field_types()
+    fields: dict[str, str] = _class(type_name).get_fields_and_field_types()
     return "".join(f"{_written(parse(kind))} {name}\n" for name, kind in fields.items())
+
+
+def _class(type_name: str) -> Any:  # noqa: ANN401 - generated, without a base class
+    """Return the class of a message, be it the inner part of an action's feedback."""
+    package, _kind, name = type_name.split("/")
+    action, _, part = name.rpartition("_")
+    if action and part == "Feedback":
+        return load_action(f"{package}/action/{action}").Feedback
+    return load_message(type_name)
 
 
 def _written(kind: FieldType) -> str:

@@ -25,5 +25,9 @@ def is_housekeeping(name: str) -> bool:
     Hidden names, those with a part that begins with an underscore, count as such: the inner topics
     of actions, the nodes of command line tools.
     """
-    parts = name.split("/")
-    return name in TOPICS or parts[-1] in SERVICES or any(part.startswith("_") for part in parts)
+    return name in TOPICS or name.rpartition("/")[2] in SERVICES or is_hidden(name)
+
+
+def is_hidden(name: str) -> bool:
+    """Tell whether a name has a part that begins with an underscore."""
+    return any(part.startswith("_") for part in name.split("/"))

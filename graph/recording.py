@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.recording_topics import RecordingTopics
+from graph.recording_topics import Choice, RecordingTopics
 from graph.words import say
 
 if TYPE_CHECKING:
@@ -81,12 +81,18 @@ class Recorder:
         discovery: str | tuple[str, ...],
         folder: Path,
         topics: Sequence[str] | None = None,
+        *,
+        hidden: bool = False,
+        images: bool = True,
     ) -> None:
-        """`topics`: None for all but ROS's own housekeeping, also those that appear later."""
+        """`topics`: None for all, also those that appear later.
+
+        With `hidden`, all has the inner topics of actions in it; without `images`, no pictures.
+        """
         self._domain = domain
         self._discovery = discovery
         self._folder = folder
-        self._wanted = None if topics is None else tuple(topics)
+        self._choice = Choice(None if topics is None else frozenset(topics), hidden, images)
         self._error = ""
         self._since_s = time.time()
         self._begun_s = time.monotonic()
@@ -171,7 +177,7 @@ class Recorder:
 
         ros = open_ros(self._domain, self._discovery, "recorder")
         try:
-            topics = RecordingTopics(ros.node, ros.name, self._wanted, writer)
+            topics = RecordingTopics(ros.node, ros.name, self._choice, writer)
             self._topics, self._writer = topics, writer
             self._take_turns(topics, writer)
             topics.close()

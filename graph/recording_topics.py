@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from graph.bag_metadata import BagTopic, qos_offer
 from graph.bag_types import definition, hash_of
 from graph.data import EndpointInfo
-from graph.housekeeping import is_housekeeping
+from graph.housekeeping import is_hidden
 from graph.qos import to_hear
 from graph.recording_tap import RecordingTap
 from graph.scan import full_name
@@ -22,18 +22,36 @@ if TYPE_CHECKING:
     from graph.recording_writer import Message, RecordingWriter
 
 
+IMAGES = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"})
+
+
+class Choice(NamedTuple):
+    """Which topics are to be recorded."""
+
+    topics: frozenset[str] | None = None
+    """None for all."""
+    hidden: bool = False
+    """Whether all are those with a name that begins with an underscore, too."""
+    images: bool = True
+    """Whether all are pictures, too."""
+
+    def takes(self, name: str, types: Sequence[str]) -> bool:
+        """Tell whether a topic is to be recorded."""
+        if self.topics is not None:
+            return name in self.topics
+        return (self.hidden or not is_hidden(name)) and (self.images or IMAGES.isdisjoint(types))
+
+
 class RecordingTopics:
     """All subscriptions of a recording; used by the recorder's thread alone."""
 
-    def __init__(
-        self, node: Node, own_name: str, wanted: Sequence[str] | None, writer: RecordingWriter
-    ) -> None:
-        """`wanted`: None for all but ROS's own."""
+    def __init__(self, node: Node, own_name: str, choice: Choice, writer: RecordingWriter) -> None:
+        """`own_name` is that of the node."""
         self.skipped: dict[str, str] = {}
         """Topic to why it cannot be recorded."""
         self._node = node
         self._own_name = own_name
-        self._wanted = None if wanted is None else frozenset(wanted)
+        self._choice = choice
         self._writer = writer
         self._taps: dict[str, RecordingTap] = {}
         self._publishers: dict[str, int] = {}
@@ -45,12 +63,12 @@ class RecordingTopics:
     def absent(self) -> tuple[str, ...]:
         """Return what was asked for by name and is neither recorded nor skipped."""
         known = self._taps.keys() | self.skipped.keys()
-        return tuple(sorted((self._wanted or frozenset()) - known))
+        return tuple(sorted((self._choice.topics or frozenset()) - known))
 
     def look(self) -> None:
         """Take up new topics, and follow publishers whose quality of service has changed."""
         for name, types in self._node.get_topic_names_and_types():
-            if self._wants(name):
+            if self._choice.takes(name, types):
                 count = self._node.handle.get_count_publishers(name)
                 if count and count != self._publishers.get(name):
                     self._publishers[name] = count
@@ -66,9 +84,6 @@ class RecordingTopics:
         """End all subscriptions."""
         for tap in self._taps.values():
             tap.close()
-
-    def _wants(self, name: str) -> bool:
-        return not is_housekeeping(name) if self._wanted is None else name in self._wanted
 
     def _tune(self, name: str, types: Sequence[str]) -> None:
         found = self._node.get_publishers_info_by_topic(name)

@@ -13,6 +13,8 @@ from graph.words import Words, say
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+FEEDBACK = "_FeedbackMessage"
+"""How the type of the messages on an action's feedback topic ends."""
 NAME_PARTS = 3
 """`std_msgs/msg/Float32`."""
 
@@ -38,8 +40,13 @@ class UnknownTypeError(Exception):
 def load_message(type_name: str) -> type[Any]:
     """Return the class of a message such as `std_msgs/msg/Float32`.
 
-    Raises UnknownTypeError, also when the package is there and its import fails.
+    So it does for the feedback of an action, `package/action/Name_FeedbackMessage`. Raises
+    UnknownTypeError, also when the package is there and its import fails.
     """
+    if "/action/" in type_name and type_name.endswith(FEEDBACK):
+        found: type[Any] = load_action(type_name.removesuffix(FEEDBACK)).Impl.FeedbackMessage
+        _import_type_support(found)
+        return found
     return _load(type_name, "msg")
 
 

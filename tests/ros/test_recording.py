@@ -22,6 +22,7 @@ from tf2_msgs.msg import TFMessage
 
 from graph import recording_tap
 from graph.bag import open_bag
+from graph.bag_decoding import bag_decoder
 from graph.bag_errors import BagError
 from graph.recording import Recorder
 from tests.ros.observing import Watcher, let_updates_come
@@ -33,6 +34,7 @@ from tests.ros.recorded import (
     row_of,
     wait_for_topic,
 )
+from tests.ros.told_actions import Served
 from tests.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
@@ -102,7 +104,8 @@ def test_the_metadata_tell_types_hashes_and_offers(ros_domain: int, tmp_path: Pa
 
     text = (tmp_path / "bag" / "metadata.yaml").read_text()
     found = yaml.safe_load(text)["rosbag2_bagfile_information"]
-    (topic,) = found["topics_with_message_count"]
+    topics = found["topics_with_message_count"]
+    (topic,) = (one for one in topics if one["topic_metadata"]["name"] == "/drive")
     assert found["storage_identifier"] == "mcap"
     assert found["message_count"] == topic["message_count"] == 1
     assert topic["topic_metadata"]["type"] == "ackermann_msgs/msg/AckermannDriveStamped"
@@ -125,8 +128,39 @@ def test_latched_messages_of_before_are_recorded_and_later_topics_taken_up(
         peer.say("/late", String(data="here"))
         recorded(recorder, "/late", 1)
         status = recorder.stop()
-    assert {row.name for row in status.topics} == {"/tf_static", "/late"}
+    assert {"/tf_static", "/late"} <= {row.name for row in status.topics}
     assert set(read_by_mcap(tmp_path / "bag")) == {"/tf_static", "/late"}
+
+
+def test_all_is_ros_own_topics_too_and_no_hidden_ones(ros_domain: int, tmp_path: Path) -> None:
+    plain = Recorder(ros_domain, "localhost", tmp_path / "plain", images=False)
+    whole = Recorder(ros_domain, "localhost", tmp_path / "whole", hidden=True)
+    with Peer(ros_domain) as peer:
+        served = Served(peer.node, "/go", reject=False, refuse_cancel=False)
+        feedback = served.kind.Impl.FeedbackMessage()
+        feedback.feedback.distance = 1.5
+        peer.publisher("/camera", Image)
+        plain.start()
+        whole.start()
+        wait_for_topic(plain, "/rosout")
+        wait_for_topic(plain, "/parameter_events")
+        wait_for_topic(whole, "/camera")
+        peer.node.get_logger().warning("too near")
+        recorded(plain, "/rosout", 1)
+        wait_for_topic(whole, "/go/_action/status")
+        peer.say("/go/_action/feedback", feedback)
+        recorded(whole, "/go/_action/feedback", 1)
+        left_out, taken = plain.stop(), whole.stop()
+        served.server.destroy()
+    names = {row.name for row in left_out.topics}
+    assert not [name for name in names if "_action" in name or name == "/camera"]
+    assert not {name for name in taken.skipped if "_action" in name}
+    with open_bag(tmp_path / "whole") as bag:
+        found = [
+            bag_decoder(topic.kind)(raw)
+            for topic, _stamp, raw in bag.messages(names=["/go/_action/feedback"])
+        ]
+    assert [message["feedback"] for message in found] == [{"distance": 1.5}]
 
 
 def test_a_message_has_the_time_it_was_sent_beside_that_of_its_arrival(

@@ -202,6 +202,12 @@ def _add_record(parser: Parser) -> None:
         "topics", nargs="*", metavar="TOPIC", help=_("what to record; without it all topics")
     )
     parser.add_argument(
+        "--hidden", action="store_true", help=_("hidden topics too: feedback and status of actions")
+    )
+    parser.add_argument(
+        "--no-images", dest="images", action="store_false", help=_("all topics without pictures")
+    )
+    parser.add_argument(
         "-o",
         "--output",
         metavar="FOLDER",

@@ -46,7 +46,9 @@ def record_command(options: Namespace) -> int:
     topics = [_topic(name) for name in options.topics]
     domain, discovery = _where(options.domain)
     folder = Path(options.output or f"deck-{time.strftime('%Y-%m-%d-%H-%M-%S')}")
-    recorder = Recorder(domain, discovery, folder, topics or None)
+    recorder = Recorder(
+        domain, discovery, folder, topics or None, hidden=options.hidden, images=options.images
+    )
     stop = threading.Event()
     for number in SIGNALS:
         signal.signal(number, lambda *_: stop.set())
