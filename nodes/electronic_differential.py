@@ -74,6 +74,14 @@ _RELEASED = Phrase(
     "The emergency stop is released; waiting for a new command",
     "Аварийная остановка снята; жду новой команды",
 )
+_NO_GATE = Phrase(
+    "Nobody publishes {topic}: the wheels stand. Deck's safety_stop does with gate: true, that of"
+    " the course does not; drive_topic: /drive in the profile drives without a gate",
+    "{topic} никто не публикует: колёса стоят. Это делает safety_stop из Deck с gate: true, узел из"
+    " курса этого не делает; без шлюза ехать можно с drive_topic: /drive в профиле",
+)
+_GATE_WITHIN_S = 5.0
+"""Which is long for a gate that starts with the others."""
 
 _TOLD_M_S, _TOLD_RAD = 0.05, 0.05
 """Smaller changes of speed and steering are not told."""
@@ -132,6 +140,10 @@ class ElectronicDifferential(LessonNode):
         self._timer = self.every(1.0 / self.number("rate"), self._repeat)
         self._deadline = self.every(1.0, self._too_late)
         self._await_next()
+        self._gate_look = self.every(_GATE_WITHIN_S, self._miss_gate)
+        if topic == DRIVE:
+            # Where no gate is meant to be, silence is a person who has not spoken yet.
+            self._gate_look.cancel()
         self.say.info(_STARTED, topic=topic)
 
     def parameters_changed(self) -> None:
@@ -218,6 +230,12 @@ class ElectronicDifferential(LessonNode):
             self.say.warn(_SILENT, max_age=self.number("max_age_s"))
             self._command = STOP
             self._publish()
+
+    def _miss_gate(self) -> None:
+        self._gate_look.cancel()
+        topic = self.text("drive_topic")
+        if not self.count_publishers(topic):
+            self.say.warn(_NO_GATE, topic=topic)
 
     def _emergency_changed(self, active: bool) -> None:
         self._command = STOP
