@@ -34,6 +34,9 @@ def _english_after() -> Iterator[None]:
         (["./run"], "open", ["./run"]),
         (["mylist", "run"], "open", ["mylist", "run"]),
         (["--set", "run", "list"], "list", ["--set", "run"]),
+        (["help"], "open", ["--help"]),
+        (["--lang", "ru", "help", "run"], "run", ["--lang", "ru", "--help"]),
+        (["run", "help"], "run", ["help"]),
     ],
 )
 def test_the_command_word_is_found(words: list[str], command: str, rest: list[str]) -> None:
@@ -86,6 +89,36 @@ def test_the_help_of_all_names_every_command(capsys: pytest.CaptureFixture[str])
     assert main(["--help"]) == 0
     text = capsys.readouterr().out
     assert all(f"\n  {command:<8} " in text for command in COMMANDS)
+
+
+@pytest.mark.parametrize(("words", "usage"), [(["help"], "deck"), (["help", "run"], "deck run")])
+def test_help_may_be_asked_for_as_a_command(
+    words: list[str], usage: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 0
+    asked = capsys.readouterr().out
+    assert asked.startswith(f"usage: {usage} ")
+    assert main([*words[1:], "--help"]) == 0
+    assert capsys.readouterr().out == asked
+
+
+@pytest.mark.parametrize(("typed", "meant"), [("lst", "list"), ("doktor", "doctor")])
+def test_a_mistyped_command_is_told_with_the_one_that_was_meant(
+    typed: str, meant: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([typed]) == 2
+    assert capsys.readouterr().err == (
+        f"no profile and no command '{typed}'; did you mean `deck {meant}`?\n"
+    )
+    assert main([typed, "--lang", "ru"]) == 2
+    assert f"возможно, `deck {meant}`" in capsys.readouterr().err
+
+
+def test_a_mistyped_profile_is_still_told_with_profiles(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["09-brian"]) == 2
+    assert "near it: 09-brain" in capsys.readouterr().err
 
 
 def test_without_a_terminal_a_profile_must_be_named(capsys: pytest.CaptureFixture[str]) -> None:

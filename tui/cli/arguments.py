@@ -32,6 +32,8 @@ COMMANDS = {
     "replay": N_("the screen on a recording, with no robot at all"),
     "doctor": N_("what is installed, which ROS, which ports, and how to mend what is missing"),
 }
+HELP = "help"
+"""`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
 WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--lang")
 """Options that may stand before the command word."""
 
@@ -69,6 +71,9 @@ def split(arguments: Sequence[str]) -> tuple[str, list[str]]:
             skip = True
         elif word in COMMANDS:
             return word, [*arguments[:index], *arguments[index + 1 :]]
+        elif word == HELP:
+            command, rest = split([*arguments[:index], *arguments[index + 1 :]])
+            return command, [*rest, "--help"]
         elif not word.startswith("-"):
             break
     return OPEN, list(arguments)

@@ -7,11 +7,15 @@ import sys
 from typing import TYPE_CHECKING
 
 from launcher.catalog import find_profile
+from launcher.errors import ProfileNotFoundError, UsageError
+from launcher.words import say
+from tui.cli.arguments import COMMANDS
 from tui.cli.output import say_error, write
 from tui.i18n import _
 
 if TYPE_CHECKING:
     from argparse import Namespace
+    from pathlib import Path
 
 
 def open_command(options: Namespace) -> int:
@@ -21,18 +25,41 @@ def open_command(options: Namespace) -> int:
 
         write(f"deck {metadata.version('deck-robot')}")
         return 0
+    profile = None if options.profile is None else _profile_or_command(options.profile)
     if not has_terminal():
         return _without_screen(options)
     from tui.app import run_screen
 
     return run_screen(
-        None if options.profile is None else find_profile(options.profile),
+        profile,
         hardware=options.hardware,
         overrides=tuple(options.overrides),
         domain=options.domain,
         lang=options.lang,
         attach=None,
     )
+
+
+def _profile_or_command(name: str) -> Path:
+    """Return the file of the profile; what is none may be a mistyped command word.
+
+    Raises:
+        UsageError: if there is no such profile; it names the command that was probably meant.
+    """
+    try:
+        return find_profile(name)
+    except ProfileNotFoundError as error:
+        from difflib import get_close_matches  # Rarely needed, and slow to import.
+
+        command = get_close_matches(name, COMMANDS, n=1)
+        if not command or error.near:
+            raise
+        words = say(
+            "no profile and no command {name!r}; did you mean `deck {command}`?",
+            name=name,
+            command=command[0],
+        )
+        raise UsageError(words) from error
 
 
 def attach_command(options: Namespace) -> int:
