@@ -15,6 +15,7 @@ from tests.tui.graph_room import Room, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import SERVICES, graph_update
 from tui.widgets.graph_place import Kind, Place
+from tui.widgets.key_bar import KeyBar
 
 SERVICE, ADD = "/set_head_position", "example_interfaces/srv/AddTwoInts"
 ACTION, DRIVE = "/drive_to_point", "deck_interfaces/action/DriveToPoint"
@@ -56,6 +57,29 @@ async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: R
     assert service.graph.called == [(SERVICE, ADD, {"a": 30, "b": -10})]
     await service.wait_for("sum: 1")
     assert "a 30, b -10 → sum 1" in service.seen()
+
+
+async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
+    async with opened() as room:
+        await room.screen.go(Place(Kind.SERVICE, SERVICE))
+        await room.wait_for("✓ fits ")
+        assert "tab Fill in" in footer(room)
+        await room.press("tab")
+        pane = room.screen.ask_pane
+        assert pane is not None
+        assert room.screen.focused is pane.form.editor
+        assert "Fill in" not in footer(room)
+        await room.press(*"1234567", "enter", "8")
+        assert pane.form.text.startswith("1234567\n8")
+        assert room.app.screen is room.screen
+        assert room.screen.trail.here == Place(Kind.SERVICE, SERVICE)
+        await room.press("escape")
+        assert room.screen.is_in_list
+
+
+def footer(room: Room) -> str:
+    """Return the keys that are shown."""
+    return str(room.screen.query_one(KeyBar).render())
 
 
 async def test_a_wrong_request_is_not_sent(service: Room) -> None:

@@ -242,8 +242,31 @@ class Back(GraphAction):
         target.go_back()
 
 
+class FillIn(GraphAction):
+    """Into the form, past the names above it that lead elsewhere."""
+
+    id = "graph.fill_in"
+    key = "tab"
+    title = N_("Fill in")
+    tooltip = N_("Go into the form of the service or action; Escape comes back to the list.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def possible(cls, target: GraphScreen) -> bool | None:
+        """Only in the list, beside a form."""
+        return target.ask_pane is not None and target.shows_pane and target.is_in_list
+
+    @classmethod
+    async def run(cls, target: GraphScreen) -> None:
+        """Go to its first line."""
+        if target.ask_pane is not None:
+            target.ask_pane.first().focus()
+
+
 GRAPH_ACTIONS = (
     Filter,
+    FillIn,
     Map,
     Parameters,
     SaveParameters,

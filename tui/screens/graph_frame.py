@@ -154,6 +154,11 @@ class GraphFrame(DeckScreen):
         return pane is not None and pane.shows_parameters and self.shows_pane
 
     @property
+    def is_in_list(self) -> bool:
+        """Whether keys go to the list of names."""
+        return self.focused is self.names
+
+    @property
     def ask_pane(self) -> AskPane | None:
         """The detail in front, if something can be asked there."""
         pane = self.pane
