@@ -8,12 +8,14 @@ nodes alone. `deck run` starts from nothing; in the list of lessons Deck has had
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import signal
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -130,9 +132,13 @@ def by_deck(profile: Profile) -> Iterator[Started]:
 
 @contextmanager
 def by_picker(profile: Profile) -> Iterator[Started]:
-    """Press Enter in the list of lessons, where lesson 9 is the one offered."""
+    """Press Enter in the list of lessons, which opens on this one as if it was the last."""
     argv = [sys.executable, "-m", "tui", "--domain", str(profile.domain), "--lang", "en"]
-    terminal = Terminal(argv, 120, 40, environment())
+    config = tempfile.TemporaryDirectory()
+    settings = Path(config.name) / "deck" / "settings.json"
+    settings.parent.mkdir()
+    settings.write_text(json.dumps({"lesson": profile.path.stem}))
+    terminal = Terminal(argv, 120, 40, {**environment(), "XDG_CONFIG_HOME": config.name})
     try:
         terminal.wait_for(profile.title["en"])
         time.sleep(READING_S)
@@ -144,6 +150,7 @@ def by_picker(profile: Profile) -> Iterator[Started]:
         terminal.press("ctrl+q")
         terminal.process.wait(30)
         terminal.close()
+        config.cleanup()
 
 
 STARTERS = {SHELL: by_shell, DECK: by_deck, PICKER: by_picker}

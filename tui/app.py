@@ -100,6 +100,8 @@ class DeckApp(App[int], Acting):
         self.strangers = Strangers()
         self.recording = Recording(self)
         self.nap = Nap()
+        self.last_lesson = ""
+        """The profile that was started last, where the list of lessons begins."""
         self._harmless = Harmless()
         self._typed = Typed(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
@@ -157,6 +159,10 @@ class DeckApp(App[int], Acting):
             module, made = SCREENS[name]
             self.install_screen(getattr(import_module(module), made)(), name)
         return self.get_screen(name)
+
+    def lesson_opened(self, name: str) -> None:
+        """Take note of the profile that has been started."""
+        self.last_lesson = name
 
     async def forget_screens(self) -> None:
         """Take away the screens of a session that is over."""

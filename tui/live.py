@@ -58,6 +58,7 @@ class LiveApp(DeckApp):
         if self._settings.theme:
             self.theme = self._settings.theme
         self.set_keymap(self._settings.keys)
+        self.last_lesson = self._settings.lesson
         loop = asyncio.get_running_loop()
         for number in SIGNALS:
             loop.add_signal_handler(number, self.desert, 128 + number)
@@ -90,6 +91,11 @@ class LiveApp(DeckApp):
         """Remember the language."""
         super().speak(code)
         self._remember(language=code)
+
+    def lesson_opened(self, name: str) -> None:
+        """Remember the lesson: the list opens on it the next time."""
+        super().lesson_opened(name)
+        self._remember(lesson=name)
 
     def _remember(self, **values: str) -> None:
         changed: Any = replace(self._settings, **values)  # type: ignore[arg-type]

@@ -108,6 +108,8 @@ class Sessions:
             return
         finally:
             self.opening = ""
+        if order.profile is not None:
+            app.lesson_opened(link.session.name)
         app.brake.forget()
         app.strangers.forget()
         app.feed.connect(link, self.pad.observe(link.session))

@@ -1,8 +1,8 @@
-"""What a person has settled for good: theme, language and keys, in a small JSON file.
+"""What outlasts a run: theme, language, keys, and the last lesson, in a small JSON file.
 
 `$XDG_CONFIG_HOME/deck/settings.json`, by default under `~/.config`::
 
-    {"theme": "textual-light", "language": "ru", "keys": {"node.restart": "f7"}}
+    {"theme": "textual-light", "language": "ru", "keys": {"node.restart": "f7"}, "lesson": "05-tf2"}
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ class Settings:
     language: str = ""
     keys: dict[str, str] = field(default_factory=dict)
     """Binding id to keys, comma-separated."""
+    lesson: str = ""
+    """Name of the profile that was opened last."""
 
 
 def settings_path() -> Path:
@@ -98,6 +100,11 @@ def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collect
             found = _keys_problem(value, actions())
             if found:
                 return found
+        elif name == "lesson":
+            if not isinstance(value, str):
+                return _("lesson: expected the name of a profile, such as {example}").format(
+                    example='"05-tf2"'
+                )
         elif value not in (known_values := sorted(themes if name == "theme" else LANGUAGES)):
             known = ", ".join(known_values)
             return _("{name}: no {value!r}; there are: {known}").format(

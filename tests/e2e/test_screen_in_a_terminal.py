@@ -21,9 +21,11 @@ SCREENS = {
 """Function key to what stands on the screen that it opens."""
 
 
-def test_enter_starts_lesson_nine_space_holds_it_and_q_leaves_nothing_running(deck: Deck) -> None:
+def test_enter_starts_a_lesson_space_holds_it_and_q_leaves_nothing_running(deck: Deck) -> None:
     terminal = deck.open("--lang", "en")
-    terminal.wait_for("One screen instead of five terminals")
+    terminal.wait_for("Starts 1 node")
+    terminal.press("end", "up", "up")
+    terminal.wait_for("Starts 8 nodes")
     terminal.press("enter")
     terminal.wait_for("8/8")
     assert len(marked.nodes(deck.mark)) == 8

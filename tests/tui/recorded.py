@@ -128,12 +128,14 @@ class RecordedPad:
     graph: GraphLink = field(default_factory=RecordedGraph)
     sessions: list[SessionInfo] = field(default_factory=list)
     """What runs in the background already."""
+    known: list[Lesson] = field(default_factory=lambda: LESSONS)
+    """The lessons."""
     refusal: Exception | None = None
     """Set: opening fails by this."""
     orders: list[Order] = field(default_factory=list)
 
     async def lessons(self) -> list[Lesson]:
-        return LESSONS
+        return self.known
 
     async def running(self) -> list[SessionInfo]:
         return self.sessions

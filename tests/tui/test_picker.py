@@ -16,6 +16,7 @@ from launcher.words import say
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tui.app import DeckApp
 from tui.orders import Order
 from tui.screens.domain_taken import DomainTakenScreen
 from tui.screens.picker import PickerScreen
@@ -49,7 +50,7 @@ def about(screen: PickerScreen) -> str:
 
 @every_look
 def test_picker_looks(look: Look, snap_compare: SnapCompare) -> None:
-    """Lessons with their numbers, lesson 9 chosen and described, the broken profile marked ✗."""
+    """Lessons with their numbers, the first chosen and described, the broken profile marked ✗."""
     assert snap_compare(look.app("picker"), terminal_size=look.size, run_before=look.settle)
 
 
@@ -62,15 +63,49 @@ def test_picker_with_a_session_in_the_background_looks(
     assert snap_compare(look.app("picker", pad), terminal_size=look.size, run_before=look.settle)
 
 
-async def test_enter_starts_lesson_nine() -> None:
+async def test_enter_starts_the_first_lesson_for_a_newcomer() -> None:
     pad = RecordedPad()
     async with opened(pad, order=PICK) as (app, pilot):
         assert isinstance(app.screen, PickerScreen)
         await pilot.press("enter")
         await pilot.pause()
-        lesson_9 = next(lesson for lesson in LESSONS if lesson.name == "09-brain")
-        assert pad.orders == [PICK._replace(profile=lesson_9.path)]
+        assert pad.orders == [PICK._replace(profile=LESSONS[0].path)]
         assert app.feed.session is SESSION
+
+
+async def test_the_list_comes_back_on_the_lesson_that_was_opened_last() -> None:
+    pad = RecordedPad()
+    async with opened(pad, order=PICK) as (app, pilot):
+        await pilot.press("down", "down", "enter")
+        await settle(pilot)
+        assert app.last_lesson == SESSION.name == "09-brain"
+        await pilot.press("f8")
+        await settle(pilot)
+        assert isinstance(app.screen, PickerScreen)
+        assert app.screen.query_one(Rows).chosen == "profiles/09-brain.yaml"
+
+
+@pytest.mark.parametrize("last", ["00", "12"])
+async def test_the_whole_list_is_seen_at_80x24_whichever_lesson_is_chosen(last: str) -> None:
+    many = [LESSONS[0]._replace(name=f"{at:02}", path=Path(f"{at:02}.yaml")) for at in range(13)]
+    app = DeckApp(RecordedPad(known=many), PICK, "deck")
+    app.last_lesson = last
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(pilot)
+        assert shown(app).count("The first node") == 13 + 1
+        assert "Look at what runs" in shown(app)
+
+
+async def test_the_first_lesson_scrolls_to_the_heading_above_it() -> None:
+    async with opened(size=(80, 12), order=PICK) as (app, pilot):
+        await pilot.press("end", "home")
+        await settle(pilot)
+        assert "Look at what runs" in shown(app)
+
+
+def shown(app: DeckApp) -> str:
+    """Return what is on the screen."""
+    return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
 
 
 async def test_another_lesson_is_chosen_by_keys_and_told_about() -> None:
@@ -129,7 +164,7 @@ async def test_a_domain_that_is_taken_is_told_before_and_another_is_offered() ->
         assert isinstance(app.screen, DomainTakenScreen)
         words = str(app.screen.words())
         assert "01-hello: ann on pts/2, supervisor 4100" in words
-        assert "Domain 43 is free: 09-brain can start in it." in words
+        assert "Domain 43 is free: 01-hello can start in it." in words
         pad.refusal = None
         await pilot.press("enter")
         await settle(pilot)
@@ -204,4 +239,4 @@ async def test_all_words_change_with_the_language() -> None:
     async with opened(order=PICK) as (app, pilot):
         await pilot.press("f9")
         await pilot.pause()
-        assert "Запускает 8 узлов" in about(app.screen)
+        assert "Запускает 1 узел" in about(app.screen)

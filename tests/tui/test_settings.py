@@ -26,7 +26,7 @@ def test_without_a_file_nothing_is_settled(tmp_path: Path) -> None:
 
 def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
     path = tmp_path / "deck" / "settings.json"
-    settings = Settings("textual-light", "ru", {"node.restart": "f7"})
+    settings = Settings("textual-light", "ru", {"node.restart": "f7"}, "05-tf2")
     save(path, settings)
     assert read(path) == settings
     assert [file.name for file in path.parent.iterdir()] == ["settings.json"]
@@ -37,11 +37,12 @@ def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
     [
         ('{"theme": ', "settings.json:1:11: "),
         ("[]", "expected an object"),
-        ('{"colour": "red"}', "unknown setting 'colour'; there are: theme, language, keys"),
+        ('{"colour": "red"}', "unknown setting 'colour'; there are: theme, language, keys, lesson"),
         ('{"theme": "pink"}', "theme: no 'pink'; there are: textual-dark, textual-light"),
         ('{"language": "fr"}', "language: no 'fr'; there are: en, ru"),
         ('{"theme": 7}', "theme: no 7"),
         ('{"theme": []}', "theme: no []"),
+        ('{"lesson": 5}', "lesson: expected the name of a profile"),
         ('{"keys": ["f7"]}', "keys: expected an object"),
         ('{"keys": {"node.dance": "f7"}}', "no action 'node.dance'"),
         ('{"keys": {"node.restart": 7}}', 'node.restart: expected a key such as "f7"'),

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from tui.messages import LanguageChanged
     from tui.orders import Lesson, Order
 
-FIRST = "09-brain"
-"""The lesson that is ready to be started by Enter."""
 RUNNING = "running:"
 WATCHED = "watch:"
 """The row for what others have started."""
@@ -79,15 +77,18 @@ class PickerScreen(Screen[None], Acting, Working):
     DEFAULT_CSS = """
     PickerScreen {
         #picker { height: 1fr; layout: vertical; }
-        #lessons { height: 2fr; }
-        #about { height: 1fr; min-height: 9; padding: 0 2; border-top: solid $panel; }
+        #lessons { height: auto; max-height: 16; }
+        #about { height: 1fr; min-height: 5; padding: 0 2; border-top: solid $panel; }
         #about-text { height: auto; }
         &.-home #picker, &.-wide #picker { layout: horizontal; }
-        &.-home #lessons, &.-wide #lessons { width: 5fr; height: 1fr; margin: 1 1; }
+        &.-home #lessons, &.-wide #lessons {
+            width: 5fr; height: 1fr; max-height: 100%; margin: 1 1;
+        }
         &.-home #about, &.-wide #about {
             width: 4fr; height: 1fr; padding: 2 3; border-top: none; border-left: solid $panel;
         }
         &.-flat #about { display: none; }
+        &.-flat #lessons { height: 1fr; max-height: 100%; margin: 0; }
     }
     """
 
@@ -146,11 +147,12 @@ class PickerScreen(Screen[None], Acting, Working):
             rows.choose(self._offered)
 
     def _first(self) -> str:
-        """Return the row to begin with: what runs already, else lesson 9."""
+        """Return the row to begin with: what runs, the lesson of the last time, or the first."""
         if self._sessions:
             return f"{RUNNING}{self._sessions[0].name}"
-        named = (_key(lesson) for lesson in self._lessons if lesson.name == FIRST)
-        return next(named, "")
+        last = self.deck.last_lesson
+        named = [_key(lesson) for lesson in self._lessons if lesson.name == last]
+        return next(iter(named or map(_key, self._lessons)), "")
 
     def redraw(self) -> None:
         """Draw everything in the language spoken now."""

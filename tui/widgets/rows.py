@@ -231,6 +231,9 @@ class Rows(OneStyle, ScrollView, can_focus=True):
     def _bring_into_view(self, index: int) -> None:
         top, rows = self.scroll_offset.y, max(1, self.size.height - self._top)
         target = min(index, max(top, index - rows + 1))
+        if index < rows and not any(row.key for row in self._rows[:index]):
+            # What stands above the first row is its heading.
+            target = 0
         if target != top:
             # Rows that have just come have no scroll bar yet, without which nothing would scroll.
             self.scroll_to(y=target, animate=False, immediate=True, force=True)
