@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from launcher.catalog import list_profiles
 from launcher.profile import load_profile
+from launcher.profile_model import NodeDocument, Panel, ProfileDocument
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.cli.arguments import COMMANDS
@@ -44,12 +46,22 @@ def test_every_command_shown_exists(readme: str) -> None:
     assert shown | {"ps", "logs", "attach", "down"} <= set(COMMANDS)
 
 
-@pytest.mark.parametrize("page", [*READMES, "SECURITY.md"])
+@pytest.mark.parametrize(
+    "page", [*READMES, "SECURITY.md", "docs/profiles.md", "docs/profiles.ru.md"]
+)
 def test_every_file_linked_is_there(page: str) -> None:
     links = re.findall(r"\]\(((?!https?:)[^)#]+)", (ROOT / page).read_text())
     assert links
     for link in links:
-        assert (ROOT / link).exists(), link
+        assert (ROOT / page).parent.joinpath(link).exists(), link
+
+
+@pytest.mark.parametrize("page", ["docs/profiles.md", "docs/profiles.ru.md"])
+def test_the_page_on_profiles_tells_every_key_and_panel(page: str) -> None:
+    text = (ROOT / page).read_text()
+    keys = {*ProfileDocument.model_fields, *NodeDocument.model_fields} - {"steps", "warm"}
+    assert not [key for key in keys if f"`{key}`" not in text]
+    assert not [panel for panel in get_args(Panel) if f"`{panel}`" not in text]
 
 
 @pytest.mark.parametrize(
