@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from functools import partial
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual.app import App, SystemCommand
+from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.events import Key, Paste
 from textual.widget import Widget
 
 from text.plain import plain, plain_lines
-from tui.actions import REGISTRY, Acting, Action, bindings, bound
+from tui.actions import REGISTRY, Acting, Action, bindings
 from tui.actions.app import APP_ACTIONS, EmergencyStop
 from tui.actions.recording import RECORDING_ACTIONS
 from tui.actions.replay import REPLAY_ACTIONS
@@ -22,7 +21,7 @@ from tui.brake import Brake
 from tui.faults import Faults
 from tui.feed import Feed, GraphReady
 from tui.harmless import Harmless
-from tui.i18n import LANGUAGES, NAMES, _, language, set_language
+from tui.i18n import LANGUAGES, _, language, set_language
 from tui.messages import EmergencyChanged, LanguageChanged
 from tui.nap import Nap
 from tui.orders import Order
@@ -30,7 +29,7 @@ from tui.recording import Recording
 from tui.screens.opening import OpeningScreen
 from tui.sessions import Sessions
 from tui.strangers import Strangers
-from tui.themes import CYCLE, HIGH_CONTRAST, after
+from tui.themes import HIGH_CONTRAST, after
 from tui.typed import Typed
 from tui.widgets.replay_bar import ReplayBar
 
@@ -270,21 +269,6 @@ class DeckApp(App[int], Acting):
     def key_text(self, key: str) -> str:
         """Return how a key is written."""
         return self.get_key_display(Binding(key, ""))
-
-    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """Fill the palette from the actions that are possible now."""
-        targets = ((screen, bound(screen)), (self, bound(self)))
-        for target, actions in targets:
-            for action in actions:
-                if action.palette and action.possible(target):
-                    run = partial(action.run, target)
-                    yield SystemCommand(_(action.label(target)), _(action.tooltip), run)
-        for code, name in NAMES.items():
-            yield SystemCommand(name, _("Speak this language."), partial(self.speak, code))
-        for theme in sorted(self.available_themes):
-            words = _("Theme: {name}").format(name=theme)
-            take = partial(setattr, self, "theme", theme)
-            yield SystemCommand(words, _("Take these colours."), take, theme in CYCLE)
 
     def show_palette(self) -> None:
         """Open the palette in the language spoken now."""

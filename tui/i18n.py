@@ -46,11 +46,13 @@ def set_language(code: str) -> None:
     if code not in LANGUAGES:
         raise ValueError(f"no language {code!r}: choose {' or '.join(LANGUAGES)}")
     _language = code
-    _catalogue = (
-        _gettext.NullTranslations()
-        if code == "en"
-        else _gettext.translation(DOMAIN, LOCALE, [code], fallback=True)
-    )
+    _catalogue = _catalogue_of(code)
+
+
+def _catalogue_of(code: str) -> _gettext.NullTranslations:
+    if code == "en":
+        return _gettext.NullTranslations()
+    return _gettext.translation(DOMAIN, LOCALE, [code], fallback=True)
 
 
 def language() -> str:
@@ -61,6 +63,11 @@ def language() -> str:
 def _(message: str) -> str:
     """Return `message` in the language spoken now."""
     return _catalogue.gettext(message) if message else ""
+
+
+def in_every_language(message: str) -> tuple[str, ...]:
+    """Return `message` as each of `LANGUAGES` has it; what is marked by `N_` is looked for so."""
+    return tuple(_catalogue_of(code).gettext(message) for code in LANGUAGES)
 
 
 def ngettext(singular: str, plural: str, number: int) -> str:

@@ -165,43 +165,6 @@ async def test_help_does_not_cover_the_dialog_that_goes_by_itself() -> None:
         await pilot.press("q")
 
 
-async def test_the_palette_finds_an_action_by_name_and_does_it() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        await pilot.press("down", "ctrl+p")
-        await pilot.pause()
-        await pilot.press(*"restart")
-        for _round in range(100):
-            await pilot.pause(0.02)
-            if len(app.screen.query_one("CommandList").options) == 2:
-                break
-        await pilot.press("enter", "enter")
-        for _round in range(100):
-            await pilot.pause(0.02)
-            if pad.link.asked:
-                break
-        assert pad.link.asked == [("restart", "camera")]
-
-
-async def test_the_palette_says_when_nothing_is_called_that() -> None:
-    async with opened() as (app, pilot):
-        app.speak("ru")
-        await pilot.press("ctrl+p", *"zzqq")
-        for _round in range(100):
-            await pilot.pause(0.02)
-            screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-            if "Ничего с таким названием нет." in screen:
-                break
-        assert "Ничего с таким названием нет." in screen
-
-
-async def test_the_palette_offers_only_what_is_possible() -> None:
-    async with opened() as (app, _pilot):
-        titles = {command.title for command in app.get_system_commands(app.screen)}
-        assert {"Restart", "STOP", "Русский", "Theme: textual-light"} <= titles
-        assert "Release" not in titles
-
-
 async def test_a_keymap_changes_key_footer_and_help() -> None:
     pad = RecordedPad()
     async with opened(pad) as (app, pilot):

@@ -37,7 +37,12 @@ class Action(Generic[Target]):
     own are on their way to the widget that had the focus.
     """
     palette: ClassVar[bool] = True
-    """Whether the palette offers it."""
+    """Whether the palette offers it where it can be done."""
+    from_elsewhere: ClassVar[bool] = False
+    """Whether the palette does it from another screen too, else it only goes there.
+
+    For what changes nothing but what is looked at: the rest would act on what nobody sees.
+    """
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()

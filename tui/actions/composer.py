@@ -60,6 +60,7 @@ class Templates(ComposerAction):
     title = N_("Templates")
     tooltip = N_("Begin with an example: right ones and wrong ones.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: ComposerScreen) -> None:
@@ -103,6 +104,7 @@ class NextProblem(ComposerAction):
     key = "f12"
     title = N_("Next problem")
     tooltip = N_("Put the cursor where the next thing is wrong.")
+    from_elsewhere = True
 
     @classmethod
     def possible(cls, target: ComposerScreen) -> bool | None:

@@ -149,6 +149,7 @@ class Severity(DeckAction):
     key = "l,д"
     title = N_("Severity")
     tooltip = N_("Leave out the least severe lines that are shown; after FATAL comes all.")
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: LessonDeck) -> None:
@@ -163,6 +164,7 @@ class HearAll(DeckAction):
     key = "a,ф"
     title = N_("Whole log")
     tooltip = N_("Let every node be heard, at every severity.")
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: LessonDeck) -> None:
@@ -178,6 +180,7 @@ class TurnPage(DeckAction):
     title = N_("More panels")
     tooltip = N_("Show the panels that have no room on this page.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:
@@ -199,6 +202,7 @@ class WriteCommand(DeckAction):
     tooltip = N_("Write a word to /ai_command: forward, left, right, back, stop. Escape leaves.")
     footer = True
     priority = True
+    from_elsewhere = True
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:

@@ -36,6 +36,7 @@ class OneWay(DevicesAction):
     title = N_("In/out")
     tooltip = N_("Show only what comes from the device, only what goes to it, or both.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: DevicesScreen) -> None:
@@ -51,6 +52,7 @@ class OnlyBad(DevicesAction):
     title = N_("Only bad")
     tooltip = N_("Show only noise and frames whose check failed, or all.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     def label(cls, target: DevicesScreen) -> str:
@@ -71,6 +73,7 @@ class Hex(DevicesAction):
     title = N_("Hex")
     tooltip = N_("Show the bytes of lines of text in hex, or as text.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     def label(cls, target: DevicesScreen) -> str:

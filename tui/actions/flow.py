@@ -14,9 +14,13 @@ if TYPE_CHECKING:
 class FlowAction(Action["FlowScreen"]):
     """Something about the timeline."""
 
+    from_elsewhere = True
+
 
 class _Chosen(FlowAction):
     """Something about the chosen step."""
+
+    from_elsewhere = False
 
     @classmethod
     def possible(cls, target: FlowScreen) -> bool | None:

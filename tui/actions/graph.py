@@ -24,6 +24,7 @@ class Filter(GraphAction):
     tooltip = N_("Show only what has the words that you type in its name or type.")
     footer = True
     priority = True
+    from_elsewhere = True
 
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
@@ -43,6 +44,7 @@ class NextKind(GraphAction):
     key = "right"
     title = N_("Next kind")
     tooltip = N_("List the next kind: nodes, services, actions, types.")
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: GraphScreen) -> None:
@@ -57,6 +59,7 @@ class PreviousKind(GraphAction):
     key = "left"
     title = N_("Previous kind")
     tooltip = N_("List the kind before: types, actions, services, nodes.")
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: GraphScreen) -> None:
@@ -72,6 +75,7 @@ class Map(GraphAction):
     title = N_("Map")
     tooltip = N_("Draw the chosen node with those that it talks to; arrows walk, Enter goes on.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     def label(cls, target: GraphScreen) -> str:
@@ -92,6 +96,7 @@ class Parameters(GraphAction):
     title = N_("Parameters")
     tooltip = N_("Read the parameters of the chosen node, or hide them; Enter changes one.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
@@ -221,6 +226,7 @@ class Housekeeping(GraphAction):
     title = N_("All")
     tooltip = N_("Show or hide what ROS itself needs: parameter services, hidden nodes.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: GraphScreen) -> None:

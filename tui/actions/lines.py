@@ -23,6 +23,7 @@ class Pause(Action[Shown]):
     key = "p,з"
     title = N_("Pause")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     def label(cls, target: Shown) -> str:
@@ -41,6 +42,7 @@ class Search(Action[Shown]):
     key = "slash,ctrl+f"
     title = N_("Search")
     priority = True
+    from_elsewhere = True
 
     @classmethod
     def possible(cls, target: Shown) -> bool | None:
@@ -87,6 +89,7 @@ class Fold(Action[Shown]):
     title = N_("Fold")
     tooltip = N_("Fold long lines, or show one row of each: left and right shift it.")
     footer = True
+    from_elsewhere = True
 
     @classmethod
     async def run(cls, target: Shown) -> None:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 class LogsAction(Action["LogsScreen"]):
     """Something about the log."""
 
+    from_elsewhere = True
+
 
 class Pause(lines.Pause["LogsScreen"]):
     """Stand still, or follow."""
@@ -104,6 +106,7 @@ class Mute(LogsAction):
     title = N_("Mute")
     tooltip = N_("Mute the node of the chosen line or row, or let it be heard again.")
     footer = True
+    from_elsewhere = False
 
     @classmethod
     def possible(cls, target: LogsScreen) -> bool | None:
@@ -125,6 +128,7 @@ class Alone(LogsAction):
     title = N_("Only this")
     tooltip = N_("Mute all but the node of the chosen line or row; again: as before.")
     footer = True
+    from_elsewhere = False
 
     @classmethod
     def possible(cls, target: LogsScreen) -> bool | None:
@@ -171,6 +175,7 @@ class CopyAll(LogsAction):
     key = "C,С"
     title = N_("Copy all")
     tooltip = N_("Copy all lines that are shown to the clipboard of your terminal.")
+    from_elsewhere = False
 
     @classmethod
     async def run(cls, target: LogsScreen) -> None:

@@ -24,6 +24,7 @@ class OpenTeleop(DeckAction):
         "Drive by the arrow keys or W A S D while they are held; letting go stops. Escape closes."
     )
     footer = True
+    from_elsewhere = True
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 class TopicsAction(Action["TopicsScreen"]):
     """Something that the screen of topics does, while its table and message are shown."""
 
+    from_elsewhere = True
+
     @classmethod
     def possible(cls, target: TopicsScreen) -> bool | None:
         """Not while the plot covers all."""
@@ -162,6 +164,7 @@ class CopyMessage(TopicsAction):
     title = N_("Copy")
     tooltip = N_("Copy the message as YAML, as `ros2 topic pub` takes it.")
     footer = True
+    from_elsewhere = False
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:

@@ -1,0 +1,176 @@
+"""The palette: what can be done on any screen is found by its name, in either language."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+import pytest
+from textual.command import CommandPalette
+from textual.pilot import Pilot
+from textual.widgets import OptionList
+
+from tests.tui.app_runs import opened
+from tests.tui.recorded import RecordedPad
+from tui.actions import REGISTRY
+from tui.app import SCREENS, DeckApp
+from tui.orders import Order
+from tui.palette import PLACES, entries
+from tui.screens.composer import ComposerScreen
+from tui.screens.devices import DevicesScreen
+from tui.screens.topics import TopicsScreen
+
+
+async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
+    """Wait until the screen is so."""
+    for _round in range(300):
+        await pilot.pause(0.02)
+        if condition():
+            return
+    raise AssertionError(f"not so: {condition}")
+
+
+def found(app: DeckApp) -> list[str]:
+    """Return what the palette lists now: name and sentence of each, the likeliest first."""
+    if not isinstance(app.screen, CommandPalette):
+        return []
+    return [str(option.prompt) for option in app.screen.query_one(OptionList).options]
+
+
+async def look_for(app: DeckApp, pilot: Pilot[Any], words: str, expected: str) -> list[str]:
+    """Type words into the palette, wait until something expected is listed; return the list."""
+    await pilot.press("ctrl+p")
+    await until(pilot, lambda: found(app))
+    await pilot.press(*words)
+    await until(pilot, lambda: any(expected in line for line in found(app)))
+    return found(app)
+
+
+async def take(app: DeckApp, pilot: Pilot[Any], name: str) -> None:
+    """Choose what is listed under this name."""
+    place = next(i for i, line in enumerate(found(app)) if line.splitlines()[0] == name)
+    await pilot.press(*["down"] * place, "enter")
+    await until(pilot, lambda: not isinstance(app.screen, CommandPalette))
+
+
+def told(app: DeckApp) -> str:
+    """Return what was told in the corner."""
+    return "\n".join(note.message for note in app._notifications)
+
+
+async def test_it_finds_an_action_by_name_and_does_it() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("down")
+        await look_for(app, pilot, "restart", "Restart all")
+        await take(app, pilot, "Restart")
+        await until(pilot, lambda: pad.link.asked)
+        assert pad.link.asked == [("restart", "camera")]
+
+
+async def test_it_says_when_nothing_is_called_that() -> None:
+    async with opened() as (app, pilot):
+        app.speak("ru")
+        lines = await look_for(app, pilot, "zzqq", "Ничего")
+        assert lines == ["Ничего с таким названием нет."]
+
+
+async def test_before_anything_is_typed_it_offers_only_what_is_possible_here() -> None:
+    async with opened() as (app, _pilot):
+        offered = {entry.title for entry in entries(app, app.screen) if entry.offered}
+        assert {"Restart", "STOP", "Русский"} <= offered
+        assert "Release" not in offered
+        assert not any("›" in title for title in offered)
+
+
+@pytest.mark.parametrize(
+    ("language", "typed", "title"),
+    [
+        ("ru", "график", "Топики › График"),
+        ("ru", "plot", "Топики › График (Plot)"),
+        ("en", "plot", "Topics › Plot"),
+        ("en", "график", "Topics › Plot (График)"),
+    ],
+)
+async def test_an_action_of_another_screen_is_found_in_either_language_with_its_place(
+    language: str, typed: str, title: str
+) -> None:
+    async with opened() as (app, pilot):
+        app.speak(language)
+        lines = await look_for(app, pilot, typed, title)
+        assert title in [line.splitlines()[0] for line in lines]
+
+
+async def test_what_only_looks_is_done_where_it_is() -> None:
+    async with opened() as (app, pilot):
+        await look_for(app, pilot, "templates", "Composer › Templates")
+        await take(app, pilot, "Composer › Templates")
+        await until(pilot, lambda: type(app.screen).__name__ == "TemplatesDialog")
+        assert isinstance(app.feed.front, ComposerScreen)
+
+
+async def test_what_acts_is_only_gone_to_and_its_key_is_told() -> None:
+    pad = RecordedPad()
+    async with opened(pad, "topics") as (app, pilot):
+        await look_for(app, pilot, "restart", "Deck › Restart all")
+        await take(app, pilot, "Deck › Restart all")
+        await until(pilot, lambda: "Restart all is here: R." in told(app))
+        assert app.screen is app.get_screen("deck")
+        assert pad.link.asked == []
+
+
+async def test_what_is_impossible_where_it_is_is_told_there() -> None:
+    async with opened() as (app, pilot):
+        await look_for(app, pilot, "plot", "Topics › Clear plot")
+        await take(app, pilot, "Topics › Clear plot")
+        await until(pilot, lambda: "Clear plot is here, not possible now." in told(app))
+        assert isinstance(app.screen, TopicsScreen)
+
+
+async def test_what_is_impossible_here_is_found_too() -> None:
+    async with opened() as (app, pilot):
+        await look_for(app, pilot, "release", "Release (not possible now)")
+        await take(app, pilot, "Release (not possible now)")
+        await until(pilot, lambda: "Release the emergency stop: nodes may" in told(app))
+
+
+async def test_the_keys_of_a_panel_lead_to_what_opens_it() -> None:
+    async with opened(screen="logs") as (app, pilot):
+        await look_for(app, pilot, "sharper", "Deck › Drive › Sharper")
+        await take(app, pilot, "Deck › Drive › Sharper")
+        await until(pilot, lambda: app.screen.query("TeleopPanel"))
+        await until(pilot, lambda: "Sharper is here: ]." in told(app))
+
+
+async def test_a_word_of_the_sentence_is_enough() -> None:
+    async with opened() as (app, pilot):
+        await look_for(app, pilot, "clipboard", "Devices › Copy")
+        await take(app, pilot, "Devices › Copy")
+        await until(pilot, lambda: isinstance(app.screen, DevicesScreen))
+
+
+async def test_beside_the_list_of_lessons_it_says_that_a_lesson_comes_first() -> None:
+    async with opened(order=Order()) as (app, pilot):
+        await look_for(app, pilot, "plot", "Topics › Plot")
+        await take(app, pilot, "Topics › Plot")
+        await until(
+            pilot, lambda: "Plot is on the screen Topics: open a lesson first." in told(app)
+        )
+
+
+async def test_the_keys_of_a_recording_are_left_out_beside_a_robot() -> None:
+    async with opened() as (app, _pilot):
+        titles = [entry.title for entry in entries(app, app.screen)]
+        assert "Release (not possible now)" in titles
+        assert "Loop (not possible now)" not in titles
+
+
+def test_every_action_of_every_screen_has_its_place() -> None:
+    for name, (module, made) in SCREENS.items():
+        screen = getattr(import_module(module), made)
+        bound = {each.id for each in screen.BINDINGS if each.id in REGISTRY}
+        placed = {
+            action.id for place in PLACES if place.show.screen == name for action in place.actions
+        }
+        assert name == "picker" or bound <= placed, name
