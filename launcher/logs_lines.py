@@ -7,6 +7,9 @@ from dataclasses import dataclass
 MAX_LINE_BYTES = 32 * 1024
 """A longer line is cut; the log file has the whole of it."""
 
+_ERASE = b"\x1b[K"
+_NO_LETTERS = bytes(code for code in range(128) if not chr(code).isalpha())
+
 IDLE_S = 1.0
 """A line without an end that has stood for so long is shown: a prompt, a progress."""
 
@@ -21,29 +24,33 @@ class RawLine:
 
 
 class LineAssembler:
-    """The lines of one stream; at most `MAX_LINE_BYTES` and a chunk are ever held."""
+    """The lines of one stream; at most `MAX_LINE_BYTES` twice and a chunk are ever held.
+
+    A carriage return begins its line anew. What stood before it is a line of its own, unless it
+    is the same words with other numbers: of a progress the newest state is enough.
+    """
 
     def __init__(self) -> None:
         self._rest = b""
         self._lost = 0
-        self._rest_since = 0.0
-        self._rewrites = False
+        self._waits_since = 0.0
+        self._state: RawLine | None = None
+        """What stood before the newest carriage return."""
+        self._words = ""
 
     @property
     def unfinished(self) -> bool:
         """Whether there is a line that has not ended yet."""
-        return bool(self._rest)
+        return bool(self._rest) or self._state is not None
 
     def feed(self, chunk: bytes, now: float) -> list[RawLine]:
         """Take what was read at `now`, return the lines that it completes."""
-        if not self._rest or not self._rewrites:
-            self._rest_since = now
-        lines = (self._rest + chunk).split(b"\n")
-        self._rest = lines.pop()
-        done = [self._finished(line) for line in lines]
-        self._rewrites = b"\r" in self._rest
-        if self._rewrites:
-            self._rest = _newest_part(self._rest)
+        if self._state is None:
+            self._waits_since = now
+        *ended, self._rest = (self._rest + chunk).split(b"\n")
+        done = [line for whole in ended for line in self._ended(whole)]
+        *states, self._rest = self._rest.split(b"\r")
+        done += self._rewritten(states)
         if len(self._rest) > MAX_LINE_BYTES:
             self._lost += len(self._rest) - MAX_LINE_BYTES
             self._rest = self._rest[:MAX_LINE_BYTES]
@@ -54,41 +61,52 @@ class LineAssembler:
 
         What is written to it later comes as a line of its own.
         """
-        if not self._rest or (now - self._rest_since < IDLE_S and not at_end):
+        if not self.unfinished or (now - self._waits_since < IDLE_S and not at_end):
             return []
-        keep = 0 if at_end else _half_character(self._rest)
-        line, self._rest = (
-            self._rest[: len(self._rest) - keep],
-            self._rest[len(self._rest) - keep :],
-        )
-        self._rest_since = now
-        self._rewrites = False
-        done = self._finished(line)
-        return [done] if done.data else []
+        self._waits_since = now
+        if at_end:
+            line, self._rest = self._rest, b""
+            return self._ended(line)
+        if self._state is not None:
+            # What follows it may be half of the next state.
+            state, self._state = self._state, None
+            return [state]
+        keep = len(self._rest) - _half_character(self._rest)
+        line, self._rest = self._rest[:keep], self._rest[keep:]
+        return [self._line(line)] if line else []
 
-    def _finished(self, line: bytes) -> RawLine:
+    def _ended(self, line: bytes) -> list[RawLine]:
+        """Return a line that has ended, after those that carriage returns made of it."""
+        if self._state is None and b"\r" not in line:
+            return [self._line(line)]
+        done = self._rewritten(line.split(b"\r"))
+        last, self._state = self._state, None
+        return [*done, last or RawLine(b"")]
+
+    def _rewritten(self, states: list[bytes]) -> list[RawLine]:
+        """Take what a line was, one after the other; return those that no progress follows."""
+        done: list[RawLine] = []
+        for state in states:
+            if state.replace(_ERASE, b"").strip():
+                words = _words(state)
+                if self._state is not None and words != self._words:
+                    done.append(self._state)
+                self._state, self._words = self._line(state), words
+        return done
+
+    def _line(self, line: bytes) -> RawLine:
         lost, self._lost = self._lost, 0
-        if b"\r" in line:
-            line = _visible(line)
         if len(line) > MAX_LINE_BYTES:
             lost += len(line) - MAX_LINE_BYTES
             line = line[:MAX_LINE_BYTES]
         return RawLine(line, lost)
 
 
-def _visible(line: bytes) -> bytes:
-    """Return what a line that was rewritten by carriage returns shows in the end."""
-    for part in reversed(line.split(b"\r")):
-        if part:
-            return part
-    return b""
-
-
-def _newest_part(rest: bytes) -> bytes:
-    """Return the last rewriting and the one before it, in case the last is not complete."""
-    last = rest.rfind(b"\r")
-    before = rest.rfind(b"\r", 0, last)
-    return rest[before + 1 :]
+def _words(state: bytes) -> str:
+    """Return the letters alone: numbers, bars and blanks are what a progress changes."""
+    if state.isascii():
+        return state.translate(None, _NO_LETTERS).decode()
+    return "".join(filter(str.isalpha, state.decode(errors="replace")))
 
 
 def _half_character(data: bytes) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,13 +17,30 @@ def texts(lines: list[RawLine]) -> list[bytes]:
 @given(st.binary(max_size=400), st.lists(st.integers(0, 400), max_size=8))
 def test_lines_do_not_depend_on_where_the_pipe_cuts_them(data: bytes, cuts: list[int]) -> None:
     data = data.replace(b"\r", b"") + b"\n"
+    assert b"\n".join(texts(fed(data, cuts))) + b"\n" == data
+
+
+@given(st.text("ab1 \r\n", max_size=40), st.lists(st.integers(0, 40), max_size=8))
+def test_nor_do_lines_with_carriage_returns(text: str, cuts: list[int]) -> None:
+    data = text.encode() + b"\n"
+    lines = fed(data, cuts)
+    assert lines == fed(data, [])
+    # Of a state that comes again with other numbers one is enough.
+    kept = "".join("".join(filter(str.isalpha, line.data.decode())) for line in lines)
+    alone = [part for part in re.split("[\r\n]", "".join(re.findall("[ab\r\n]", text))) if part]
+    for part in alone:
+        assert part in kept
+
+
+def fed(data: bytes, cuts: list[int]) -> list[RawLine]:
+    """Return the lines of `data` that comes in pieces."""
     assembler = LineAssembler()
     lines = []
     begin = 0
     for cut in [*sorted(cuts), len(data)]:
         lines += assembler.feed(data[begin:cut], 0.0)
         begin = max(begin, min(cut, len(data)))
-    assert b"\n".join(texts(lines)) + b"\n" == data
+    return lines
 
 
 def test_a_line_of_a_megabyte_is_cut_and_says_how_much_is_missing() -> None:
@@ -50,7 +69,33 @@ def test_windows_line_ends_leave_nothing_behind() -> None:
 def test_of_a_progress_that_rewrites_its_line_the_last_state_counts() -> None:
     assembler = LineAssembler()
     assert assembler.feed(b"10 %\r20 %\r", 0.0) == []
-    assert texts(assembler.feed(b"30 %\rdone\n", 0.1)) == [b"done"]
+    assert texts(assembler.feed(b"30 %\rdone\n", 0.1)) == [b"30 %", b"done"]
+
+
+def test_a_carriage_return_keeps_what_stood_before_it() -> None:
+    feed = LineAssembler().feed
+    assert texts(feed(b"camera opened\rno frames\n", 0.0)) == [b"camera opened", b"no frames"]
+    russian = "камера открыта\rкадров нет\n".encode()
+    assert texts(LineAssembler().feed(russian, 0.0)) == russian.strip().split(b"\r")
+
+
+def test_what_only_erases_a_line_is_none() -> None:
+    lines = LineAssembler().feed(b"\r 50 %|##  |\r100 %|####|\r\x1b[K\r      \rsaved\n\r\n", 0.0)
+    assert texts(lines) == [b"100 %|####|", b"saved", b""]
+
+
+def test_what_was_rewritten_is_not_held_back_by_what_waits() -> None:
+    assembler = LineAssembler()
+    assert texts(assembler.feed(b"opening\rwaiting\rfor the fi", 0.0)) == [b"opening"]
+    assert texts(assembler.flush(IDLE_S)) == [b"waiting"]
+    assert texts(assembler.feed(b"rst\n", 1.5 * IDLE_S)) == [b"for the first"]
+
+
+def test_the_end_brings_both_the_state_before_and_the_last() -> None:
+    assembler = LineAssembler()
+    assembler.feed(b"98 %\r99 %\rdied", 0.0)
+    assert texts(assembler.flush(0.0, at_end=True)) == [b"99 %", b"died"]
+    assert not assembler.unfinished
 
 
 def test_a_progress_without_an_end_is_shown_now_and_then_and_takes_no_memory() -> None:
