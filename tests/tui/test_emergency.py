@@ -463,6 +463,18 @@ async def test_the_safety_nodes_words_stand_in_the_title() -> None:
         assert "⚠ Motion is held: front 0.38 m" in title.states(app)[0]
 
 
+async def test_long_words_of_the_safety_node_leave_the_tabs_their_names() -> None:
+    pad = RecordedPad()
+    async with opened(pad, size=(80, 24)) as (app, pilot):
+        pad.graph.show(held(b"\x01", "front 0.38 m, and the left wheel has told nothing for 2 s"))
+        await settle(pilot)
+        line = app.screen.query_one(TitleBar).text
+        for name in ("1 Deck", "2 Top.", "3 Com.", "4 Logs", "5 Gra.", "6 Flow", "7 Dev."):
+            assert name in line
+        assert "⚠ front 0.38 m" in line
+        assert line.rstrip().endswith("…")
+
+
 @pytest.mark.parametrize(
     ("refused", "words"),
     [

@@ -12,6 +12,8 @@ from textual.widget import Widget
 
 NAME = " Deck "
 URGENT = ("danger", "stop")
+ENOUGH = 16
+"""Cells of an alarm that are worth it: told whole it would take the words of the tabs away."""
 SHORT = 3
 """Letters of a tab's word where there is little room."""
 
@@ -109,7 +111,8 @@ class TitleBar(Widget):
         """Return the tabs that are shown, and the state as long as there is room for it.
 
         The shortest state says too little to spare the tabs for it: they are shortened first.
-        While it is urgent the words come first, and all tabs may give way.
+        While it is urgent the words come first, and all tabs may give way. The words of an alarm
+        come from a node and may be of any length: they are cut before the tabs lose theirs.
         """
         alone = self.size.width - cell_len(NAME) - 3
         shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
@@ -124,6 +127,9 @@ class TitleBar(Widget):
             for state in states:
                 if state not in spared and cell_len(state) <= alone - level.width:
                     return level, state
+            room = alone - level.width
+            if self._look == "alarm" and level is levels[-2] and room >= ENOUGH:
+                return level, _cut(states[-1], room)
         return levels[-1], _cut(states[-1], alone - levels[-1].width)
 
     def _left(self, level: _Level) -> Content:
