@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import time
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -33,7 +35,11 @@ class Parser:
         self.drives = self.peer.hear("/drive", AckermannDriveStamped)
         self._results = self.peer.hear("/llm_result", String)
         self.process = NodeProcess("nodes.llm_parser", domain, lang=lang, params=params)
-        wait_until(lambda: self.peer.node.count_publishers("/llm_result"), "/llm_result")
+        self._tries = count(1)
+        self._head = head
+        wait_until(self._answers, "an answer on every way")
+        for heard in (self.drives, self._results, self.asked):
+            heard.clear()
 
     def close(self) -> None:
         self.peer.close()
@@ -48,6 +54,29 @@ class Parser:
     def results(self, count: int) -> list[dict[str, Any]]:
         wait_until(lambda: len(self._results) >= count, f"{count} results")
         return [json.loads(result.data) for result in self._results]
+
+    def _answers(self) -> bool:
+        """Send a response of its own number; whether all that it brings forth has come.
+
+        The graph tells that its publishers are known here, not that it knows who listens here,
+        and what it says before is lost.
+        """
+        number = next(self._tries)
+        speed = number / 1000
+        head = [{**HEAD, "pan": number}] if self._head else []
+        self.send({**DRIVE, "speed": speed}, *head, thought="a try")
+
+        def came() -> bool:
+            told = [json.loads(result.data) for result in self._results]
+            drove = any(one["event"] == "drive" and one["speed"] == speed for one in told)
+            turned = any(one["event"] == "head" and one["pan"] == number for one in told)
+            heard = any(abs(one.drive.speed - speed) < 1e-6 for one in self.drives)
+            return drove and heard and turned == self._head
+
+        until_s = time.monotonic() + 1.0
+        while not came() and time.monotonic() < until_s:
+            time.sleep(0.01)
+        return came()
 
     def _turn(
         self, request: AddTwoInts.Request, response: AddTwoInts.Response
@@ -101,9 +130,9 @@ BAD_TEXTS = [
 
 
 def test_one_bad_command_and_nothing_moves(parser: Parser) -> None:
-    for count, text in enumerate(BAD_TEXTS, 1):
+    for number, text in enumerate(BAD_TEXTS, 1):
         parser.send_text(text)
-        refused = parser.results(count)[-1]
+        refused = parser.results(number)[-1]
         assert refused["event"] == "refused", text[:100]
         assert refused["problems"], text[:100]
         assert all({"field", "line", "column", "message"} <= set(p) for p in refused["problems"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import signal
 from typing import TYPE_CHECKING
@@ -48,12 +49,24 @@ class Heard:
 def test_a_word_lasts_so_long_and_ends_with_a_stop(peer: Peer, ros_domain: int) -> None:
     with NodeProcess("nodes.ai_driver", ros_domain, params={"repeat_for_s": 0.5}) as node:
         heard = Heard(peer)
-        wait_until(lambda: peer.node.count_publishers("/drive"), "/drive")
+        tries = itertools.count(1)
+
+        def is_heard() -> bool:
+            heard.drives.clear()
+            peer.say("/ai_command", String(data="back"))
+            number = next(tries)
+            wait_until(lambda: node.output.count("repeated for 0.5 s: stop") == number, "an end")
+            return bool(heard.drives)
+
+        wait_until(is_heard, "a word on /drive")
+        wait_until(lambda: heard.speeds[-1] == 0.0, "its stop")
+        heard.drives.clear()
         peer.say("/ai_command", String(data="forward"))
         heard.stop()
         assert heard.speeds[0] == 0.5
         assert 2 <= heard.speeds.count(0.5) <= 7
-        node.wait_for_words("repeated for 0.5 s: stop")
+        number = next(tries)
+        wait_until(lambda: node.output.count("repeated for 0.5 s: stop") == number, "told")
 
 
 def test_what_ends_a_word(peer: Peer, ros_domain: int) -> None:
