@@ -14,8 +14,6 @@ import pytest
 
 from tests.unit.scripts_of_setup import ROOT
 
-pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="there is no make")
-
 DECK = """\
 echo "deck $*"
 env | grep -E '^(PYTHONPATH|LD_LIBRARY_PATH|_ROS_WHEELS_BOOTSTRAP_COMPLETE)='

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import subprocess
 import sys
+import venv
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -163,16 +166,14 @@ def test_a_real_python_without_a_compiler_says_so(find_python: Find) -> None:
     assert found.stderr.count("\n") == 1
 
 
-@pytest.mark.skipif(sys.prefix == sys.base_prefix, reason="not in a virtual environment")
-def test_an_activated_environment_leads_to_the_python_below_it(
-    find_python: Find, tmp_path: Path
-) -> None:
+def test_an_activated_environment_leads_to_the_python_below_it(tmp_path: Path) -> None:
     """The environment may be the one that is about to be replaced."""
-    program(tmp_path / "cc")
-    program(tmp_path / "c++")
-    found = find_python(PYTHON=sys.executable)
-    if found.returncode:
-        pytest.skip(found.stderr)
-    taken = Path(found.stdout.strip())
-    assert taken.parent != Path(sys.executable).parent
-    assert taken.samefile(sys.executable)
+    mine = tmp_path / "activated"
+    venv.create(mine, symlinks=True)
+    script = shutil.copy(SCRIPTS / "find-python.sh", tmp_path)
+    (tmp_path / "preflight.py").touch()  # whatever this machine lacks
+    environ = {**os.environ, "PYTHON": str(mine / "bin" / "python")}
+    found = subprocess.check_output(["/bin/sh", script], env=environ, text=True)
+    taken = Path(found.strip())
+    assert taken.parent != mine / "bin"
+    assert taken.samefile(mine / "bin" / "python")
