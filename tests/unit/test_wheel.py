@@ -42,6 +42,6 @@ def test_ros_is_asked_of_pypi_only_where_it_is_there(wheel: zipfile.ZipFile) -> 
     (metadata,) = (name for name in wheel.namelist() if name.endswith("METADATA"))
     lines = wheel.read(metadata).decode().splitlines()
     asked = [line for line in lines if line.startswith("Requires-Dist: ros-jazzy-")]
-    assert len(asked) == 7
+    assert len(asked) == (ROOT / "pyproject.toml").read_text().count('    "ros-jazzy-')
     marks = ("platform_machine == 'x86_64'", "sys_platform == 'linux'", "extra == 'ros'")
     assert all(mark in line for line in asked for mark in marks)
