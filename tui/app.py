@@ -29,7 +29,7 @@ from tui.recording import Recording
 from tui.screens.opening import OpeningScreen
 from tui.sessions import Sessions
 from tui.strangers import Strangers
-from tui.themes import HIGH_CONTRAST, after
+from tui.themes import HIGH_CONTRAST, after, few_colours
 from tui.typed import Typed
 from tui.widgets.replay_bar import ReplayBar
 
@@ -176,6 +176,14 @@ class DeckApp(App[int], Acting):
                     await old.remove()
         # Who watches the theme, as each TextArea does, is held until it changes, gone or not.
         self.mutate_reactive(DeckApp.theme)
+
+    def get_css_variables(self) -> dict[str, str]:
+        """Return the colours of the theme, as far as the terminal can tell them apart."""
+        variables = super().get_css_variables()
+        if self.console.color_system == "standard":
+            variables = {**variables, **few_colours(dark=self.current_theme.dark)}
+            self.theme_variables = variables
+        return variables
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Look at every line once more before it goes to the terminal."""

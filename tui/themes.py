@@ -29,6 +29,8 @@ HIGH_CONTRAST = Theme(
     },
 )
 
+_BRIGHT = {"success": "#55ff55", "warning": "#ffff55", "error": "#ff5555", "accent": "#55ffff"}
+_DARK = {"success": "#00aa00", "warning": "#aa5500", "error": "#aa0000", "accent": "#0000aa"}
 CYCLE = ("textual-dark", "textual-light", HIGH_CONTRAST.name)
 """What the key for themes goes through."""
 
@@ -36,3 +38,13 @@ CYCLE = ("textual-dark", "textual-light", HIGH_CONTRAST.name)
 def after(theme: str) -> str:
     """Return the theme that follows in the cycle."""
     return CYCLE[(CYCLE.index(theme) + 1) % len(CYCLE)] if theme in CYCLE else CYCLE[0]
+
+
+def few_colours(*, dark: bool) -> dict[str, str]:
+    """Return the variables of a theme that mean something, for a terminal of 16 colours.
+
+    Each is one of these 16 (`rich.palette`), bright on dark and dark on light. Of other colours
+    the nearest is shown, and the pale green and red of a theme are both nearest to light grey.
+    """
+    colours = _BRIGHT if dark else _DARK
+    return {f"{prefix}{name}": value for name, value in colours.items() for prefix in ("", "text-")}

@@ -50,6 +50,8 @@ def _still(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Stop cursors and clocks, speak English, and set the language back afterwards."""
     monkeypatch.setattr(clock, "now", lambda: NOW_S + 17.0)
     monkeypatch.setenv("TZ", "UTC")
+    # Textual may have been imported before the lines above were read.
+    monkeypatch.setenv("COLORTERM", "truecolor")
     set_language("en")
     yield
     set_language("en")
