@@ -603,3 +603,19 @@ async def test_what_fits_while_another_screen_is_in_front_is_seen_when_one_comes
     await room.show(sonar(0.2))
     assert "7.5" in room.echo()
     assert filter_line(room) == "1 of 3 messages"
+
+
+async def test_a_name_longer_than_a_line_is_told_whole_above_its_message() -> None:
+    name = "/robot/front_left/" + "a_rather_long_name_of_a_sonar/" * 3 + "END"
+    graph = RecordedGraph()
+    app = HOME.app("topics", RecordedPad(graph=graph))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(pilot)
+        room = Room(app, pilot, graph)
+        await room.show(with_row(replace(row(SONAR), name=name)))
+        await room.choose(name)
+        head = room.screen.query_one(TopicHead)
+        lines = [head.render_line(y).text for y in range(head.size.height)]
+        assert name in "".join(lines)
+        assert "std_msgs/msg/Float32" in lines[1]
+        assert "1.0 Hz" in lines[2]

@@ -65,7 +65,6 @@ class TopicsScreen(TopicsPictures):
         TopicsTable { width: 2fr; height: 1fr; max-height: 100%; }
         TopicDetail { width: 1fr; border-top: none; border-left: solid $panel; }
     }
-    TopicsScreen.-low TopicHead, TopicsScreen.-flat TopicHead { max-height: 2; }
     TopicsScreen.-flat TopicDetail { border-top: none; }
     """
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rich.cells import chop_cells
 from textual.containers import Vertical
 from textual.content import Content
 from textual.widget import Widget
@@ -29,11 +30,14 @@ if TYPE_CHECKING:
 
 
 class TopicHead(Widget):
-    """Name and type, figures, and who is on the topic: as many lines as there is height for."""
+    """Name and type, figures, and who is on the topic: as many lines as there is height for.
+
+    A name that is longer than a line goes on in the next: it is told whole nowhere else.
+    """
 
     DEFAULT_CSS = """
     TopicHead {
-        height: auto; max-height: 4; width: 1fr; background: $panel; color: $foreground;
+        height: auto; width: 1fr; background: $panel; color: $foreground;
         text-wrap: nowrap; text-overflow: ellipsis;
     }
     """
@@ -62,14 +66,20 @@ class TopicHead(Widget):
     def render(self) -> Content:
         """Draw the lines."""
         name, type_name, parts, below = self._texts
-        lines = [Content.assemble((name, "bold"), "  ", (type_name, "dim"))]
-        texts = [*packed(parts, max(1, self.size.width)), below]
-        lines += [Content(text) for text in texts if text]
+        width = max(1, self.size.width)
+        *above, last = chop_cells(name, width) or [""]
+        lines = [Content.styled(part, "bold") for part in above]
+        lines.append(Content.assemble((last, "bold"), "  ", (type_name, "dim")))
+        lines += [Content(text) for text in (*packed(parts, width), below) if text]
         return Content("\n").join(lines)
 
     def _count(self, width: int | None = None) -> int:
-        _name, _type, parts, below = self._texts
-        return 1 + len(packed(parts, max(1, width or self.size.width))) + bool(below)
+        name, _type, parts, below = self._texts
+        width = max(1, width or self.size.width)
+        named = len(chop_cells(name, width)) or 1
+        if self.screen.has_class("-low") or self.screen.has_class("-flat"):
+            return named + 1
+        return named + len(packed(parts, width)) + bool(below)
 
 
 class TopicDetail(Vertical):
