@@ -11,6 +11,8 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import JointState
 
+from nodes._device_fault import FAULTS
+from nodes.mock_robot import DEVICES
 from robot.wire_lsc16 import Battery, BatteryRequest, ServoDecoder
 from robot.wire_lsc16 import encode as encode_servo
 from robot.wire_pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode
@@ -18,6 +20,7 @@ from robot.wire_tfluna import Model, TofDecoder
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
+from tui import device_trouble
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -169,3 +172,9 @@ def test_a_folder_that_cannot_be_is_told_in_one_line(module_domain: int, tmp_pat
         assert robot.wait() == 2
         assert "set the parameter folder" in robot.output
         assert robot.output.count("\n") == 1
+
+
+def test_the_screen_offers_what_the_robot_takes() -> None:
+    assert set(DEVICES) == device_trouble.LINES
+    lines = (device_trouble.UNPLUGGED, device_trouble.NOISE, device_trouble.SILENCE)
+    assert {value for each in lines for value in (each.wrong, each.fine)} < set(FAULTS)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
+from tui import device_trouble
 from tui.actions import lines
 from tui.actions.action import Action
 from tui.i18n import N_
@@ -140,6 +141,64 @@ class Save(lines.Save["DevicesScreen"], DevicesAction):
     id = "devices.save"
 
 
+class _MakeTrouble(DevicesAction):
+    """Trouble of the chosen device, or no more of it: only a simulated one can have it made."""
+
+    trouble: ClassVar[device_trouble.Trouble]
+
+    @classmethod
+    def possible(cls, target: DevicesScreen) -> bool | None:
+        """Only with a device of the simulated robot, that may have it."""
+        found = target.simulated
+        return found is not None and found[1] in cls.trouble.devices
+
+    @classmethod
+    async def run(cls, target: DevicesScreen) -> None:
+        """Make it, or mend it."""
+        target.switch_trouble(cls.trouble)
+
+
+class Unplug(_MakeTrouble):
+    """No connection."""
+
+    id = "devices.unplug"
+    key = "U,Г"
+    title = N_("Pull cable")
+    tooltip = N_("Simulated robot: pull the cable of the chosen device; again: plug it in.")
+    footer = True
+    trouble = device_trouble.UNPLUGGED
+
+
+class Noise(_MakeTrouble):
+    """Bytes that nobody sent."""
+
+    id = "devices.noise"
+    key = "Z,Я"
+    title = N_("Noise")
+    tooltip = N_("Simulated robot: noise on the line of the chosen device; again: none.")
+    trouble = device_trouble.NOISE
+
+
+class Silence(_MakeTrouble):
+    """Connected, and nothing comes."""
+
+    id = "devices.silence"
+    key = "H,Р"
+    title = N_("Silence")
+    tooltip = N_("Simulated robot: the chosen device says nothing; again: it speaks.")
+    trouble = device_trouble.SILENCE
+
+
+class LowBattery(_MakeTrouble):
+    """Too little voltage."""
+
+    id = "devices.battery"
+    key = "B,И"
+    title = N_("Low battery")
+    tooltip = N_("Simulated robot: the battery of Pico and servos is weak; again: it is charged.")
+    trouble = device_trouble.BATTERY
+
+
 DEVICES_ACTIONS = (
     Pause,
     OneWay,
@@ -152,4 +211,8 @@ DEVICES_ACTIONS = (
     Search,
     FindNext,
     FindPrevious,
+    Unplug,
+    Noise,
+    Silence,
+    LowBattery,
 )

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from textual import on
+from textual import on, work
 from textual.widgets import Static
 
 from launcher.status import Severity
 from robot.frame_lines import decode
-from tui import clock
+from tui import clock, device_trouble
 from tui.actions import bindings
 from tui.actions.devices import DEVICES_ACTIONS
 from tui.device_reading import TOPIC, Device, DeviceBook, frames_topic
@@ -187,6 +187,22 @@ class DevicesScreen(DeckScreen):
         """Forget all frames."""
         self.frames.clear()
         self.pane.view.clear()
+
+    @property
+    def simulated(self) -> tuple[str, str] | None:
+        """The simulated robot's node and which line of it is chosen; None beside a real device."""
+        return device_trouble.simulated(self.chosen, self.feed)
+
+    @work(group="trouble")
+    async def switch_trouble(self, trouble: device_trouble.Trouble) -> None:
+        """Make this trouble of the chosen device, or mend it, and tell which."""
+        found, graph = self.simulated, self.feed.graph
+        if found is None or graph is None:
+            return
+        made, error = await device_trouble.switch(graph, *found, trouble)
+        mended = N_("{device}: all is well again.")
+        told = _(trouble.told if made else mended).format(device=found[1])
+        self.notify(error or told, severity="error" if error else "information", markup=False)
 
     # What is shown
 

@@ -1,0 +1,130 @@
+"""Trouble of the simulated robot, made and mended on the Devices screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from graph.data import NodeRow, ParameterRow, ParametersResult
+from launcher.status import NodeState, NodeStatus
+from tests.tui.app_runs import opened
+from tests.tui.recorded import RecordedGraph, RecordedPad
+from tests.tui.recorded_devices import STATUSES, pad, status, update
+from tests.tui.snapshots import settle
+from tui.actions import REGISTRY
+from tui.app import DeckApp
+from tui.screens.devices import DevicesScreen
+from tui.screens.help import HelpScreen
+from tui.widgets.page import Page
+
+MOCK = "/mock_robot"
+TROUBLES = ("devices.unplug", "devices.noise", "devices.silence", "devices.battery")
+
+
+def simulation(*samples: Any) -> tuple[RecordedPad, RecordedGraph]:
+    """Drivers at the lines of a simulated robot, whose node has its parameters."""
+    drivers = pad()
+    graph = RecordedGraph(with_robot(*(samples or STATUSES)))
+    lines = [ParameterRow(name, "string", "fine") for name in ("pico", "tof_front", "tof_rear")]
+    rows = (*lines, ParameterRow("battery", "double", 7.4))
+    graph.node_parameters[MOCK] = ParametersResult(MOCK, rows)
+    robot = NodeStatus("mock_robot", "nodes.mock_robot", NodeState.READY, pid=4199)
+    link: Any = drivers.link
+    link.nodes["mock_robot"] = robot
+    return RecordedPad(link, graph), graph
+
+
+def with_robot(*samples: Any) -> Any:
+    now = update(*samples)
+    return replace(now, nodes=(*now.nodes, NodeRow(MOCK)))
+
+
+def possible(app: DeckApp) -> list[str]:
+    return [name for name in TROUBLES if REGISTRY[name].possible(app.screen)]
+
+
+async def choose(app: DeckApp, pilot: Pilot[Any], name: str) -> None:
+    assert isinstance(app.screen, DevicesScreen)
+    app.screen.table.choose(name)
+    await pilot.pause()
+
+
+async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
+    for _round in range(300):
+        await pilot.pause(0.02)
+        if condition():
+            return
+    raise AssertionError("it did not come to that")
+
+
+def told(app: DeckApp) -> list[str]:
+    return [note.message for note in app._notifications]
+
+
+@pytest.mark.parametrize(
+    ("key", "driver", "parameter", "wrong", "fine"),
+    [
+        ("U", "sonar_front", "tof_front", "unplugged", "fine"),
+        ("Г", "sonar_rear", "tof_rear", "unplugged", "fine"),
+        ("Z", "chassis", "pico", "noise", "fine"),
+        ("H", "sonar_front", "tof_front", "silent", "fine"),
+        ("B", "chassis", "battery", 5.8, 7.4),
+    ],
+)
+async def test_a_key_makes_the_trouble_and_mends_it(
+    key: str, driver: str, parameter: str, wrong: str | float, fine: str | float
+) -> None:
+    recorded, graph = simulation()
+    async with opened(recorded, "devices") as (app, pilot):
+        await choose(app, pilot, driver)
+        await pilot.press(key)
+        await until(pilot, lambda: len(told(app)) == 1)
+        await pilot.press(key)
+        await until(pilot, lambda: len(told(app)) == 2)
+        assert graph.set_to == [(MOCK, {parameter: wrong}), (MOCK, {parameter: fine})]
+        assert "all is well again" in told(app)[1]
+
+
+async def test_what_the_robot_refuses_is_told() -> None:
+    recorded, graph = simulation()
+    graph.refusals = {"tof_front": "the port is gone"}
+    async with opened(recorded, "devices") as (app, pilot):
+        await choose(app, pilot, "sonar_front")
+        await pilot.press("U")
+        await until(pilot, lambda: told(app) == ["the port is gone"])
+
+
+async def test_only_a_device_that_is_simulated_can_have_trouble_made() -> None:
+    recorded, graph = simulation()
+    async with opened(recorded, "devices") as (app, pilot):
+        await choose(app, pilot, "chassis")
+        assert possible(app) == list(TROUBLES)
+        await choose(app, pilot, "sonar_front")
+        assert "devices.battery" not in possible(app)
+        await choose(app, pilot, "imu: data")
+        assert possible(app) == []
+        graph.show(with_robot(status("chassis", port="/dev/pico")))
+        await settle(pilot)
+        await choose(app, pilot, "chassis")
+        assert possible(app) == []
+
+
+async def test_beside_a_real_robot_no_trouble_is_possible() -> None:
+    async with opened(pad(), "devices") as (app, pilot):
+        await choose(app, pilot, "chassis")
+        assert possible(app) == []
+
+
+async def test_help_names_every_trouble() -> None:
+    recorded, _graph = simulation()
+    async with opened(recorded, "devices") as (app, pilot):
+        await pilot.press("f1")
+        await pilot.pause()
+        assert isinstance(app.screen, HelpScreen)
+        page = " ".join(app.screen.query_one(Page).text.split())
+        for name in TROUBLES:
+            assert REGISTRY[name].tooltip in page
