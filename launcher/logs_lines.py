@@ -79,9 +79,10 @@ class LineAssembler:
         """Return a line that has ended, after those that carriage returns made of it."""
         if self._state is None and b"\r" not in line:
             return [self._line(line)]
-        done = self._rewritten(line.split(b"\r"))
+        states = line.split(b"\r")
+        done = self._rewritten(states)
         last, self._state = self._state, None
-        return [*done, last or RawLine(b"")]
+        return [*done, last or self._line(states[-1])]
 
     def _rewritten(self, states: list[bytes]) -> list[RawLine]:
         """Take what a line was, one after the other; return those that no progress follows."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from launcher.logs_lines import IDLE_S, MAX_LINE_BYTES, LineAssembler, RawLine
@@ -20,6 +20,7 @@ def test_lines_do_not_depend_on_where_the_pipe_cuts_them(data: bytes, cuts: list
     assert b"\n".join(texts(fed(data, cuts))) + b"\n" == data
 
 
+@example("\r ", [1])
 @given(st.text("ab1 \r\n", max_size=40), st.lists(st.integers(0, 40), max_size=8))
 def test_nor_do_lines_with_carriage_returns(text: str, cuts: list[int]) -> None:
     data = text.encode() + b"\n"
