@@ -96,10 +96,11 @@ class Sessions:
         # The screens of the session before may be on their way out.
         async with self._going_back:
             pass
+        opening = asyncio.create_task(self.pad.open(order))
         try:
             if self.picking:
                 await app.show_screen("deck")
-            link = await self.pad.open(order)
+            link = await opening
         except DomainTakenError as error:
             await self._ask_for_domain(order, error)
             return
@@ -107,6 +108,7 @@ class Sessions:
             await self._refuse(error)
             return
         finally:
+            opening.cancel()
             self.opening = ""
         if order.profile is not None:
             app.lesson_opened(link.session.name)

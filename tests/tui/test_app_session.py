@@ -34,6 +34,7 @@ from tui.actions.deck import StartAll, WriteCommand
 from tui.app import DeckApp
 from tui.history import LogHistory
 from tui.inbox import GraphInbox
+from tui.orders import Order
 from tui.screens.deck import LessonDeck
 from tui.screens.end_session import EndSessionScreen
 from tui.screens.logs import LogsScreen
@@ -48,6 +49,8 @@ from tui.widgets.wheels import WheelsPanel
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot
+
+    from tui.seams import SessionLink
 
 ATTACHED = replace(SESSION, foreground=False, started_by=Who(4000, "ann", "pts/2", "10.0.0.7"))
 STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")
@@ -120,6 +123,20 @@ async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> No
         assert isinstance(app.screen, LessonDeck)
         assert pad.link.asked == [("shutdown",), ("aclose",)]
         assert app.feed.session is SESSION
+
+
+async def test_a_lesson_is_started_before_its_screen_is_drawn() -> None:
+    class Watched(RecordedPad):
+        async def open(self, order: Order) -> SessionLink:
+            panels.append(len(app.screen.query(NodesTable)))
+            return await super().open(order)
+
+    panels: list[int] = []
+    async with opened(Watched(), order=Order()) as (app, pilot):
+        app.sessions.open(LESSON_9)
+        await settle(pilot)
+        assert isinstance(app.screen, LessonDeck)
+        assert panels == [0]
 
 
 def test_a_flood_of_updates_is_bounded_while_the_app_is_busy() -> None:
