@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
     from launcher.supervisor_plan import Plan
 
+LESSON_PACKAGES = ("nodes",)
+"""Most profiles' nodes are from it. A name and no more: nothing of it is imported here."""
 ANSWER_WITHIN_S = 30.0
 END_WITHIN_S = 4.0
 """For so long one that is not wanted any more may stop what it has begun."""
@@ -40,7 +42,7 @@ class StartingSupervisor:
         self._begun = False
         self._words = os.memfd_create("supervisor")
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "launcher.supervisor", ROOM_ARGUMENT],
+            [sys.executable, "-m", "launcher.supervisor", *LESSON_PACKAGES, ROOM_ARGUMENT],
             # There `launcher` is this package, whatever the user's folder has of that name.
             cwd=Path(launcher.__file__).parent.parent,
             stdin=subprocess.PIPE,

@@ -30,7 +30,7 @@ from launcher.spawn_server_undertaker import undertake
 from launcher.spawn_server_warm import Preload
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 MAX_FDS = 4
 COLLECT_EVERY_S = 0.05
@@ -71,7 +71,7 @@ class SpawnServer:
 
     def _request_is_there(self) -> bool:
         """Wait for a request, but do not wait while there is something to be imported."""
-        timeout = None if self._preload.done else 0.0
+        timeout = self._preload.wait_s
         if self._intermediates:
             self._collect()
             timeout = COLLECT_EVERY_S if timeout is None else timeout
@@ -144,14 +144,17 @@ def _answer(link: socket.socket, answer: dict[str, Any]) -> None:
         link.send(json.dumps(answer).encode())
 
 
-def serve(link: socket.socket, supervisor: int, *, cold: bool) -> None:
-    """Serve; at the end of the socket be the undertaker; in a forked node be the node."""
+def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold: bool) -> None:
+    """Serve; at the end of the socket be the undertaker; in a forked node be the node.
+
+    `packages`: those whose shared modules the nodes to come will need, as far as that is known.
+    """
     # Whoever started the supervisor may have had these ignored, and a terminal is none of ours.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     # A node inherits this: one that is asked to end at once must not take that for ignored.
     signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
-    server = SpawnServer(link, supervisor, Preload(cold=cold))
+    server = SpawnServer(link, supervisor, Preload(packages, cold=cold))
     task = server.serve()
     if task is not None:
         task()
@@ -163,7 +166,7 @@ def main() -> None:
     """Serve on the socket that the arguments tell of."""
     link = socket.socket(fileno=int(sys.argv[1]))
     link.set_inheritable(False)
-    serve(link, int(sys.argv[2]), cold=sys.argv[3] == "cold")
+    serve(link, int(sys.argv[2]), (), cold=sys.argv[3] == "cold")
 
 
 if __name__ == "__main__":

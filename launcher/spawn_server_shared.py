@@ -1,8 +1,9 @@
 """Modules that many nodes of a project share, imported once for all of them.
 
-A package names them itself: `__preload__ = ("_life", "_topics")` in its `__init__.py`. They are
-the user's to edit at any time, so a node that is forked later looks whether they are still as
-they were, and imports them anew if not.
+A package names them itself in its `__init__.py`: in `__preload__ = ("_life", "_topics")` what
+nearly every node needs, in `__preload_idle__` what some need, for when there is time. They are the
+user's to edit at any time, so a node that is forked later looks whether they are still as they
+were, and imports them anew if not.
 """
 
 from __future__ import annotations
@@ -29,18 +30,23 @@ class SharedModules:
         self._packages: dict[str, dict[str, _Stamp]] = {}
 
     def load(self, package: str) -> Iterator[str]:
-        """Import what `package` names, step by step; leave out what does not go."""
-        before = set(sys.modules)
+        """Import what `package` says nearly every node needs, step by step."""
+        return self._load(package, "__preload__")
+
+    def load_idly(self, package: str) -> Iterator[str]:
+        """Import what `package` says some nodes need, step by step."""
+        return self._load(package, "__preload_idle__")
+
+    def _load(self, package: str, attribute: str) -> Iterator[str]:
+        """Leave out what does not go."""
+        stamps = self._packages.setdefault(package, {})
         with contextlib.suppress(Exception):
-            names = getattr(importlib.import_module(package), "__preload__", ())
-            for name in names:
-                importlib.import_module(f"{package}.{name}")
+            with _noting(stamps):
+                loaded = importlib.import_module(package)
+            for name in getattr(loaded, attribute, ()):
+                with _noting(stamps):
+                    importlib.import_module(f"{package}.{name}")
                 yield name
-        self._packages[package] = {
-            name: _stamp(sys.modules[name])
-            for name in set(sys.modules) - before
-            if _is_project(sys.modules[name])
-        }
 
     def renew(self, module: str) -> None:
         """In a forked node: drop what is no longer as it was imported.
@@ -56,6 +62,18 @@ class SharedModules:
                     sys.modules.pop(name, None)
             elif module.startswith(f"{package}."):
                 importlib.reload(sys.modules[package])
+
+
+@contextlib.contextmanager
+def _noting(stamps: dict[str, _Stamp]) -> Iterator[None]:
+    """Note how the project's modules were that are imported meanwhile, even if the last fails."""
+    before = set(sys.modules)
+    try:
+        yield
+    finally:
+        for name in set(sys.modules) - before:
+            if _is_project(sys.modules[name]):
+                stamps[name] = _stamp(sys.modules[name])
 
 
 def _is_project(module: ModuleType) -> bool:

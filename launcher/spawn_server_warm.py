@@ -39,33 +39,51 @@ _INTERFACES = (
     "example_interfaces.srv",
 )
 
+IDLE_AFTER_S = 0.3
+"""Longer than the gaps in a start, when the processors are for others."""
+
 
 class Preload:
     """The imports, one step at a time, so that the server can answer in between."""
 
-    def __init__(self, *, cold: bool) -> None:
-        """`cold`: there is nothing to be imported."""
+    def __init__(self, packages: Iterable[str] = (), *, cold: bool) -> None:
+        """`packages`: whose shared modules to import too; `cold`: nothing is to be imported."""
         self.done = cold
         self.broken = "" if not cold else "cold"
         """Why warm nodes cannot be forked; empty if they can."""
         self.shared = SharedModules()
         self._steps: Iterator[str] = self._all_steps()
+        self._idle_steps: Iterator[str] = iter(())
+        self._idle = True
+        self._packages: set[str] = set()
+        self.also(packages)
+
+    @property
+    def wait_s(self) -> float | None:
+        """How long to wait for a request before the next step; None: there is no other step."""
+        if not self.done:
+            return 0.0
+        return None if self._idle else IDLE_AFTER_S
 
     def also(self, packages: Iterable[str]) -> None:
         """Import then what these packages name."""
-        if not self.broken:
-            self._steps = chain(self._steps, self._shared_steps(packages))
-            self.done = False
+        new = [package for package in packages if package not in self._packages]
+        if new and not self.broken:
+            self._packages.update(new)
+            self._steps = chain(self._steps, self._shared_steps(new))
+            self._idle_steps = chain(self._idle_steps, self._some_steps(new))
+            self.done = self._idle = False
 
     def step(self) -> None:
         """Import the next thing, if there is one."""
-        if self.done:
-            return
         try:
-            if next(self._steps, None) is None:
-                self.done = True
+            if not self.done:
+                self.done = next(self._steps, None) is None
+            elif not self._idle:
+                self._idle = next(self._idle_steps, None) is None
         except Exception as problem:  # noqa: BLE001 - the imports are not ours
-            self.done, self.broken = True, f"{type(problem).__name__}: {problem}"
+            self.done = self._idle = True
+            self.broken = f"{type(problem).__name__}: {problem}"
 
     def _all_steps(self) -> Iterator[str]:
         # Next to nothing of what is imported is garbage; looking for it would take 50 ms.
@@ -86,6 +104,11 @@ class Preload:
     def _shared_steps(self, packages: Iterable[str]) -> Iterator[str]:
         for package in packages:
             yield from self.shared.load(package)
+        yield _freeze()
+
+    def _some_steps(self, packages: Iterable[str]) -> Iterator[str]:
+        for package in packages:
+            yield from self.shared.load_idly(package)
         yield _freeze()
 
 

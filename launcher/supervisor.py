@@ -1,6 +1,7 @@
 """The supervisor: starts a session's nodes, watches them, and ends them.
 
-`python -m launcher.supervisor` is started by `launcher.client.launch`. Its plan comes as one line
+`python -m launcher.supervisor PACKAGE... ROOM` is started by `launcher.client.launch`; it may be
+told beforehand the packages that its nodes will be from. Its plan comes as one line
 on stdin, which then stays open as long as the client lives: in the foreground, its end is the
 end of the session. It answers with one line on stdout: where to connect, or why not.
 """
@@ -8,6 +9,7 @@ end of the session. It answers with one line on stdout: where to connect, or why
 from __future__ import annotations
 
 import os
+import sys
 
 from launcher.process_ties import become_subreaper
 from launcher.spawn_server_start import fork_spawn_server
@@ -23,7 +25,7 @@ def main() -> None:
     become_subreaper()
     run_id = new_run_id()
     # First of all: what it imports takes longer than all that is done here meanwhile.
-    spawn_server = fork_spawn_server(run_id)
+    spawn_server = fork_spawn_server(run_id, sys.argv[1:-1])
 
     import asyncio
 

@@ -21,6 +21,19 @@ def _leave(_number: int, _frame: FrameType | None) -> None:
 
 __preload__ = ("_life", "_node", "_parameters", "_speech", "_topics")
 """What nearly every node imports: the launcher's spawn server may import it ahead for all."""
+__preload_idle__ = (
+    "_refusals",
+    "_emergency",
+    "_drive_repeat",
+    "_safety_gate",
+    "_sole_publisher",
+    "_head_client",
+    "_room_scene",
+    "_scene",
+    "_servo_client",
+    "_sound",
+)
+"""What some nodes import: the spawn server may import it while nobody waits for a node."""
 
 if sys.argv[0] == "-m":
     # `python -m nodes.x` is importing this package on its way to the node. A Ctrl-C that comes

@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import time
 from collections.abc import AsyncIterator, Callable, Iterator
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +16,7 @@ from launcher.process_spawner import Born, Spawner, SpawnError, SpawnRequest
 from launcher.process_table import RUN_MARK, Process, processes, read_marks, read_process
 from launcher.process_ties import become_subreaper
 from launcher.spawn_server_start import start_spawn_server
+from launcher.spawn_server_warm import IDLE_AFTER_S
 from tests.waiting import until
 
 Make = Callable[..., Spawner]
@@ -166,3 +169,28 @@ async def test_where_no_spawn_server_can_be_started_it_is_said(
             await spawner.spawn(SLEEP, nowhere)
     assert "no spawn server can be started: Resource temporarily unavailable" in told
     assert lives(await spawner.spawn(SLEEP, nowhere))
+
+
+async def test_what_some_nodes_need_is_imported_while_nobody_waits(
+    make: Make, tmp_path: Path
+) -> None:
+    told: list[str] = []
+    spawner = make(told, warm=True)
+    spawner.preload(["nodes"])
+    tell = tmp_path / "tell.py"
+    tell.write_text("import sys\nprint('nodes._safety_gate' in sys.modules)\n")
+    out = tmp_path / "out"
+
+    async def has_it() -> bool:
+        with out.open("wb") as file:
+            request = SpawnRequest("module", "tell", "deck: tell", (str(tell),), str(tmp_path))
+            await spawner.spawn(request, (file.fileno(), file.fileno()))
+        await until(lambda: out.read_text().endswith("\n"), "its word")
+        return out.read_text() == "True\n"
+
+    deadline = time.monotonic() + 60
+    # Whoever asks without a pause leaves no time for it.
+    while not await has_it():
+        assert time.monotonic() < deadline
+        await asyncio.sleep(2 * IDLE_AFTER_S)
+    assert told == []

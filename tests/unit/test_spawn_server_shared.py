@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import os
 import sys
 from typing import TYPE_CHECKING
@@ -83,3 +84,26 @@ def test_a_package_that_is_not_there_is_no_trouble() -> None:
     shared = SharedModules()
     assert list(shared.load("no_such_package_of_nodes")) == []
     shared.renew(f"{PACKAGE}.node")
+
+
+def test_what_only_some_nodes_need_is_imported_idly_and_its_edits_are_seen(package: Path) -> None:
+    (package / "__init__.py").write_text(
+        "__preload__ = ('_shared',)\n__preload_idle__ = ('_rare',)\n"
+    )
+    (package / "_rare.py").write_text("VALUE = 'before'\n")
+    shared = SharedModules()
+    assert list(shared.load(PACKAGE)) == ["_shared"]
+    assert f"{PACKAGE}._rare" not in sys.modules
+    assert list(shared.load_idly(PACKAGE)) == ["_rare"]
+    (package / "_rare.py").write_text("VALUE = 'afterwards'\n")
+    importlib.invalidate_caches()
+    shared.renew(f"{PACKAGE}.node")
+    assert importlib.import_module(f"{PACKAGE}._rare").VALUE == "afterwards"
+    assert value() == "before"
+
+
+def test_the_lesson_nodes_name_modules_that_there_are() -> None:
+    nodes = importlib.import_module("nodes")
+    named = (*nodes.__preload__, *nodes.__preload_idle__)
+    missing = [name for name in named if importlib.util.find_spec(f"nodes.{name}") is None]
+    assert missing == []
