@@ -25,6 +25,7 @@ MEASUREMENTS = {
     "many_topics": "Topics open, under a hundred Float32 at 100 Hz",
     "large_messages": "Topics open on a PointCloud2 of 5 MB at 10 Hz",
     "pictures": "Topics open on a 1280x720 camera at 30 Hz",
+    "slow_line": "A moving picture on a line of 64 kB/s, and keys beside it",
     "observer": "The observer alone, under the same load",
     "recording": "Recording 10 MB/s",
     "log_view": "The log view alone, under 10 000 lines/s",

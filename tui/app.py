@@ -17,6 +17,7 @@ from tui.actions import REGISTRY, Acting, Action, bindings
 from tui.actions.app import APP_ACTIONS, EmergencyStop
 from tui.actions.recording import RECORDING_ACTIONS
 from tui.actions.replay import REPLAY_ACTIONS
+from tui.bandwidth import Bandwidth
 from tui.brake import Brake
 from tui.faults import Faults
 from tui.feed import Feed, GraphReady
@@ -99,6 +100,8 @@ class DeckApp(App[int], Acting):
         self.strangers = Strangers()
         self.recording = Recording(self)
         self.nap = Nap()
+        self.bandwidth = Bandwidth()
+        """What is written to the terminal, and how much of pictures that may be."""
         self.last_lesson = ""
         """The profile that was started last, where the list of lessons begins."""
         self._harmless = Harmless()
@@ -332,12 +335,14 @@ def run_screen(
     domain: int | None = None,
     lang: str | None = None,
     attach: str | None = None,
+    bandwidth: int | None = None,
 ) -> int:
     """Show the screen until it is left; return the exit code of the program.
 
     With a `profile` that is started, with `attach` that session is shown, else one is picked.
+    `bandwidth` is as in `run_live`.
     """
     from tui.live import run_live
 
     order = Order(profile, attach, hardware, tuple(overrides), domain)
-    return run_live(order, lang)
+    return run_live(order, lang, bandwidth)

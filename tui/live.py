@@ -18,6 +18,7 @@ from launcher.status import LogLine, Severity
 from text.plain import plain
 from tui import clock
 from tui.app import DeckApp, every_action
+from tui.bandwidth import Bandwidth, default_limit
 from tui.cli.output import say_error
 from tui.i18n import _, detect, set_language
 from tui.isolation import isolating
@@ -44,8 +45,11 @@ SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 class LiveApp(DeckApp):
     """Leaves orderly whatever the terminal does, and remembers what was settled."""
 
-    def __init__(self, order: Order, stray: StrayOutput, settings: Settings) -> None:
+    def __init__(
+        self, order: Order, stray: StrayOutput, settings: Settings, bandwidth: Bandwidth
+    ) -> None:
         super().__init__(LivePad(), order, driver_class=DeckDriver, journal=self.note_fault)
+        self.bandwidth = bandwidth
         self.terminal_fd = stray.terminal_fd
         self._stray = stray
         self._settings = settings
@@ -145,8 +149,11 @@ def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogL
     ]
 
 
-def run_live(order: Order, lang: str | None) -> int:
-    """Run the app on this terminal; return the exit code of the program."""
+def run_live(order: Order, lang: str | None, bandwidth: int | None = None) -> int:
+    """Run the app on this terminal; return the exit code of the program.
+
+    `bandwidth` is for pictures, in bytes a second, 0 for any; by default as fits the terminal.
+    """
     gc.set_threshold(GARBAGE_AFTER)
     set_language(detect(lang))
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
@@ -158,8 +165,9 @@ def run_live(order: Order, lang: str | None) -> int:
     except (SettingsError, LauncherError) as error:
         return _refused(str(error))
     set_language(detect(lang, settled=settings.language))
+    limit = default_limit(os.environ) if bandwidth is None else bandwidth
     with stray, isolating():
-        app = LiveApp(order, stray, settings)
+        app = LiveApp(order, stray, settings, Bandwidth(limit))
         app.run()
     if app.sessions.parting_words:
         return _refused(app.sessions.parting_words, app.return_code or 0)

@@ -21,6 +21,7 @@ from textual.drivers.linux_driver import LinuxDriver
 from textual.events import Resize
 from textual.geometry import Size
 
+from tui.bandwidth import Bandwidth
 from tui.thrift import Thrift
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
         """An app that knows its terminal."""
 
         terminal_fd: int
+        bandwidth: Bandwidth
 
 
 MOST_WAITING = 1_000_000
@@ -45,9 +47,12 @@ class Terminal:
     again: then `on_caught_up` is called, for a full repaint. It is called on another thread.
     """
 
-    def __init__(self, fd: int, on_caught_up: Callable[[], object]) -> None:
-        """Write to `fd` on a thread of its own."""
+    def __init__(
+        self, fd: int, on_caught_up: Callable[[], object], bandwidth: Bandwidth | None = None
+    ) -> None:
+        """Write to `fd` on a thread of its own, and tell `bandwidth` of all that is written."""
         self._fd = fd
+        self._bandwidth = bandwidth or Bandwidth()
         self._thrift = Thrift()
         self._terminal_size = (0, 0)
         self._on_caught_up = on_caught_up
@@ -70,6 +75,8 @@ class Terminal:
             data = self._spared(text).encode("utf-8", "replace")
             self._waiting.append(data)
             self._size += len(data)
+            self._bandwidth.written(len(data))
+            self._bandwidth.behind = True
             if self._size > MOST_WAITING:
                 self._stalled = True
                 self._terminal_size = (0, 0)
@@ -126,6 +133,7 @@ class Terminal:
             self._put(data)
             with self._lock:
                 self._busy = False
+                self._bandwidth.behind = bool(self._waiting)
                 caught_up, self._stalled = self._stalled, False
                 self._lock.notify_all()
             if caught_up:
@@ -151,7 +159,9 @@ class DeckDriver(LinuxDriver):
         """Write to the app's terminal: descriptors 1 and 2 may lead elsewhere."""
         super().__init__(app, **options)  # type: ignore[arg-type]
         fd = app.terminal_fd
-        self._terminal = Terminal(fd, lambda: app.call_later(app.refresh, layout=True))
+        self._terminal = Terminal(
+            fd, lambda: app.call_later(app.refresh, layout=True), app.bandwidth
+        )
         self._file = self._terminal  # type: ignore[assignment]
 
     @property

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -31,10 +31,12 @@ class Deck:
     held: set[str] = field(default_factory=set)
     """What its processes held in shared memory."""
 
-    def open(self, *args: str, columns: int = 120, rows: int = 40) -> Terminal:
-        """Start `deck ARGS` in a terminal of this size."""
+    def open(
+        self, *args: str, columns: int = 120, rows: int = 40, env: Mapping[str, str] | None = None
+    ) -> Terminal:
+        """Start `deck ARGS` in a terminal of this size, with `env` besides its own."""
         argv = [sys.executable, "-m", "tui", *args]
-        terminal = Terminal(argv, columns, rows, self.env, cwd=str(ROOT))
+        terminal = Terminal(argv, columns, rows, {**self.env, **(env or {})}, cwd=str(ROOT))
         self.terminals.append(terminal)
         return terminal
 

@@ -45,6 +45,7 @@ KEYS = {
 
 
 KEPT = 4_000_000
+PACKET = 1024
 
 
 class Terminal:
@@ -53,6 +54,7 @@ class Terminal:
     Attributes:
         received: bytes that the program has written to the terminal so far.
         kept: those bytes, as many as come before the first `KEPT`.
+        bytes_per_s: how fast the line to it is; 0 for any speed.
     """
 
     def __init__(
@@ -65,6 +67,7 @@ class Terminal:
     ) -> None:
         self.received = 0
         self.kept = bytearray()
+        self.bytes_per_s = 0
         self._lock = threading.Lock()
         self._hung_up = threading.Event()
         self._screen = pyte.Screen(columns, rows)
@@ -206,9 +209,11 @@ class Terminal:
             if not select.select([self._master], [], [], 0.05)[0]:
                 continue
             try:
-                data = os.read(self._master, 65536)
+                data = os.read(self._master, PACKET if self.bytes_per_s else 65536)
             except OSError:
                 break
+            if self.bytes_per_s:
+                time.sleep(len(data) / self.bytes_per_s)
             with self._lock:
                 self.received += len(data)
                 if len(self.kept) < KEPT:

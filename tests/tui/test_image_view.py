@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -11,6 +12,8 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
+from tests.waiting import until
+from tui.bandwidth import Bandwidth
 from tui.widgets.half_blocks import changed_spans, coarser, fitting_size
 from tui.widgets.image_view import ImageView
 
@@ -22,6 +25,10 @@ RED, BLUE = (255, 0, 0), (0, 0, 255)
 
 class PictureApp(App[None]):
     """A bare app with nothing but the picture."""
+
+    def __init__(self, limit: int = 0) -> None:
+        super().__init__()
+        self.bandwidth = Bandwidth(limit)
 
     def compose(self) -> ComposeResult:
         """The picture fills the screen."""
@@ -141,6 +148,66 @@ async def test_camera_noise_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> No
         for _ in range(20):
             app.view.show((picture + noise.integers(-3, 4, picture.shape)).astype(np.uint8))
         assert asked == []
+
+
+def ground(view: ImageView) -> tuple[int, int, int] | None:
+    """The colour of the picture's first cell."""
+    room = view.rich_style.bgcolor
+    colors = [seg.style.bgcolor for seg in view.render_line(0) if seg.style is not None]
+    return next(color.triplet for color in colors if color is not None and color != room)
+
+
+async def test_of_those_that_come_while_the_line_is_busy_the_newest_alone_is_shown() -> None:
+    app = PictureApp()
+    async with app.run_test(size=(50, 9)):
+        app.view.show(plain_picture(16, 16, RED), "rgb8", hz="15")
+        app.bandwidth.behind = True
+        for color in ((0, 255, 0), (255, 255, 0), BLUE):
+            app.view.show(plain_picture(16, 16, color), "rgb8", hz="15")
+            assert ground(app.view) == RED
+        app.bandwidth.behind = False
+        await until(lambda: ground(app.view) == BLUE, "the newest picture")
+        assert " of 15 Hz: the terminal is slow" in app.view.caption
+
+
+async def test_beyond_the_limit_a_picture_waits_and_the_caption_says_how_many_are_shown() -> None:
+    app = PictureApp(40_000)
+    async with app.run_test(size=(60, 9)):
+        app.view.show(plain_picture(16, 16, RED), "rgb8", hz="15")
+        assert app.view.caption == "rgb8 · 15 Hz"
+        app.bandwidth.written(30_000)
+        app.view.show(plain_picture(16, 16, (0, 255, 0)), "rgb8", hz="15")
+        app.view.show(plain_picture(16, 16, BLUE), "rgb8", hz="15")
+        assert ground(app.view) == RED
+        await until(lambda: ground(app.view) == BLUE, "the newest picture")
+        assert re.fullmatch(r"rgb8 · \d+\.\d of 15 Hz: limited to 40 kB/s", app.view.caption)
+
+
+async def test_words_do_not_wait_and_no_older_picture_comes_after_them() -> None:
+    app = PictureApp(1_000)
+    async with app.run_test(size=(40, 9)) as pilot:
+        app.view.show(plain_picture(16, 16, RED))
+        app.bandwidth.written(600)
+        app.view.show(plain_picture(16, 16, BLUE))
+        app.view.show_words("no publisher")
+        await until(lambda: not app.bandwidth.wait_s(), "the line free")
+        await pilot.pause()
+        assert app.view.words == ("no publisher", "")
+        assert not app.view.has_picture
+        app.bandwidth.written(10_000)
+        app.view.show(plain_picture(16, 16, BLUE))
+        assert ground(app.view) == BLUE  # The first of a stream is awaited.
+
+
+async def test_a_picture_that_waits_is_drawn_with_a_new_size() -> None:
+    app = PictureApp(1_000)
+    async with app.run_test(size=(40, 9)) as pilot:
+        app.view.show(plain_picture(16, 16, RED))
+        app.bandwidth.written(100_000)
+        app.view.show(plain_picture(16, 16, BLUE))
+        await pilot.resize_terminal(60, 20)
+        await pilot.pause()
+        assert ground(app.view) == BLUE
 
 
 async def test_words_stand_in_place_of_a_picture_and_go_when_one_comes() -> None:

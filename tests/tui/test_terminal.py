@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.waiting import wait_until
+from tui.bandwidth import Bandwidth
 from tui.stray_output import StrayOutput
 from tui.terminal import MOST_WAITING, Terminal
 
@@ -89,6 +90,18 @@ def test_more_than_may_wait_at_once_stalls_for_a_moment_only(line: tuple[int, in
     assert caught_up.wait(20), "nobody was told that the terminal takes again"
     terminal.write("on we go")
     assert "on we go" in read_all(own, "on we go")
+
+
+def test_it_is_behind_until_the_terminal_has_taken_all(line: tuple[int, int]) -> None:
+    own, program = line
+    bandwidth = Bandwidth(40_000)
+    terminal = Terminal(program, lambda: None, bandwidth)
+    terminal.write("x" * 100_000 + "end")
+    wait_until(lambda: not select.select([], [program], [], 0)[1], "the terminal full")
+    assert bandwidth.behind
+    assert bandwidth.wait_s() > 1
+    read_all(own, "end")
+    wait_until(lambda: not bandwidth.behind, "all taken")
 
 
 def test_leaving_a_stalled_terminal_is_bounded(line: tuple[int, int]) -> None:

@@ -430,6 +430,20 @@ async def test_depth_has_a_scale_in_metres(room: Room) -> None:
     assert scale.strip().endswith("4 m far")
 
 
+async def test_no_picture_of_the_topic_before_stays_while_the_line_is_busy(room: Room) -> None:
+    await room.choose(CAMERA)
+    await room.show(with_camera("sensor_msgs/msg/Image", depth_message()))
+    view = room.screen.detail.picture
+    assert view.has_picture
+    room.pilot.app.bandwidth.behind = True
+    await room.choose("/drive")
+    assert not view.has_picture
+    await room.choose(CAMERA)
+    await room.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message()))
+    await room.decoded()
+    assert view.caption == "jpeg 640×480 · 10.0 Hz"
+
+
 async def test_a_compressed_image_is_decoded_and_shown(room: Room) -> None:
     await room.choose(CAMERA)
     await room.show(with_camera("sensor_msgs/msg/CompressedImage", jpeg_message()))

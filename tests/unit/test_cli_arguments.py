@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tui.cli import main
-from tui.cli.arguments import COMMANDS, split
+from tui.cli.arguments import COMMANDS, parser_of, split
 from tui.i18n import set_language
 
 
@@ -32,6 +32,7 @@ def _english_after() -> Iterator[None]:
         (["--lang=ru", "list"], "list", ["--lang=ru"]),
         (["9", "--hardware", "mock"], "open", ["9", "--hardware", "mock"]),
         (["./run"], "open", ["./run"]),
+        (["--bandwidth", "40", "watch"], "watch", ["--bandwidth", "40"]),
         (["mylist", "run"], "open", ["mylist", "run"]),
         (["--set", "run", "list"], "list", ["--set", "run"]),
         (["help"], "open", ["--help"]),
@@ -57,6 +58,11 @@ def test_the_command_word_is_found(words: list[str], command: str, rest: list[st
         (["list", "--lang", "fr"], "invalid choice: 'fr'"),
         (["logs", "x", "-n", "many"], "'many' is no number of lines"),
         (["logs", "x", "-n", "-3"], "'-3' is no number of lines"),
+        (["--bandwidth", "fast"], "'fast' is no bandwidth; expected kB/s from 1 on, as 40, or off"),
+        (["replay", "x", "--bandwidth", "0.5"], "'0.5' is no bandwidth"),
+        (["attach", "--bandwidth", "nan"], "'nan' is no bandwidth"),
+        (["watch", "--bandwidth=-40"], "'-40' is no bandwidth"),
+        (["run", "9", "--bandwidth", "40"], "unrecognized arguments: --bandwidth 40"),
         (["record", "-o", ""], "the name of a folder is missing"),
         (["down", "a", "b"], "unrecognized arguments: b"),
     ],
@@ -70,6 +76,18 @@ def test_a_wrong_word_is_told_with_the_way_to_the_help(
     assert told in output.err
     assert "--help" in output.err
     assert "Traceback" not in output.err
+
+
+@pytest.mark.parametrize(
+    ("typed", "limit"),
+    [(None, None), ("40", 40_000), ("40k", 40_000), ("12.5", 12_500), ("0", 0), ("off", 0)],
+)
+@pytest.mark.parametrize("command", [[], ["attach"], ["watch"], ["replay", "bag"]])
+def test_pictures_are_given_so_many_bytes_a_second(
+    command: list[str], typed: str | None, limit: int | None
+) -> None:
+    name, rest = split([*command, *([] if typed is None else ["--bandwidth", typed])])
+    assert parser_of(name).parse_args(rest).bandwidth == limit
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -10,7 +10,7 @@ import argparse
 from typing import IO, TYPE_CHECKING, NoReturn
 
 from tui.cli.output import harmless
-from tui.cli.values import count, domain, folder, rate, seconds
+from tui.cli.values import bandwidth, count, domain, folder, rate, seconds
 from tui.i18n import LANGUAGES, N_, _, ngettext
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ COMMANDS = {
 }
 HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
-WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--lang")
+WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
 """Options that may stand before the command word."""
 
 
@@ -115,6 +115,7 @@ def _open_parser() -> Parser:
         "profile", nargs="?", metavar="PROFILE", help=_("name, lesson number or file: 09-brain")
     )
     _add_profile_options(parser)
+    _add_bandwidth(parser)
     _add_language(parser)
     parser.add_argument("--version", action="store_true", help=_("show the version and exit"))
     return parser
@@ -186,6 +187,11 @@ def _add_running(parser: Parser) -> None:
     )
 
 
+def _add_attach(parser: Parser) -> None:
+    _add_running(parser)
+    _add_bandwidth(parser)
+
+
 def _add_watch(parser: Parser) -> None:
     parser.add_argument(
         "--domain",
@@ -199,6 +205,7 @@ def _add_watch(parser: Parser) -> None:
         default="localhost",
         help=_("look on this machine only, the default, or on the network too"),
     )
+    _add_bandwidth(parser)
     parser.epilog = _("Deck starts nothing here, and leaves running what runs.")
 
 
@@ -248,6 +255,7 @@ def _add_replay(parser: Parser) -> None:
         default=0.0,
         help=_("begin S seconds after the first message"),
     )
+    _add_bandwidth(parser)
 
 
 def _add_doctor(parser: Parser) -> None:
@@ -262,7 +270,7 @@ _ADD = {
     "up": _add_up,
     "ps": _add_ps,
     "logs": _add_logs,
-    "attach": _add_running,
+    "attach": _add_attach,
     "down": _add_running,
     "watch": _add_watch,
     "record": _add_record,
@@ -294,6 +302,15 @@ def _add_profile_options(parser: Parser) -> None:
     )
     parser.add_argument(
         "--domain", metavar="N", type=domain, help=_("ROS domain, 0 to 232, best 1 to 101")
+    )
+
+
+def _add_bandwidth(parser: Parser) -> None:
+    parser.add_argument(
+        "--bandwidth",
+        metavar="KB",
+        type=bandwidth,
+        help=_("for pictures, kB/s to the terminal, or off; by default 40 over SSH, else off"),
     )
 
 

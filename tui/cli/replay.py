@@ -25,7 +25,7 @@ def replay_command(options: Namespace) -> int:
     from tui.live import run_live
 
     order = ReplayOrder(bag, options.rate, options.loop, options.start)
-    return run_live(Order(replay=order), options.lang)
+    return run_live(Order(replay=order), options.lang, options.bandwidth)
 
 
 def _check(bag: Path, *, whole: bool) -> None:

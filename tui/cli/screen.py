@@ -37,6 +37,7 @@ def open_command(options: Namespace) -> int:
         domain=options.domain,
         lang=options.lang,
         attach=None,
+        bandwidth=options.bandwidth,
     )
 
 
@@ -73,7 +74,12 @@ def attach_command(options: Namespace) -> int:
     session = find_running(options.name).session
     from tui.app import run_screen
 
-    return run_screen(None, lang=options.lang, attach=options.name or session.name)
+    return run_screen(
+        None,
+        lang=options.lang,
+        attach=options.name or session.name,
+        bandwidth=options.bandwidth,
+    )
 
 
 def has_terminal() -> bool:

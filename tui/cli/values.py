@@ -43,6 +43,21 @@ def rate(text: str) -> float:
     return rate
 
 
+def bandwidth(text: str) -> int:
+    """Return bytes a second, 0 for any number: `40` and `40k` are 40 kB/s, `off` is as `0`."""
+    number = text.lower().removesuffix("k")
+    if number in ("off", "0"):
+        return 0
+    try:
+        kilobytes = float(number)
+    except ValueError:
+        kilobytes = math.nan
+    if not 1 <= kilobytes < math.inf:
+        words = _("{text!r} is no bandwidth; expected kB/s from 1 on, as 40, or off")
+        raise argparse.ArgumentTypeError(words.format(text=text))
+    return round(1000 * kilobytes)
+
+
 def folder(text: str) -> str:
     """Return the name of a folder, which is not empty."""
     if not text:

@@ -27,4 +27,5 @@ def watch_command(options: Namespace) -> int:
 
     # There may be no supervisor here that does it.
     discard_unfinished()
-    return run_live(Order(watch=WatchOrder(domain, options.discovery)), options.lang)
+    order = Order(watch=WatchOrder(domain, options.discovery))
+    return run_live(order, options.lang, options.bandwidth)

@@ -62,9 +62,6 @@ class CameraFeed(Panel):
         except ImageError as error:
             view.show_words(_("this picture cannot be shown"), said(error.words))
             return
-        view.show(picture, self._caption(update, picture.shape[1], picture.shape[0]))
-
-    def _caption(self, update: GraphUpdate, width: int, height: int) -> str:
         row = row_of(update, TOPIC)
-        hz = "" if row is None or row.hz is None else _(" · {hz} Hz").format(hz=whole(row.hz))
-        return f"{width}×{height}{hz}"
+        hz = "" if row is None or row.hz is None else whole(row.hz)
+        view.show(picture, f"{picture.shape[1]}×{picture.shape[0]}", hz=hz)

@@ -11,7 +11,6 @@ from text.plain import plain
 from tui.i18n import _, said
 from tui.screens.topics_plotting import PlotPlace, TopicsPlotting
 from tui.widgets.image_view import Scale
-from tui.widgets.topic_words import BETWEEN
 from tui.widgets.topics_table_columns import hz_text
 
 if TYPE_CHECKING:
@@ -122,13 +121,12 @@ class TopicsPictures(TopicsPlotting):
     def _put(self, picture: Picture) -> None:
         row = self.table.chosen_row
         size = f"{plain(picture.encoding, LONGEST)} {picture.width}×{picture.height}"
-        rate = f"{hz_text(row.hz if row else None)} {_('Hz')}"
         scale = None
         if picture.range_m is not None:
             near, far = (_("{n} m").format(n=f"{metres:g}") for metres in picture.range_m)
             first = _("near {distance}").format(distance=near)
             scale = Scale(first, _("{distance} far").format(distance=far), ramp_colours())
-        self.detail.show_picture(picture.rgb, f"{size}{BETWEEN}{rate}", scale)
+        self.detail.show_picture(picture.rgb, size, scale, hz_text(row.hz if row else None))
 
     def _refuse(self, sample: Sample, error: ImageError) -> None:
         headline = _("this picture cannot be shown")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from rich.cells import cell_len
 from rich.color import Color
@@ -14,12 +14,19 @@ from textual.widget import Widget
 
 from graph.images import shrink
 from text.plain import plain
+from tui import clock
+from tui.bandwidth import Pace
+from tui.figures import figure
+from tui.i18n import _
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, in_row, word_strips
 
 if TYPE_CHECKING:
     from textual.events import Resize
+    from textual.timer import Timer
 
+    from tui.app import DeckApp
+    from tui.bandwidth import Bandwidth
     from tui.widgets.half_blocks import Pixels
 
 CAPTION_FROM = 4
@@ -40,11 +47,22 @@ class Scale(NamedTuple):
     """Shape (n, 3)."""
 
 
+class Picture(NamedTuple):
+    """What is asked to be shown."""
+
+    rgb: Pixels
+    caption: str
+    scale: Scale | None
+    hz: str
+    """How many come a second; empty if that is not known."""
+
+
 class ImageView(OneStyle, Widget):
     """Shows an RGB picture in half-blocks, or words where there is none.
 
     Only cells whose colour changed visibly are drawn again. `bits` is the depth of a channel:
-    fewer bits, fewer bytes to the terminal.
+    fewer bits, fewer bytes to the terminal. A picture that takes the place of another waits until
+    the line to the terminal is free for it; of those that come meanwhile only the newest is shown.
     """
 
     ALLOW_SELECT = False
@@ -55,32 +73,43 @@ class ImageView(OneStyle, Widget):
     def __init__(self, *, bits: int = 5, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._bits = bits
-        self._source: Pixels | None = None
+        self._newest: Picture | None = None
+        self._waits = False
+        """Whether the newest picture is not drawn yet."""
+        self._timer: Timer | None = None
+        self._pace = Pace()
         self._shown: Pixels | None = None
         self._caption = ""
         self._scale: Scale | None = None
         self._headline = ""
         self._detail = ""
 
-    def show(self, rgb: Pixels, caption: str = "", scale: Scale | None = None) -> None:
+    def show(
+        self, rgb: Pixels, caption: str = "", scale: Scale | None = None, hz: str = ""
+    ) -> None:
         """Show a picture of shape (height, width, 3) at any size, with a line of text under it.
 
-        A scale stands between picture and text.
+        A scale stands between picture and text, which ends with the rate.
         Raises `ValueError` when the array has another shape.
         """
         if rgb.shape[2:] != (3,) or not rgb.size:
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
-        self._source = rgb
+        self._newest = Picture(rgb, caption, scale, hz)
         self._headline = self._detail = ""
-        self._set_scale(scale)
-        self._draw()
-        self._set_caption(caption)
+        if self._waits:
+            self._pace.left_out(clock.steady())
+        elif self._shown is None or not (wait_s := self._bandwidth.wait_s()):
+            self._take(self._newest)
+        else:
+            self._waits = True
+            self._look_in(wait_s)
 
     def show_words(self, headline: str, detail: str = "") -> None:
         """Show why there is no picture, in place of one."""
-        if self._source is None and (headline, detail) == (self._headline, self._detail):
+        if self._newest is None and (headline, detail) == (self._headline, self._detail):
             return
-        self._source = self._shown = None
+        self._newest = self._shown = None
+        self._waits = False
         self._headline, self._detail, self._caption = headline, detail, ""
         self._scale = None
         self.refresh()
@@ -88,7 +117,7 @@ class ImageView(OneStyle, Widget):
     @property
     def has_picture(self) -> bool:
         """Whether a picture is shown now."""
-        return self._source is not None
+        return self._newest is not None
 
     @property
     def pixel_size(self) -> tuple[int, int]:
@@ -137,20 +166,60 @@ class ImageView(OneStyle, Widget):
         strip = Strip(row_segments(self._shown, y - top), self._shown.shape[1])
         return in_row(strip, left, width, self.rich_style)
 
+    @property
+    def _bandwidth(self) -> Bandwidth:
+        return cast("DeckApp", self.app).bandwidth
+
     def _on_resize(self, _event: Resize) -> None:
         self._shown = None
-        self._draw()
+        if self._newest is not None:
+            self._take(self._newest)
 
-    def _draw(self) -> None:
+    def _look_in(self, wait_s: float) -> None:
+        if self._timer is not None:
+            self._timer.stop()
+        self._timer = self.set_timer(wait_s, self._look_again)
+
+    def _look_again(self) -> None:
+        """Draw the newest picture if it may go now."""
+        if self._newest is None or not self._waits:
+            return
+        if wait_s := self._bandwidth.wait_s():
+            self._look_in(wait_s)
+        else:
+            self._take(self._newest)
+
+    def _take(self, picture: Picture) -> None:
+        now_s = clock.steady()
+        self._waits = False
+        self._pace.shown(now_s)
+        self._set_scale(picture.scale)
+        self._draw(picture.rgb)
+        self._set_caption(picture.caption + self._rate_words(picture.hz, now_s))
+
+    def _rate_words(self, hz: str, now_s: float) -> str:
+        shown = self._pace.limited_hz(now_s)
+        if not hz:
+            return ""
+        if shown is None:
+            return _(" · {hz} Hz").format(hz=hz)
+        if self._bandwidth.is_slow:
+            words = _(" · {shown} of {hz} Hz: the terminal is slow")
+        else:
+            words = _(" · {shown} of {hz} Hz: limited to {limit} kB/s")
+        limit = f"{self._bandwidth.limit / 1000:g}"
+        return words.format(shown=figure(shown, 1), hz=hz, limit=limit)
+
+    def _draw(self, source: Pixels) -> None:
         from tui.widgets import half_blocks
 
         width, height = self.size
         rows = height - self._caption_rows(height)
-        if self._source is None or width < 1 or rows < 1:
+        if width < 1 or rows < 1:
             return
         had = self._shown
-        shape = half_blocks.fitting_size(self._source.shape[1], self._source.shape[0], width, rows)
-        fresh = shrink(self._source, *shape)
+        shape = half_blocks.fitting_size(source.shape[1], source.shape[0], width, rows)
+        fresh = shrink(source, *shape)
         if had is None or had.shape != fresh.shape:
             self._shown = half_blocks.coarser(fresh, self._bits)
             self.refresh()

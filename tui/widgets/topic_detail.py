@@ -160,6 +160,8 @@ class TopicDetail(Vertical):
         if row is None or self._row is None or row.name != self._row.name:
             self._sample = self._newest = None
             self.show_as_picture(False)
+            # That of another topic must not stand there until its turn has come.
+            self.picture.show_words("")
             self.filter.show_topic("" if row is None else row.name)
         self._row = row
         self._say()
@@ -172,9 +174,9 @@ class TopicDetail(Vertical):
             self._say()
         self.echo.show(sample.topic, sample.value)
 
-    def show_picture(self, rgb: Pixels, caption: str, scale: Scale | None = None) -> None:
+    def show_picture(self, rgb: Pixels, caption: str, scale: Scale | None, hz: str) -> None:
         """Show the newest message as a picture."""
-        self.picture.show(rgb, caption, scale)
+        self.picture.show(rgb, caption, scale, hz)
 
     def show_no_picture(self, headline: str, detail: str = "") -> None:
         """Say why the newest message is no picture."""
