@@ -148,6 +148,7 @@ def open_topic(folder: Path) -> Terminal:
         "DECK_LOG_DIR": str(folder / "logs"),
         "XDG_CONFIG_HOME": str(folder / "config"),
         "XDG_STATE_HOME": str(folder / "state"),
+        "SSH_CONNECTION": "",  # Else pictures would be held to its limit.
         "LANG": "C.UTF-8",
     }
     argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]
