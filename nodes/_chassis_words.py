@@ -26,11 +26,11 @@ TOO_FAST = Phrase(
 )
 EMERGENCY = Phrase(
     "EMERGENCY STOP: the wheels stand until it is released",
-    "АВАРИЙНАЯ ОСТАНОВКА: колёса стоят, пока её не снимут",
+    "АВАРИЙНЫЙ СТОП: колёса стоят, пока его не снимут",
 )
 RELEASED = Phrase(
     "The emergency stop is released; waiting for a new command",
-    "Аварийная остановка снята; жду новой команды",
+    "Аварийный стоп снят; жду новой команды",
 )
 _REFUSED_BY_PICO = Phrase(
     "The Pico has refused {count} lines: damaged on their way, or more than its config.py allows",
@@ -41,7 +41,7 @@ _DRIVES = Phrase("ready to drive", "готово ехать")
 _NO_ANSWER = Phrase("no Pico answers at {port}", "Pico не отвечает на {port}")
 _REFUSED = Phrase("refused: {refused}", "отказано: {refused}")
 _FLAGS = {
-    "E": Phrase("emergency stop", "аварийная остановка"),
+    "E": Phrase("emergency stop", "аварийный стоп"),
     "W": Phrase("no drive line for 250 ms", "нет строк управления 250 мс"),
     "L": Phrase("fault of the left motor driver", "авария драйвера левого мотора"),
     "R": Phrase("fault of the right motor driver", "авария драйвера правого мотора"),

@@ -43,7 +43,7 @@ WANDERS = Phrase(
 )
 EMERGENCY = Phrase(
     "Emergency stop, {distance:.2f} m from the point",
-    "Аварийная остановка, до точки {distance:.2f} м",
+    "Аварийный стоп, до точки {distance:.2f} м",
 )
 ENDING = Phrase(
     "The node is ending, {distance:.2f} m from the point",
@@ -64,13 +64,13 @@ BAD_TOLERANCE = Phrase(
 )
 HELD = Phrase(
     "Refused: the emergency stop is held, release it first",
-    "Отказ: действует аварийная остановка, сначала снимите её",
+    "Отказ: действует аварийный стоп, сначала снимите его",
 )
 EMERGENCY_HELD = Phrase(
     "EMERGENCY STOP: no goal is driven to until it is released",
-    "АВАРИЙНАЯ ОСТАНОВКА: никуда не еду, пока её не снимут",
+    "АВАРИЙНЫЙ СТОП: никуда не еду, пока его не снимут",
 )
 RELEASED = Phrase(
     "The emergency stop is released; waiting for a new goal",
-    "Аварийная остановка снята; жду новой цели",
+    "Аварийный стоп снят; жду новой цели",
 )

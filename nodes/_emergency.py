@@ -32,26 +32,24 @@ _UNKNOWN = "_UNKNOWN_"
 
 _REMEMBERED = Phrase(
     "EMERGENCY STOP, given before this node was started ({at}): nothing moves until it is released",
-    "АВАРИЙНАЯ ОСТАНОВКА дана до запуска этого узла ({at}): движения нет, пока её не снимут",
+    "АВАРИЙНЫЙ СТОП дан до запуска этого узла ({at}): движения нет, пока его не снимут",
 )
 _UNREADABLE = Phrase(
     "It is not known whether an emergency stop was given before ({problem}):"
     " nothing moves until one is released",
-    "Неизвестно, не была ли раньше дана аварийная остановка ({problem}):"
-    " движения нет, пока её не снимут",
+    "Неизвестно, не был ли раньше дан аварийный стоп ({problem}): движения нет, пока его не снимут",
 )
 _NOT_KEPT = Phrase(
     "The emergency stop holds, but cannot be written to disk ({problem}): it would not outlive"
     " this node",
-    "Аварийная остановка действует, но не записана на диск ({problem}): перезапуска узла она"
-    " не переживёт",
+    "Аварийный стоп действует, но не записан на диск ({problem}): перезапуска узла он не переживёт",
 )
 _NOT_FORGOTTEN = Phrase(
     "The emergency stop is released, but stays on disk ({problem}): the next start will be stopped",
-    "Аварийная остановка снята, но осталась на диске ({problem}): следующий запуск будет стоять",
+    "Аварийный стоп снят, но остался на диске ({problem}): следующий запуск будет стоять",
 )
-_HELD = Phrase("emergency stop until it is released", "аварийная остановка, пока её не снимут")
-_FREE = Phrase("no emergency stop", "аварийной остановки нет")
+_HELD = Phrase("emergency stop until it is released", "аварийный стоп, пока его не снимут")
+_FREE = Phrase("no emergency stop", "аварийного стопа нет")
 
 
 class EmergencyStop:

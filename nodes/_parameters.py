@@ -84,11 +84,10 @@ class Number(Setting):
             if self.low <= number <= self.high:
                 return number
         raise BadValueError(
-            Phrase(
-                "a number from {low:g} to {high:g} {unit}", "числом от {low:g} до {high:g} {unit}"
-            ),
-            low=self.low,
-            high=self.high,
+            Phrase("a number from {low} to {high} {unit}", "числом от {low} до {high} {unit}"),
+            # As one types them.
+            low=f"{self.low:g}",
+            high=f"{self.high:g}",
             unit=self.unit,
         )
 

@@ -68,11 +68,11 @@ _TOO_FAST = Phrase(
 _SILENT = Phrase("No command for {max_age:g} s: stop", "Нет команд дольше {max_age:g} с: стоп")
 _EMERGENCY = Phrase(
     "EMERGENCY STOP: the wheels stand until it is released",
-    "АВАРИЙНАЯ ОСТАНОВКА: колёса стоят, пока её не снимут",
+    "АВАРИЙНЫЙ СТОП: колёса стоят, пока его не снимут",
 )
 _RELEASED = Phrase(
     "The emergency stop is released; waiting for a new command",
-    "Аварийная остановка снята; жду новой команды",
+    "Аварийный стоп снят; жду новой команды",
 )
 _NO_GATE = Phrase(
     "Nobody publishes {topic}: the wheels stand. Deck's safety_stop does with gate: true, that of"

@@ -26,8 +26,8 @@ _PHRASES = {
         "drive left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad",
         "ехать: левое {left:.2f} правое {right:.2f} рад/с, руль {steering:.2f} рад",
     ),
-    "halt": ("EMERGENCY STOP", "АВАРИЙНАЯ ОСТАНОВКА"),
-    "release": ("emergency stop released", "аварийная остановка снята"),
+    "halt": ("EMERGENCY STOP", "АВАРИЙНЫЙ СТОП"),
+    "release": ("emergency stop released", "аварийный стоп снят"),
     "welcome": (
         "the Pico answers: firmware {firmware}, protocol {protocol}",
         "Pico отвечает: прошивка {firmware}, протокол {protocol}",
@@ -54,7 +54,7 @@ _PHRASES = {
     "cut": ("NO WHOLE LINE", "НЕ ЦЕЛАЯ СТРОКА"),
 }
 _FLAGS_RU = {
-    "E": "аварийная остановка",
+    "E": "аварийный стоп",
     "W": "нет строк управления 250 мс",
     "L": "авария левого драйвера",
     "R": "авария правого драйвера",

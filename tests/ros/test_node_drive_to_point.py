@@ -134,7 +134,7 @@ def test_it_reverses_to_a_point_behind(peer: Peer, ros_domain: int) -> None:
         drive = peer.hear("/drive", AckermannDriveStamped)
         asker = Asker(peer)
         assert asker.ask(-0.4, 0.0)
-        assert asker.end()[1].message.startswith("Приехал: до точки 0.")
+        assert asker.end()[1].message.startswith("Приехал: до точки 0,")
         assert min(message.drive.speed for message in drive) < 0
         assert max(message.drive.speed for message in drive) == 0
 

@@ -168,4 +168,4 @@ def test_a_node_takes_a_second_name_and_remapped_topics(peer: Peer, module_domai
 
 def test_nodes_speak_russian_when_asked(module_domain: int) -> None:
     with NodeProcess("nodes.hello", module_domain, lang="ru", params={"period": 0.1}) as process:
-        process.wait_for_words("Привет! Первый узел проснулся.", "Прошло 0.2 с")
+        process.wait_for_words("Привет! Первый узел проснулся.", "Прошло 0,2 с")

@@ -164,9 +164,9 @@ def test_the_gate_leaves_a_stop_behind_when_it_ends(gate: Gate) -> None:
 def test_without_the_gate_it_only_warns(ros_domain: int) -> None:
     with Peer(ros_domain) as peer, NodeProcess("nodes.safety_stop", ros_domain, lang="ru") as node:
         peer.say(FRONT, Float32(data=1.25))
-        node.wait_for_words("Путь свободен (1.25 м)")
+        node.wait_for_words("Путь свободен (1,25 м)")
         peer.say(FRONT, Float32(data=0.31))
-        node.wait_for_words("[WARN]", "Препятствие в 0.31 м")
+        node.wait_for_words("[WARN]", "Препятствие в 0,31 м")
         assert peer.node.count_publishers("/drive_safe") == 0
 
 
@@ -211,7 +211,7 @@ def test_what_is_out_of_range_is_told_in_words(
     ("lang", "metres", "logged"),
     [
         ("en", 0.52, "Free to move, slowed to 4 % (0.52 m)."),
-        ("ru", 0.52, "Ехать можно, но медленнее: 4 % скорости (0.52 м)."),
+        ("ru", 0.52, "Ехать можно, но медленнее: 4 % скорости (0,52 м)."),
         ("en", 0.501, "Free to move, slowed to 1 % (0.50 m)."),
         ("en", 0.999, "Free to move, slowed to 99 % (1.00 m)."),
         ("en", 0.5, "Free to move, slowed to 0 % (0.50 m)."),

@@ -34,7 +34,7 @@ TELEMETRY_EN = (
     " up 61.2 s, seq 3, crc ok"
 )
 TELEMETRY_RU = (
-    "колёса: левое 6.18 правое -6.15 рад/с, руль 0.35 рад, флаги: аварийная остановка,"
+    "колёса: левое 6.18 правое -6.15 рад/с, руль 0.35 рад, флаги: аварийный стоп,"
     " без энкодеров, 7.42 В, левый 0.81 А, исполнено 2, отвергнуто 0, работает 61.2 с,"
     " № 3, crc верна"
 )
@@ -61,11 +61,11 @@ def said(reader: FrameReader, *chunks: bytes) -> list[tuple[str, str]]:
             "drive left 3.20 right 3.40 rad/s steering 0.10 rad, seq 17, crc ok",
             "ехать: левое 3.20 правое 3.40 рад/с, руль 0.10 рад, № 17, crc верна",
         ),
-        (Halt(7), "EMERGENCY STOP, seq 7, crc ok", "АВАРИЙНАЯ ОСТАНОВКА, № 7, crc верна"),
+        (Halt(7), "EMERGENCY STOP, seq 7, crc ok", "АВАРИЙНЫЙ СТОП, № 7, crc верна"),
         (
             Release(8),
             "emergency stop released, seq 8, crc ok",
-            "аварийная остановка снята, № 8, crc верна",
+            "аварийный стоп снят, № 8, crc верна",
         ),
         (
             Welcome(0, 1, "1.0.0"),

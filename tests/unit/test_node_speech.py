@@ -73,3 +73,11 @@ def test_whatever_is_said_is_one_line_without_controls(text: str) -> None:
 
 def test_control_characters_are_shown_as_pictures() -> None:
     assert printable("a\x1b[31m\x00\n") == "a␛[31m␀␊"
+
+
+def test_a_fraction_is_written_in_russian_with_a_comma_and_what_one_types_with_a_point() -> None:
+    phrase = Phrase("{near:.2f} m of {topic}, {count}", "{near:.2f} м от {topic}, {count}")
+    values = {"near": 0.364, "topic": "/sonar.front", "count": 3}
+    russian, english = (Speech(RecordingLogger(), code) for code in ("ru", "en"))  # type: ignore[arg-type]
+    assert russian.text(phrase, **values) == "0,36 м от /sonar.front, 3"
+    assert english.text(phrase, **values) == "0.36 m of /sonar.front, 3"
