@@ -50,12 +50,22 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
         raise FieldError(field, say("expected fields by name, got {value}", value=_shown(tree)))
     fields = dict(fields_of(cls))
     message = cls()
+    before: tuple[str, object] = ("", None)
     for name, value in tree.items():
         path = f"{field}.{name}" if field else str(name)
         if name not in fields:
+            _check_comma(before, name, value)
             raise NoSuchFieldError(path, no_such_field(str(name), list(fields)))
         setattr(message, name, _made(parse(fields[name]), value, path))
+        before = path, value
     return message
+
+
+def _check_comma(before: tuple[str, object], name: object, value: object) -> None:
+    """Of `{x: 0,5}`, which YAML takes for `x: 0` and a field `5`, say what is meant."""
+    path, whole = before
+    if value is None and type(whole) is int and str(name).isdigit():
+        raise FieldError(path, no_number(f"{whole},{name}", ""))
 
 
 def no_such_field(name: str, names: list[str]) -> str:
