@@ -85,7 +85,7 @@ def test_a_form_says_what_may_be_filled_in() -> None:
         ("sensor_msgs/msg/CameraInfo", "width: 1\nk:\n- 1", 2, 1, "k: expected 9 elements, got 1"),
         ("std_msgs/msg/Bool", "da.ta:\n  x: 1", 1, 1, "da.ta: no such field"),
         ("example_interfaces/srv/AddTwoInts", "a: 1\nb: 1.5", 2, 4, "b: expected a whole number"),
-        ("geometry_msgs/msg/Vector3", "{y: 1, x: 0,05}", 1, 12, "x: write a fraction with a point"),
+        ("geometry_msgs/msg/Vector3", "{y: 1, x: 0,05}", 1, 11, "x: write a fraction with a point"),
         ("geometry_msgs/msg/Vector3", "{y: 1, 5: 2}", 1, 8, "5: no such field; there is x, y, z"),
         ("deck_interfaces/action/DriveToPoint", "x: y", 1, 4, "x: expected a number, got 'y'"),
     ],
