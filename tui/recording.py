@@ -15,6 +15,8 @@ from tui.i18n import _, said
 from tui.recording_words import complaints, length_words, progress, size_words
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from textual.timer import Timer
 
     from graph.recording import Recorder, RecordingStatus
@@ -46,13 +48,13 @@ class Recording:
         return None if self._recorder is None else self._recorder.status
 
     @property
-    def words(self) -> str:
-        """What the title says of it: empty, or `● rec 12 s 3.4 MB`."""
+    def words(self) -> Sequence[str]:
+        """What the title says of it, from long to short: nothing, or `● rec 12 s 3.4 MB`."""
         status = self.status
         if status is None:
-            return ""
-        words = _("● rec {length} {size}")
-        return words.format(length=length_words(status.seconds), size=size_words(status.bytes))
+            return ()
+        length, size = length_words(status.seconds), size_words(status.bytes)
+        return (_("● rec {length} {size}").format(length=length, size=size), f"● {size}")
 
     def toggle(self) -> None:
         """Begin, or end."""

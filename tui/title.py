@@ -67,12 +67,22 @@ def states(app: DeckApp) -> Sequence[str]:
         opening = app.sessions.opening
         return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
     if app.brake.state.engaged:
-        return stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0])
+        return _where(session, stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0]))
     if app.strangers.now:
-        return app.strangers.words()
+        return _where(session, app.strangers.words())
     if app.brake.state.blocked:
-        return _held(app.brake.state)
+        return _where(session, _held(app.brake.state))
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
+
+
+def _where(session: SessionInfo, alarm: Sequence[str]) -> Sequence[str]:
+    """Return the words of an alarm, after them the domain if there is room for all of it."""
+    return (f"{alarm[0]} · {domain_words(session)}", *alarm)
+
+
+def domain_words(session: SessionInfo) -> str:
+    """Return the ROS domain, which stands in the title at every size."""
+    return _("domain {domain}").format(domain=session.domain)
 
 
 def _held(state: Emergency) -> Sequence[str]:
@@ -88,7 +98,7 @@ def _watched(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     update = app.feed.update
     count = 0 if update is None else len(robot_nodes(update))
     found = ngettext("{n} node", "{n} nodes", count).format(n=count)
-    domain = _("domain {domain}").format(domain=session.domain)
+    domain = domain_words(session)
     watching = _("watching {domain}").format(domain=domain)
     return (f"{watching} · {found}", watching, domain)
 
@@ -100,10 +110,12 @@ def _replayed(session: SessionInfo) -> Sequence[str]:
 
 def _recorded(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     """Return what runs, after what is recorded of it."""
-    words = app.recording.words
-    if not words:
+    recorded = app.recording.words
+    if not recorded:
         return _running(app, session)
-    return (*(f"{words} · {running}" for running in _running(app, session)), words)
+    everything = (f"{recorded[0]} · {running}" for running in _running(app, session))
+    short = (f"{words} · {domain_words(session)}" for words in recorded)
+    return (*everything, *short, recorded[-1])
 
 
 def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
@@ -115,10 +127,10 @@ def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     count = f"{sign} {well}/{len(nodes)}"
     name, hardware = plain(session.name), plain(session.hardware)
     title = f"{plain(session.lesson)} {pick(session.title)}".strip() or name
-    domain = _("domain {domain}").format(domain=session.domain)
+    domain = domain_words(session)
+    names = (f"{title} · {hardware}", title, name)
     return (
-        f"{title} · {hardware} · {domain} · {count}",
-        f"{title} · {count}",
-        f"{name} · {count}",
-        count,
+        *(f"{words} · {domain} · {count}" for words in names),
+        f"{domain} · {count}",
+        domain,
     )

@@ -13,6 +13,7 @@ from launcher.status import NodeState, Severity
 from tests.tui.app_runs import opened
 from tests.tui.deck_days import llm
 from tests.tui.recorded import (
+    SESSION,
     TOPICS,
     RecordedGraph,
     RecordedPad,
@@ -20,6 +21,7 @@ from tests.tui.recorded import (
     line,
     topic,
 )
+from tests.tui.snapshots import settle
 from tui import title
 from tui.app import DeckApp
 from tui.panels.camera import CameraFeed
@@ -35,6 +37,7 @@ from tui.widgets.image_view import ImageView
 from tui.widgets.nodes_table import NodesTable, duration
 from tui.widgets.outcome import Outcome
 from tui.widgets.sonar import SonarPanel
+from tui.widgets.title_bar import TitleBar
 from tui.widgets.wheels import WheelsPanel
 
 
@@ -291,3 +294,12 @@ async def test_a_terminal_too_small_for_panels_says_so() -> None:
 )
 def test_a_time_is_told_in_its_two_greatest_units(seconds: float | None, words: str) -> None:
     assert duration(seconds) == words
+
+
+@pytest.mark.parametrize("size", [(40, 12), (80, 24), (120, 40), (200, 60)])
+async def test_the_domain_stands_in_the_title_at_every_size(size: tuple[int, int]) -> None:
+    async with opened(size=size) as (app, pilot):
+        for screen in ("deck", "topics", "logs"):
+            await app.show_screen(screen)
+            await settle(pilot)
+            assert f"domain {SESSION.domain}" in app.screen.query_one(TitleBar).text

@@ -117,18 +117,20 @@ class TitleBar(Widget):
         alone = self.size.width - cell_len(NAME) - 3
         shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
         levels = [_Level(_shortened(self._tabs, letters), gap) for letters, gap in shapes]
+        named = levels[2]
+        levels.append(_Level(_keys(self._tabs), 2))
         states = self._states or ("",)
         for state in states if self._look in URGENT else ():
             for level in (*levels, _Level((), 2)):
                 if cell_len(state) <= alone - level.width:
                     return level, state
         for level in levels:
-            spared = states[-1:] if len(states) > 1 and level is not levels[-1] else ()
+            spared = states[-1:] if len(states) > 1 and level in levels[:3] else ()
             for state in states:
                 if state not in spared and cell_len(state) <= alone - level.width:
                     return level, state
             room = alone - level.width
-            if self._look == "alarm" and level is levels[-2] and room >= ENOUGH:
+            if self._look == "alarm" and level is named and room >= ENOUGH:
                 return level, _cut(states[-1], room)
         return levels[-1], _cut(states[-1], alone - levels[-1].width)
 
@@ -151,6 +153,10 @@ def _shortened(
     return [
         (text if front else _initials(text, letters), action, front) for text, action, front in tabs
     ]
+
+
+def _keys(tabs: Sequence[tuple[str, str, bool]]) -> Sequence[tuple[str, str, bool]]:
+    return [(_initials(text, 0), action, front) for text, action, front in tabs]
 
 
 def _initials(text: str, letters: int) -> str:
