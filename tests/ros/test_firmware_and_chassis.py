@@ -17,14 +17,12 @@ from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.ros.test_node_chassis import wheels
 from tests.ros.test_node_tof_sonar import Port
-from tests.unit.test_firmware import Pico, modules
+from tests.unit.test_firmware import Pico
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-
-__all__ = ["modules"]
 
 
 class LivePico:
@@ -60,9 +58,9 @@ class LivePico:
 
 
 @pytest.fixture
-def pico(modules: Path, tmp_path: Path) -> Iterator[LivePico]:
+def pico(tmp_path: Path) -> Iterator[LivePico]:
     port = Port(tmp_path / "pico")
-    pico = LivePico(Pico(modules), port)
+    pico = LivePico(Pico(), port)
     yield pico
     pico.close()
     port.unplug()

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
 import subprocess
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -27,18 +26,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 ROOT = Path(__file__).parents[2]
-BENCH = ROOT / "firmware" / "bench"
-CACHE = ROOT / "build" / "micropython"
-VECTORS = json.loads((ROOT / "firmware/pico2/vectors.json").read_text(encoding="utf-8"))
+FIRMWARE = ROOT / "firmware"
+VECTORS = json.loads((FIRMWARE / "pico2/vectors.json").read_text(encoding="utf-8"))
 LEFT_FAULT, RIGHT_FAULT, BATTERY, LEFT_CURRENT = 6, 11, 28, 26
 
 
 class Pico:
     """A process with the firmware in it; its time passes only when it is told to."""
 
-    def __init__(self, modules: Path) -> None:
+    def __init__(self) -> None:
         self._process = subprocess.Popen(
-            ["node", str(BENCH / "run.mjs"), str(modules)],
+            [sys.executable, str(FIRMWARE / "bench" / "run.py")],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -48,6 +46,7 @@ class Pico:
 
     def close(self) -> None:
         self._process.communicate(timeout=20)
+        assert self._process.returncode == 0
 
     def order(self, **order: object) -> dict[str, Any]:
         assert self._process.stdin is not None
@@ -80,38 +79,9 @@ def stood(answer: dict[str, Any]) -> bool:
     return all(motors == [0, 0] for motors in answer["seen"])
 
 
-def _do_without(reason: str) -> NoReturn:
-    """Skip for who has no Node.js; the project's own gate has to have it."""
-    if os.environ.get("CI"):
-        pytest.fail(reason)
-    pytest.skip(reason)
-
-
-@pytest.fixture(scope="session")
-def modules(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with MicroPython in it, from npm, kept between runs."""
-    package = CACHE / "node_modules/@micropython/micropython-webassembly-pyscript/micropython.wasm"
-    if shutil.which("node") is None or shutil.which("npm") is None:
-        _do_without("MicroPython runs in Node.js, which is not installed")
-    if package.exists():
-        return CACHE
-    fresh = tmp_path_factory.mktemp("micropython")
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(BENCH / name, fresh)
-    command = ["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund"]
-    done = subprocess.run(
-        command, cwd=fresh, capture_output=True, text=True, timeout=50, check=False
-    )
-    if done.returncode:
-        _do_without(f"npm did not bring MicroPython: {done.stderr.strip()[-200:]}")
-    CACHE.mkdir(parents=True, exist_ok=True)
-    shutil.copytree(fresh, CACHE, dirs_exist_ok=True)
-    return CACHE
-
-
 @pytest.fixture(scope="module")
-def pico(modules: Path) -> Iterator[Pico]:
-    pico = Pico(modules)
+def pico() -> Iterator[Pico]:
+    pico = Pico()
     yield pico
     pico.close()
 
