@@ -95,8 +95,8 @@ async def test_a_json_drives_and_turns_the_head(
         drive = {"action": "drive", "speed": 0.3, "steering": 0.1}
         turn = {"action": "turn_head", "pan": 30, "tilt": 0}
         answer = {"thought": "Off we go.", "commands": [drive, turn]}
-        person.say("/llm_raw_json", String(data=json.dumps(answer)))
-        await until(lambda: turns(wheels), "wheels that turn", 30)
+        with person.saying("/llm_raw_json", String(data=json.dumps(answer)), 1.0):
+            await until(lambda: turns(wheels), "wheels that turn", 30)
         head = "turning to 30" if node == "head_controller" else ""
         await said(client, "head_controller", head)
 
@@ -129,8 +129,8 @@ async def test_a_differential_that_only_writes_its_log_holds_nobody_up(
         await until_state(client, "llm_parser", READY)
         drive = {"action": "drive", "speed": 0.3, "steering": 0.0}
         answer = {"thought": "Off we go.", "commands": [drive]}
-        person.say("/llm_raw_json", String(data=json.dumps(answer)))
-        await said(client, "electronic_differential", "left 0.30, right 0.30")
+        with person.saying("/llm_raw_json", String(data=json.dumps(answer)), 1.0):
+            await said(client, "electronic_differential", "left 0.30, right 0.30")
 
 
 async def test_where_no_gate_is_the_wheels_stand_and_their_node_says_why(
@@ -159,5 +159,5 @@ async def test_without_a_gate_the_wheels_turn_where_the_profile_asks_for_it(
     async with lesson(tmp_path, ros_domain, "09-brain", changes) as client:
         await until_state(client, "electronic_differential", READY)
         await until_state(client, "ai_driver", READY)
-        person.say("/ai_command", String(data="вперед"))
-        await until(lambda: turns(wheels), "wheels that turn", 30)
+        with person.saying("/ai_command", String(data="вперед"), 1.0):
+            await until(lambda: turns(wheels), "wheels that turn", 30)

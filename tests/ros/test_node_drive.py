@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import signal
+import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -52,34 +53,51 @@ def wait_for_rims(heard: list[Any], left: float, right: float) -> JointState:
 # ---------------------------------------------------------------- words
 
 
+def drives(peer: Peer, heard: list[Any], word: str, speed: float, steering: float) -> bool:
+    """Say it, and tell whether its command comes; the first are lost if nobody is known to listen.
+
+    That the node's publisher is known here does not tell that it knows who listens here.
+    """
+
+    def came() -> bool:
+        wanted = (pytest.approx(speed), pytest.approx(steering))
+        return any((one.drive.speed, one.drive.steering_angle) == wanted for one in heard)
+
+    peer.say("/ai_command", String(data=word))
+    until_s = time.monotonic() + 1.0
+    while not came() and time.monotonic() < until_s:
+        time.sleep(0.01)
+    return came()
+
+
 @pytest.mark.parametrize("lang", ["en", "ru"])
 def test_words_of_both_languages_drive(peer: Peer, ros_domain: int, lang: str) -> None:
     with NodeProcess("nodes.ai_driver", ros_domain, lang=lang) as node:
         heard = peer.hear("/drive", AckermannDriveStamped)
         node.wait_for_words("[ai_driver_translator]")
-        wait_until(lambda: peer.node.count_publishers("/drive"), "/drive")
         expected = [(0.5, 0.0), (0.3, 0.5), (0.3, -0.5), (-0.3, 0.0), (0.0, 0.0)]
         for word, (speed, steering) in zip(
             ("ВПЕРЁД ", "left", "направо", "back", "Стоп!"), expected, strict=True
         ):
             heard.clear()
-            peer.say("/ai_command", String(data=word))
-            wait_until(lambda: heard, f"/drive for {word}")
-            assert heard[0].drive.speed == pytest.approx(speed)
-            assert heard[0].drive.steering_angle == pytest.approx(steering)
-            assert heard[0].header.stamp.sec > 0
+            wait_until(
+                lambda word=word, way=(speed, steering): drives(peer, heard, word, *way),  # type: ignore[misc]
+                f"/drive for {word}",
+            )
+            assert heard[-1].header.stamp.sec > 0
 
 
 def test_an_unknown_or_empty_word_is_told_and_moves_nothing(peer: Peer, ros_domain: int) -> None:
     with NodeProcess("nodes.ai_driver", ros_domain, lang="ru") as node:
         heard = peer.hear("/drive", AckermannDriveStamped)
+        wait_until(lambda: drives(peer, heard, "right", 0.3, -0.5), "/drive of a known word")
         peer.say("/ai_command", String(data="прыжок\x1b[31m"))
         node.wait_for_words("[WARN]", "Неизвестная команда «прыжок␛[31m»", "вперед, налево")
         peer.say("/ai_command", String(data=""))
         node.wait_for_words("«»")
-        peer.say("/ai_command", String(data="left"))
-        wait_until(lambda: heard, "/drive of a known word")
-        assert len(heard) == 1
+        wait_until(lambda: drives(peer, heard, "left", 0.3, 0.5), "/drive of another one")
+        steered = {round(one.drive.steering_angle, 3) for one in heard}
+        assert steered == {-0.5, 0.5}, "nothing but what was known"
 
 
 # ---------------------------------------------------------------- wheels

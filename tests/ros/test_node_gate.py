@@ -111,7 +111,7 @@ def test_it_slows_down_in_proportion_and_is_fast_again_after(gate: Gate) -> None
 def test_a_gate_that_died_comes_back_to_the_stop_that_is_on(gate: Gate) -> None:
     """The stop is latched by who gave it; a release from before is none."""
     with Peer(int(gate.peer.node.context.get_domain_id()), "another") as other:
-        other.publisher("/emergency_stop", Bool, LATCHED).publish(Bool(data=False))
+        other.say("/emergency_stop", Bool(data=False), qos=LATCHED)
         gate.repeat(FRONT, Float32(data=3.0))
         gate.repeat(KEYS, drive(0.3))
         gate.wait_for_speed(0.3)

@@ -13,7 +13,6 @@ from sensor_msgs.msg import JointState
 from tests.deck_process import DeckProcess
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
-from tests.ros.test_node_chassis import wheels
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -64,7 +63,7 @@ def test_the_own_publisher_of_before_a_kill_is_no_stranger(ros_domain: int) -> N
 
 def test_deck_run_says_it_as_a_warning(ros_domain: int) -> None:
     with Peer(ros_domain, "evil") as evil:
-        evil.publisher("/wheel_commands", JointState).publish(wheels(0.0))
+        evil.publisher("/wheel_commands", JointState)
         run = DeckProcess("run", "04b-electronic-differential", "--for", "60")
         try:
             line = run.said("/wheel_commands is also published by /evil")
