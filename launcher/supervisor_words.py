@@ -83,13 +83,17 @@ def instead(condition: Condition, seen: Seen) -> str:
 
 def late(condition: Condition, seen: Seen | None, within_s: float) -> str:
     """That the time to become ready is up, and why."""
-    if seen is None:
-        return say(
-            "not ready within {seconds:g} s: no {what}", seconds=within_s, what=what(condition)
-        )
-    return say(
-        "not ready within {seconds:g} s: {why}", seconds=within_s, why=instead(condition, seen)
-    )
+    why = lack(condition) if seen is None else instead(condition, seen)
+    return say("not ready within {seconds:g} s: {why}", seconds=within_s, why=why)
+
+
+def lack(condition: Condition) -> str:
+    """What is missing, where it was waited for in vain."""
+    if condition.kind == "topic":
+        return say("nobody publishes {name}", name=condition.name)
+    if condition.kind == "service":
+        return say("nobody serves {name}", name=condition.name)
+    return say("node {name} is not in the graph", name=condition.name)
 
 
 def who(left: Sequence[Process], most: int = 3) -> str:

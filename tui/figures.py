@@ -1,8 +1,13 @@
-"""Numbers as they are written on the screen, however large: anybody may send any number."""
+"""Numbers as they are written on the screen, however large: anybody may send any number.
+
+In the language spoken: `0,36` in Russian.
+"""
 
 from __future__ import annotations
 
 import math
+
+from tui.i18n import decimal
 
 PLAIN_BELOW = 1e6
 """From here on a number is written with an exponent: three hundred digits help nobody."""
@@ -15,13 +20,13 @@ def figure(value: float, decimals: int = 2) -> str:
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
     if abs(value) < PLAIN_BELOW:
-        return f"{value:.{decimals}f}"
+        return decimal(f"{value:.{decimals}f}")
     return short(value)
 
 
 def short(value: float) -> str:
     """`1e308`: three digits, and no sign or zeros in the exponent that say nothing."""
-    return f"{value:.3g}".replace("e+0", "e").replace("e+", "e")
+    return decimal(f"{value:.3g}".replace("e+0", "e").replace("e+", "e"))
 
 
 def whole(value: float) -> str:

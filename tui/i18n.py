@@ -89,8 +89,28 @@ def said(words: str) -> str:
     if template is None:
         return plain_lines(words)
     found: dict[str, object] = getattr(words, "values", {})
-    values = {k: said(value) if isinstance(value, str) else value for k, value in found.items()}
-    return filled(_(template), values)
+    return filled(_(template), {name: _in_words(value) for name, value in found.items()})
+
+
+def decimal(number: str) -> str:
+    """Return a number of prose as it is written in the language spoken: `0,36` in Russian.
+
+    Data keep their point: what is echoed, edited or sent.
+    """
+    return number.replace(".", ",") if _language == "ru" else number
+
+
+class Prose(float):
+    """A number that a template writes as `decimal` does, whatever format it asks for."""
+
+    def __format__(self, spec: str) -> str:
+        return decimal(super().__format__(spec))
+
+
+def _in_words(value: object) -> object:
+    if isinstance(value, str):
+        return said(value)
+    return Prose(value) if isinstance(value, float) else value
 
 
 def pick(texts: Mapping[str, str]) -> str:

@@ -88,9 +88,7 @@ def domain_words(session: SessionInfo) -> str:
 def _held(state: Emergency) -> Sequence[str]:
     """Return why the gate holds the wheels, or what it refuses though it would let them turn."""
     reason = held_reason(state)
-    if state.gate is not None and not state.gate.is_held:
-        return (f"⚠ {reason}",)
-    return (_("⚠ Motion is held: {reason}").format(reason=reason), f"⚠ {reason}")
+    return (f"⚠ {reason[:1].upper()}{reason[1:]}",)
 
 
 def _watched(app: DeckApp, session: SessionInfo) -> Sequence[str]:

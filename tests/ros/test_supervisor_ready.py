@@ -214,7 +214,7 @@ async def test_a_node_that_is_late_says_so_and_becomes_ready_all_the_same(
         }
     )
     status = await until_state(client, "late", NodeState.RUNNING)
-    assert status.detail == "not ready within 0.5 s: no publisher of /said"
+    assert status.detail == "not ready within 0.5 s: nobody publishes /said"
     assert client.nodes["eager"].detail == "waits for late (not ready)"
     await until_state(client, "late", NodeState.READY)
     await running_pid(client, "eager")

@@ -460,7 +460,7 @@ async def test_the_safety_nodes_words_stand_in_the_title() -> None:
         pad.graph.show(held(b"\x01", "front 0.38 m"))
         await pilot.pause()
         await pilot.pause()
-        assert "⚠ Motion is held: front 0.38 m" in title.states(app)[0]
+        assert "⚠ Front 0.38 m" in title.states(app)[0]
 
 
 async def test_long_words_of_the_safety_node_leave_the_tabs_their_names() -> None:

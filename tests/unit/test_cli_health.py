@@ -17,7 +17,7 @@ def node(name: str, state: NodeState, **more: object) -> NodeStatus:
 
 READY, RUNNING, FAILED = NodeState.READY, NodeState.RUNNING, NodeState.FAILED
 STARTING, WAITING, EXITED = NodeState.STARTING, NodeState.WAITING, NodeState.EXITED
-LATE = "not ready within 10 s: no publisher of /scan"
+LATE = "not ready within 10 s: nobody publishes /scan"
 
 
 def statuses(*nodes: NodeStatus) -> dict[str, NodeStatus]:

@@ -150,7 +150,7 @@ async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: Fak
     node = await started(session, replace(PLAN, ready=Condition("node", "sonar"), within_s=7))
     await session.clock.advance(7)
     assert (node.state, node.serves) == (NodeState.RUNNING, False)
-    assert node.detail == "not ready within 7 s: no node sonar in the graph"
+    assert node.detail == "not ready within 7 s: node sonar is not in the graph"
     session.is_ready.set()
     await settle()
     assert (node.state, node.detail, node.serves) == (NodeState.READY, "", True)

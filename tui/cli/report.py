@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 from launcher.status import NodeState, Severity
 from text.plain import plain
 from tui.cli.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
-from tui.i18n import _, ngettext, said
+from tui.i18n import Prose, _, ngettext, said
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -148,7 +148,9 @@ class TextReport:
         if summary.reason:
             parts.append(_("ended from elsewhere: {reason}").format(reason=said(summary.reason)))
         words = plain("; ".join(parts)) or _("every node stayed healthy")
-        self._write(_("{words}; {seconds:.1f} s").format(words=words, seconds=summary.seconds))
+        self._write(
+            _("{words}; {seconds:.1f} s").format(words=words, seconds=Prose(summary.seconds))
+        )
 
     def _line(self, node: str, text: str) -> None:
         prefix = f"[{node}]".ljust(self._width)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from launcher.errors import LauncherError
 from launcher.rundir import check_writable, found_run_dir, log_path, run_path
 from tui.doctor.finding import fail, ok, warn
-from tui.i18n import _, said
+from tui.i18n import Prose, _, said
 
 if TYPE_CHECKING:
     from tui.doctor.finding import Finding
@@ -62,7 +62,9 @@ def judge(facts: RunFacts) -> list[Finding]:
 
 
 def _folders(facts: RunFacts) -> Finding:
-    text = _("logs in {path}, {size:.1f} GB free").format(path=facts.log_dir, size=facts.free / 1e9)
+    text = _("logs in {path}, {size:.1f} GB free").format(
+        path=facts.log_dir, size=Prose(facts.free / 1e9)
+    )
     if facts.free < LEAST_FREE:
         return warn("folders", text, _("remove old logs there, or set DECK_LOG_DIR"))
     return ok("folders", text)

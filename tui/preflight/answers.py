@@ -16,7 +16,7 @@ from robot.wire_pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
 from robot.wire_pico import encode as encode_pico
 from robot.wire_tfluna import Model, TofDecoder, TofFrame
 from tui.doctor.finding import Level
-from tui.i18n import _
+from tui.i18n import Prose, _
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -109,7 +109,7 @@ def _greet(line: Line, answered: Callable[[bytes], bool]) -> bytes:
 def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) -> Answer:
     text = _("firmware {firmware}").format(firmware=welcome.firmware)
     if telemetry is not None and telemetry.battery_v is not None:
-        text += ", " + _("battery {volts:.1f} V").format(volts=telemetry.battery_v)
+        text += ", " + _("battery {volts:.1f} V").format(volts=Prose(telemetry.battery_v))
     troubles = {
         "E": (
             _("the emergency stop is held"),
@@ -166,7 +166,7 @@ def _far(metres: float) -> str:
         return _("no valid reading")
     if math.isinf(metres):
         return _("nothing in range") if metres > 0 else _("too close to measure")
-    return _("{metres:.2f} m").format(metres=metres)
+    return _("{metres:.2f} m").format(metres=Prose(metres))
 
 
 def _better_cable() -> str:
@@ -188,7 +188,9 @@ def _servos(line: Line) -> Answer:
     heard += line.hear(ANSWER_S, take)
     if not told:
         return _nothing("lsc16", heard, line.baud)
-    return Answer(Level.OK, _("battery {volts:.1f} V").format(volts=told[0].millivolts / 1000))
+    return Answer(
+        Level.OK, _("battery {volts:.1f} V").format(volts=Prose(told[0].millivolts / 1000))
+    )
 
 
 def _another(kind: str, heard: bytes) -> Answer:

@@ -14,7 +14,7 @@ from text.plain import plain
 from tui import clock
 from tui.actions import bindings
 from tui.actions.composer import COMPOSER_ACTIONS, Send, SendAnyway
-from tui.i18n import N_, _
+from tui.i18n import N_, _, decimal
 from tui.screens.base import DeckScreen
 from tui.screens.composer_templates import TemplatesDialog
 from tui.sent import Sent, sent_path
@@ -210,7 +210,9 @@ class ComposerScreen(DeckScreen):
         try:
             await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
         except asyncio.TimeoutError:
-            story.failure = _("ROS did not take it within {n} s").format(n=f"{SENT_WITHIN_S:g}")
+            story.failure = _("ROS did not take it within {n} s").format(
+                n=decimal(f"{SENT_WITHIN_S:g}")
+            )
             self._say()
         except Exception as error:  # noqa: BLE001 - whatever it was, it is told
             story.failure = reason_words(error)

@@ -15,7 +15,7 @@ from tui import title
 from tui.actions import bindings
 from tui.actions.app import EmergencyStop
 from tui.actions.publish import PUBLISH_ACTIONS
-from tui.i18n import _, ngettext
+from tui.i18n import _, decimal, ngettext
 from tui.screens.dialog import Dialog
 from tui.widgets.key_bar import KeyBar
 from tui.widgets.publications import Publications
@@ -246,7 +246,7 @@ class PublishDialog(Dialog[None]):
         for number in before if graph is not None else ():
             graph.stop_publishing(number)  # type: ignore[union-attr]
         words = _("Publishing to {topic} at {hz} Hz.")
-        self.rate.tell(lambda: words.format(topic=topic, hz=f"{hz:g}"), "good")
+        self.rate.tell(lambda: words.format(topic=topic, hz=decimal(f"{hz:g}")), "good")
         self._look()
 
     async def _outcome(self, future: Future[int]) -> int | None:
@@ -254,7 +254,7 @@ class PublishDialog(Dialog[None]):
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), DONE_WITHIN_S)
         except asyncio.TimeoutError:
-            words = _("ROS did not take it within {n} s").format(n=f"{DONE_WITHIN_S:g}")
+            words = _("ROS did not take it within {n} s").format(n=decimal(f"{DONE_WITHIN_S:g}"))
             self.rate.tell(lambda: words, "bad")
         except Exception as error:  # noqa: BLE001 - whatever it was, it is told
             reason = reason_words(error)

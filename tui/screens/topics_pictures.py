@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from graph.images import ImageError, UnknownEncodingError
 from graph.pictures import COMPRESSED, IMAGE, Picture, ramp_colours, read_picture
 from text.plain import plain
-from tui.i18n import _, said
+from tui.i18n import _, decimal, said
 from tui.screens.topics_plotting import PlotPlace, TopicsPlotting
 from tui.widgets.image_view import Scale
 from tui.widgets.topics_table_columns import hz_text
@@ -123,7 +123,7 @@ class TopicsPictures(TopicsPlotting):
         size = f"{plain(picture.encoding, LONGEST)} {picture.width}×{picture.height}"
         scale = None
         if picture.range_m is not None:
-            near, far = (_("{n} m").format(n=f"{metres:g}") for metres in picture.range_m)
+            near, far = (_("{n} m").format(n=decimal(f"{metres:g}")) for metres in picture.range_m)
             first = _("near {distance}").format(distance=near)
             scale = Scale(first, _("{distance} far").format(distance=far), ramp_colours())
         self.detail.show_picture(picture.rgb, size, scale, hz_text(row.hz if row else None))

@@ -13,7 +13,7 @@ from textual.widgets import Input, Static
 
 from robot.words import WORDS, parse_word
 from text.plain import plain
-from tui.i18n import _, language
+from tui.i18n import _, decimal, language
 from tui.widgets.field import Field
 
 if TYPE_CHECKING:
@@ -163,7 +163,10 @@ class CommandLine(Vertical):
         setpoint = parse_word(text)
         if setpoint is not None:
             words = _("{speed} m/s, steering {steering} rad")
-            speed, steering = f"{setpoint.speed_m_s:g}", f"{setpoint.steering_rad:g}"
+            speed, steering = (
+                decimal(f"{setpoint.speed_m_s:g}"),
+                decimal(f"{setpoint.steering_rad:g}"),
+            )
             return words.format(speed=speed, steering=steering), False
         if any(word.startswith(text.casefold()) for word in words_in_order(language())):
             return _("→ completes the word"), False

@@ -11,7 +11,7 @@ from text.plain import plain
 from tui.actions.graph import Cancel
 from tui.clock import time_of_day
 from tui.figures import figure
-from tui.i18n import N_, _, said
+from tui.i18n import N_, _, decimal, said
 from tui.widgets.call_timeout import USUAL_S, CallTimeout
 from tui.widgets.graph_ask import AskPane, now_s
 from tui.widgets.graph_links import heading, link, node_links
@@ -145,10 +145,10 @@ class ServicePane(AskPane):
             return _answer_title(call, call.result), name, call.result.response
         words = plain(said(call.result.error), LONGEST)
         if call.result.late is not None:
-            title = _("No answer within {n} s").format(n=f"{call.timeout_s:g}")
+            title = _("No answer within {n} s").format(n=decimal(f"{call.timeout_s:g}"))
             listens = _("A late answer will be shown here; choose a longer time below the form.")
             return title, name, (_("no answer yet"), listens)
-        told = _("{n} ms").format(n=f"{call.result.elapsed_s * 1000:.1f}")
+        told = _("{n} ms").format(n=decimal(f"{call.result.elapsed_s * 1000:.1f}"))
         return _("No answer · {time}").format(time=told), name, (_("the call failed"), words)
 
     def _waiting(self, call: Call, name: str) -> tuple[str, str, tuple[str, str]]:
@@ -158,7 +158,9 @@ class ServicePane(AskPane):
             )
             return _("No answer"), name, (_("given up"), words)
         waited = int(now_s() - call.asked_s)
-        title = _("Still waiting: {n} s of {most} s").format(n=waited, most=f"{call.timeout_s:g}")
+        title = _("Still waiting: {n} s of {most} s").format(
+            n=waited, most=decimal(f"{call.timeout_s:g}")
+        )
         key = self.deck.keys_of(Cancel)[0]
         way_out = _("{key} stops waiting for it.").format(key=key)
         return title, name, (_("the call is under way"), way_out)
@@ -227,8 +229,8 @@ async def _outcome(call: Call, name: str, future: Future[CallResult]) -> CallRes
 def _answer_title(call: Call, result: CallResult) -> str:
     if call.late:
         words = _("Late answer after {n} s, awaited for {most} s")
-        return words.format(n=figure(result.elapsed_s, 1), most=f"{call.timeout_s:g}")
-    told = _("{n} ms").format(n=f"{result.elapsed_s * 1000:.1f}")
+        return words.format(n=figure(result.elapsed_s, 1), most=decimal(f"{call.timeout_s:g}"))
+    told = _("{n} ms").format(n=decimal(f"{result.elapsed_s * 1000:.1f}"))
     return _("Answer in {time}").format(time=told)
 
 

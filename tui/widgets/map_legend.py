@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from text.plain import plain
 from tui.figures import figure
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
 from tui.widgets.map_field import bar_length_m
 from tui.widgets.map_scene import (
@@ -59,17 +59,17 @@ def entries(scene: Scene, view: Field, driven_m: float, remarks: Sequence[str]) 
     said += [Entry(4, _ray(place, metres, scene.bounds)) for place, metres in scene.rays.items()]
     if scene.truth is not None:
         metres = scene.pose.distance_to(scene.truth)
-        words = _("truth {metres} m off").format(metres=f"{metres:.2f}")
+        words = _("truth {metres} m off").format(metres=decimal(f"{metres:.2f}"))
         said.append(Entry(5, [Ink("◇ ", TRUTH), Ink(words)]))
     said.append(Entry(2, scale_bar(view)))
     said.append(Entry(8, [Ink(_("x → right, y ↑ up"), "muted")]))
-    words = _("· every {metres} m").format(metres=f"{grid_step_m(view):g}")
+    words = _("· every {metres} m").format(metres=decimal(f"{grid_step_m(view):g}"))
     said.append(Entry(9, [Ink(words, "muted")]))
     return said
 
 
 def _robot(pose: Pose) -> list[Entry]:
-    place = _("x {x}  y {y} m").format(x=f"{pose.x_m:.2f}", y=f"{pose.y_m:.2f}")
+    place = _("x {x}  y {y} m").format(x=decimal(f"{pose.x_m:.2f}"), y=decimal(f"{pose.y_m:.2f}"))
     degrees = round(math.degrees(pose.heading_rad))
     heading = _("heading {degrees}°").format(degrees=degrees)
     return [
@@ -90,7 +90,7 @@ def scale_bar(view: Field) -> Line:
     metres = bar_length_m(view, BAR_CELLS)
     cells = max(1, round(metres * view.dots_per_m / 2))
     bar = "├" + "─" * (cells - 2) + "┤" if cells > 1 else "│"
-    return [Ink(f"{bar} "), Ink(_("{metres} m").format(metres=f"{metres:g}"), "strong")]
+    return [Ink(f"{bar} "), Ink(_("{metres} m").format(metres=decimal(f"{metres:g}")), "strong")]
 
 
 def column(said: Sequence[Entry], width: int, height: int) -> list[Line]:

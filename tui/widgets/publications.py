@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.plain import plain
-from tui.i18n import _, said
+from tui.i18n import _, decimal, said
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
@@ -51,5 +51,5 @@ def _row(one: Publication) -> Row:
         words = Cell(f"✗ {plain(one.topic, 100)}: {plain(said(one.error), 200)}", "bad")
         return Row(str(one.number), (words,))
     heard = Cell(str(one.subscribers), "" if one.subscribers else "warn")
-    cells = (Cell(plain(one.topic, 200)), Cell(f"{one.hz:g}"), Cell(str(one.sent)), heard)
+    cells = (Cell(plain(one.topic, 200)), Cell(decimal(f"{one.hz:g}")), Cell(str(one.sent)), heard)
     return Row(str(one.number), cells)

@@ -9,7 +9,7 @@ from textual.style import Style
 from textual.widget import Widget
 
 from tui.actions.replay import Back, Faster, Forward, Loop, Slower, Step
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.recording_words import length_words
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ class ReplayBar(Widget):
         loop = Style.from_meta({"@click": "app.act('replay.loop')"})
         parts = [
             (f" {_clock(state.length_s, state.length_s)} ", words),
-            (f" ×{state.rate:g} ", words + faster),
+            (" ×" + decimal(f"{state.rate:g}") + " ", words + faster),
         ]
         if state.loop:
             parts.append((" ↻ ", words + loop))
@@ -176,4 +176,4 @@ class ReplayBar(Widget):
 
 def _clock(seconds: float, length_s: float) -> str:
     """Return a time with tenths, as wide as the length of the recording needs."""
-    return f"{seconds:.1f}" if length_s < 60 else length_words(seconds)
+    return decimal(f"{seconds:.1f}") if length_s < 60 else length_words(seconds)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.drawing import Ink, Line
 from tui.widgets.sonar_words import RANGE_M, Zone, zone_of
 
@@ -57,8 +57,8 @@ def scale(width: int, bounds: Bounds) -> Line:
     cells = [" "] * width
     for metres, text in (
         (0.0, "0"),
-        *((metres, f"↑{metres:g}") for metres in bounds),
-        (RANGE_M, _("{metres} m").format(metres=f"{RANGE_M:g}")),
+        *((metres, "↑" + decimal(f"{metres:g}")) for metres in bounds),
+        (RANGE_M, _("{metres} m").format(metres=decimal(f"{RANGE_M:g}"))),
     ):
         start = min(mark_cell(metres, width), width - len(text))
         place = cells[max(0, start - 1) : start + len(text) + 1]

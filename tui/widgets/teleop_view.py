@@ -8,7 +8,7 @@ from typing import NamedTuple
 from rich.cells import cell_len
 
 from robot.words import STOP, DriveSetpoint
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.teleop import TeleopLimits
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
 from tui.widgets.sonar_bar import big
@@ -113,7 +113,9 @@ def _arrows(setpoint: DriveSetpoint) -> str:
     speed, angle = setpoint.speed_m_s, setpoint.steering_rad
     way = "■" if not abs(speed) >= STANDING_M_S else "↑" if speed > 0 else "↓"
     side = (
-        "" if not abs(angle) >= STRAIGHT_RAD else f" {'←' if angle > 0 else '→'} {abs(angle):.2f}"
+        ""
+        if not abs(angle) >= STRAIGHT_RAD
+        else f" {'←' if angle > 0 else '→'} " + decimal(f"{abs(angle):.2f}")
     )
     return way + side
 
@@ -121,7 +123,9 @@ def _arrows(setpoint: DriveSetpoint) -> str:
 def _angle(angle: float) -> str:
     if not math.isfinite(angle) or abs(angle) < STRAIGHT_RAD:
         return ""
-    return ("← " if angle > 0 else "→ ") + _("{angle} rad").format(angle=f"{abs(angle):.2f}")
+    return ("← " if angle > 0 else "→ ") + _("{angle} rad").format(
+        angle=decimal(f"{abs(angle):.2f}")
+    )
 
 
 def _of(wheels: Wheels | None) -> DriveSetpoint | None:
@@ -155,8 +159,8 @@ def _small(columns: tuple[_Column, ...], width: int) -> Line:
 
 
 def _limits(limits: TeleopLimits, width: int) -> Line:
-    speed = _("{speed} m/s").format(speed=f"{limits.speed_m_s:.2f}")
-    angle = _("{angle} rad").format(angle=f"{limits.steering_rad:.2f}")
+    speed = _("{speed} m/s").format(speed=decimal(f"{limits.speed_m_s:.2f}"))
+    angle = _("{angle} rad").format(angle=decimal(f"{limits.steering_rad:.2f}"))
     left: Line = [
         Ink(_("speed") + " ", "muted"),
         Ink(speed + " ", "strong"),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from textual.message import Message
 
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.drawing import Drawing, Ink, Line
 from tui.widgets.topic_plot_axis import Axis, steadied
 from tui.widgets.topic_plot_field import PlotField
@@ -247,5 +247,5 @@ class TopicPlot(Drawing):
 def window_text(seconds: float) -> str:
     """`30 s`, `5 min`."""
     if seconds < 120:
-        return _("{n} s").format(n=f"{seconds:g}")
-    return _("{n} min").format(n=f"{seconds / 60:g}")
+        return _("{n} s").format(n=decimal(f"{seconds:g}"))
+    return _("{n} min").format(n=decimal(f"{seconds / 60:g}"))

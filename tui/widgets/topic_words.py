@@ -8,7 +8,7 @@ from rich.cells import cell_len
 
 from graph.data import Trouble
 from text.plain import plain
-from tui.i18n import _, ngettext
+from tui.i18n import _, decimal, ngettext
 from tui.widgets.qos_words import misfit_words
 from tui.widgets.topic_figures import count_text, seconds_text
 from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text
@@ -113,8 +113,8 @@ def size_text(size_bytes: int) -> str:
     if size_bytes < KILO:
         return _("{n} B").format(n=size_bytes)
     if size_bytes < KILO * KILO:
-        return _("{n} kB").format(n=f"{size_bytes / KILO:.1f}")
-    return _("{n} MB").format(n=f"{size_bytes / KILO / KILO:.1f}")
+        return _("{n} kB").format(n=decimal(f"{size_bytes / KILO:.1f}"))
+    return _("{n} MB").format(n=decimal(f"{size_bytes / KILO / KILO:.1f}"))
 
 
 def ends(row: TopicRow) -> str:

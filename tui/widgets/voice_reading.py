@@ -9,7 +9,7 @@ import numpy as np
 
 from robot.sound import RATE_HZ, level_dbfs, samples_of, text_in
 from text.plain import plain
-from tui.i18n import _, ngettext
+from tui.i18n import _, decimal, ngettext
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,7 +42,7 @@ class Heard:
         if not self.is_sound:
             return self.text
         return _("PCM {seconds} s {levels}").format(
-            seconds=f"{self.seconds:.1f}", levels=self.levels
+            seconds=decimal(f"{self.seconds:.1f}"), levels=self.levels
         )
 
     def and_then(self, later: Heard) -> Heard:

@@ -7,7 +7,7 @@ import math
 from rich.cells import cell_len
 
 from tui.figures import figure, short
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 from tui.widgets.wheels_reading import Wheels, can_be_turned_to
 from tui.widgets.wheels_view import chassis, speed_bar
@@ -147,7 +147,7 @@ def angle_words(steering_rad: float) -> str:
     degrees = round(math.degrees(steering_rad))
     words = _("{degrees}° left") if degrees > 0 else _("{degrees}° right")
     turned = words.format(degrees=abs(degrees)) if degrees else "0°"
-    return _("{angle} rad").format(angle=f"{steering_rad:.2f}") + f" {turned}"
+    return _("{angle} rad").format(angle=decimal(f"{steering_rad:.2f}")) + f" {turned}"
 
 
 def radius_words(radius_m: float) -> str:
