@@ -478,9 +478,9 @@ async def test_long_words_of_the_safety_node_leave_the_tabs_their_names() -> Non
 @pytest.mark.parametrize(
     ("refused", "words"),
     [
-        ("0.8 m/s, limit 0.5 m/s", "⚠ refused: 0.8 m/s, limit 0.5 m/s"),
-        ("stamp 10.0 s old", "⚠ refused: stamp 10.0 s old"),
-        ("some\x1b[31mthing", "⚠ refused: some␛[31mthing"),
+        ("0.8 m/s, limit 0.5 m/s", "⚠ Refused: 0.8 m/s, limit 0.5 m/s"),
+        ("stamp 10.0 s old", "⚠ Refused: stamp 10.0 s old"),
+        ("some\x1b[31mthing", "⚠ Refused: some␛[31mthing"),
     ],
 )
 async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(

@@ -93,7 +93,7 @@ async def test_a_form_is_prefilled_and_right() -> None:
     ("language", "words"),
     [
         ("en", "✗ line 7: drive.speed: expected a number, got 'fast'"),
-        ("ru", "✗ строка 7: drive.speed: ожидалось число, здесь 'fast'"),
+        ("ru", "✗ строка 7: drive.speed: нужно число, а здесь 'fast'"),
     ],
 )
 async def test_what_is_wrong_is_named_and_its_line_marked(language: str, words: str) -> None:
