@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.plain import plain
-from tui.i18n import _, ngettext, said
+from tui.i18n import _, decimal, ngettext, said
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ def size_words(size_bytes: float) -> str:
     while size >= KILO and unit < len(units) - 1:
         size, unit = size / KILO, unit + 1
     digits = 1 if unit and size < 10 else 0
-    return f"{size:.{digits}f} {units[unit]}"
+    return decimal(f"{size:.{digits}f}") + f" {units[unit]}"
 
 
 def length_words(seconds: float) -> str:

@@ -150,7 +150,7 @@ async def test_help_changes_its_language_while_it_is_open() -> None:
         await pilot.press("f1", "f9")
         await pilot.pause()
         await pilot.pause()
-        assert "Остановить выбранный узел и запустить его снова." in help_text(app)
+        assert "Перезапустить выбранный узел." in help_text(app)
 
 
 async def test_help_does_not_cover_the_dialog_that_goes_by_itself() -> None:
@@ -196,7 +196,7 @@ async def test_language_is_switched_by_a_key_and_everything_visible_changes() ->
         await pilot.pause()
         await pilot.pause()
         screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-        for words in ("Пульт", "Узел", "✗ отказал", "Сонар", "Колёса", "5 Граф", "пробел СТОП"):
+        for words in ("Пульт", "Узел", "✗ сбой", "Сонар", "Колёса", "5 Граф", "пробел СТОП"):
             assert words in screen
         for words in ("failed", "Sonar", "domain", "STOP"):
             assert words not in screen

@@ -24,6 +24,7 @@ from tests.tui.recorded import (
 from tests.tui.snapshots import settle
 from tui import title
 from tui.app import DeckApp
+from tui.i18n import set_language
 from tui.panels.camera import CameraFeed
 from tui.panels.head import HeadFeed
 from tui.panels.llm import LlmFeed
@@ -241,6 +242,32 @@ async def test_on_a_small_terminal_the_panels_come_page_by_page() -> None:
         await pilot.click(Shelf, offset=(5, 0))
         await pilot.pause()
         assert shown() == first
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        ((80, 24), "─Сонар · стр. 1/2 (v — дальше)─"),
+        ((120, 18), "─ Сонар · страница 1 из 2 (v — дальше) ─"),
+    ],
+)
+async def test_the_title_that_tells_of_more_pages_is_whole(
+    size: tuple[int, int], words: str
+) -> None:
+    set_language("ru")
+    async with opened(size=size) as (app, _pilot):
+        first = app.screen.query_one(SonarFeed)
+        upper = app.screen._compositor.render_strips()[first.region.y].text
+        assert words in upper
+
+
+async def test_no_column_of_the_nodes_is_cut_beside_the_panels() -> None:
+    set_language("ru")
+    async with opened(size=(120, 40)) as (app, _pilot):
+        table = app.screen.query_one(NodesTable)
+        assert table.render_line(0).text.rstrip().endswith(" Память")
+        assert "● готов " in table.render_line(1).text
+        assert table.render_line(1).text.rstrip().endswith(" 17 МБ")
 
 
 @pytest.mark.parametrize("width", [30, 52, 79, 80, 120])

@@ -73,7 +73,7 @@ async def test_it_says_when_nothing_is_called_that() -> None:
     async with opened() as (app, pilot):
         app.speak("ru")
         lines = await look_for(app, pilot, "zzqq", "Ничего")
-        assert lines == ["Ничего с таким названием нет."]
+        assert lines == ["Ничего не найдено."]
 
 
 async def test_before_anything_is_typed_it_offers_only_what_is_possible_here() -> None:

@@ -43,7 +43,7 @@ def test_what_a_recording_refuses() -> None:
     refused: Future[int] = Refusals().publish("/x", "std_msgs/msg/String", {})
     error = refused.exception(1)
     assert isinstance(error, ObserverError)
-    assert reason_words(error) == "это запись: услышать некому"
+    assert reason_words(error) == "это запись: принять сообщение некому"
 
 
 async def test_a_command_that_a_recording_refuses_is_told_in_russian() -> None:
@@ -53,7 +53,7 @@ async def test_a_command_that_a_recording_refuses_is_told_in_russian() -> None:
         app.screen._tell_if_lost(Refusals().publish("/x", "std_msgs/msg/String", {}))
         await pilot.pause()
         (told,) = [one.message for one in app._notifications]
-        assert told == "это запись: услышать некому"
+        assert told == "это запись: принять сообщение некому"
 
 
 @pytest.mark.parametrize(

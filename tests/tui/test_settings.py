@@ -90,7 +90,7 @@ def test_the_refusal_speaks_the_language(tmp_path: Path) -> None:
     path = tmp_path / "settings.json"
     path.write_text(json.dumps({"colour": "red"}))
     set_language("ru")
-    with pytest.raises(SettingsError, match="нет настройки 'colour'"):
+    with pytest.raises(SettingsError, match="неизвестная настройка 'colour'"):
         read(path)
 
 

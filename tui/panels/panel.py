@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+from rich.cells import cell_len
 from textual.containers import Vertical
 from textual.content import Content
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample, TopicRow
 
 ALWAYS = 1_000_000
+CORNERS, SIDES = 2, 6
+"""Cells of the upper edge that a title cannot have, without and with edges at the sides."""
 
 
 class Panel(Vertical):
@@ -43,7 +46,7 @@ class Panel(Vertical):
     """Width of the shelf below which no other panel stands beside it."""
 
     _source = ""
-    _page = ""
+    _pages: Sequence[str] = ()
     _fault = ""
     """What is said in place of the widget while it fails."""
 
@@ -57,16 +60,23 @@ class Panel(Vertical):
             self._source = topic
             self._entitle()
 
-    def name_page(self, words: str) -> None:
-        """Say in the title that there are more pages."""
-        if words != self._page:
-            self._page = words
+    def name_page(self, *words: str) -> None:
+        """Say in the title that there are more pages: in the first words that there is room for."""
+        if words != self._pages:
+            self._pages = words
             self._entitle()
+
+    def on_resize(self) -> None:
+        """Say the title in the words that fit."""
+        self._entitle()
 
     def _entitle(self) -> None:
         source = f"← {self._source}" if self._source else ""
-        words = " ".join(filter(None, (_(self.title), source, self._page)))
-        self.border_title = Content(plain(words))
+        name = plain(" ".join(filter(None, (_(self.title), source))))
+        room = self.outer_size.width - (SIDES if self.styles.border_left[0] else CORNERS)
+        titles = [f"{name} {plain(words)}" for words in self._pages] or [name]
+        fits = (title for title in titles if cell_len(title) <= room)
+        self.border_title = Content(next(fits, titles[-1]))
 
     def watched(self) -> set[str]:
         """Return the topics whose newest message is wanted."""

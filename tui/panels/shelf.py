@@ -87,12 +87,11 @@ class Shelf(Container):
             panel.styles.column_span = 1
         for row in rows:
             row[-1].styles.column_span = columns - len(row) + 1
-        words = ""
-        if len(self._pages) > 1:
-            words = _("· page {page} of {pages}: v")
-            words = words.format(page=self._page + 1, pages=len(self._pages))
+        at = {"page": self._page + 1, "pages": len(self._pages)}
+        whole, short = _("· page {page} of {pages}: v"), _("· p. {page}/{pages}: v")
+        words = (whole.format(**at), short.format(**at)) if len(self._pages) > 1 else ()
         for panel in self._panels:
-            panel.name_page(words if panel in shown[:1] else "")
+            panel.name_page(*(words if panel in shown[:1] else ()))
 
 
 def in_rows(panels: Sequence[Panel], width: int) -> list[Row]:

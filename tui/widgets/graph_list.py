@@ -54,7 +54,8 @@ class GraphList(Rows):
         room = max(4, self.size.width - 4) if self.size.width else LONGEST
         words = plain(name, LONGEST)
         if not there:
-            words = f"✗ {words} ({_('gone')})"
+            gone = _("gone")
+            words = f"✗ {words} ({gone})"
         cell = Cell(ended(words, room), "" if there else "dim")
         return Row(f"{kind.value}|{name}", (cell,))
 

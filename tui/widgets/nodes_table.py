@@ -43,6 +43,8 @@ class NodesTable(Rows):
         self._statuses: tuple[NodeStatus, ...] = ()
         self._muted: frozenset[str] = frozenset()
         self._full = self._told = False
+        self._word = 0
+        """Cells of the sign and the longest word of a process that runs."""
 
     def show_nodes(
         self, nodes: Mapping[str, NodeStatus], muted: Collection[str] = frozenset()
@@ -59,11 +61,12 @@ class NodesTable(Rows):
         width = self.size.width
         if not width:
             return
-        word = max(cell_len(_(word)) for _sign, word, _meaning in STATES.values())
+        alive = [word for state, (_sign, word, _meaning) in STATES.items() if state.alive]
+        self._word = max(cell_len(_(word)) for word in alive) + 2
         name = max((cell_len(self._named(node)) for node in self._statuses), default=4)
         pid = max((len(str(node.pid or "")) for node in self._statuses), default=0)
         self._full = width >= name + FULL
-        columns = [Column(_("Node"), name if self._full else 0), Column(_("State"), word + 2)]
+        columns = [Column(_("Node"), name if self._full else 0), Column(_("State"), self._word)]
         if self._full:
             columns += [Column(_("Pid"), max(5, pid), right=True), Column(_("Up"), 6, right=True)]
             columns += [Column("↻", 2, right=True)]
@@ -78,9 +81,12 @@ class NodesTable(Rows):
 
     def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
         sign, word, meaning = STATES[node.state]
-        cells = [Cell(self._named(node)), Cell(f"{sign} {_(word)}", meaning)]
+        state = f"{sign} {_(word)}"
         if not node.state.alive:
-            return (*cells, Cell(why(node), "warn" if meaning in {"warn", "bad"} else "dim"))
+            # One cell to the edge: a long word of a state would widen the column for all.
+            told = f"{state:<{self._word}} {why(node)}"
+            return (Cell(self._named(node)), Cell(told, meaning))
+        cells = [Cell(self._named(node)), Cell(state, meaning)]
         if self._full:
             cells += [
                 Cell("" if node.pid is None else str(node.pid), "dim"),

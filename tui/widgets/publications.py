@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
+
 from text.plain import plain
 from tui.i18n import _, decimal, said
 from tui.widgets.rows import Cell, Column, Row, Rows
@@ -32,7 +34,7 @@ class Publications(Rows):
         columns = (
             Column(_("Publishing")),
             Column(_("Hz"), 7, right=True),
-            Column(_("Sent"), 8, right=True),
+            Column(_("Sent"), max(8, cell_len(_("Sent"))), right=True),
             Column(_("Subscribers"), 11, right=True),
         )
         self.show(columns, [_row(one) for one in publications])
