@@ -98,6 +98,8 @@ class ProcessLauncher:
         self._book = book
         self._segments: dict[str, set[str]] = {}
         self._burnt = BurntPorts()
+        # Before the probe joins: it would be shifted, and shift the nodes.
+        self._burnt.avoid_others(plan.domain)
 
     def note_segments(self, name: str, pids: Iterable[int]) -> None:
         """Note which shared memory a node's processes hold: of a killed one nobody could tell."""
@@ -125,6 +127,7 @@ class ProcessLauncher:
             self._book.read(node.name, err, "stderr"),
         ]
         try:
+            self._burnt.avoid_others(self._plan.domain)
             born = await self.spawner.spawn(request, (out_write, err_write))
         except BaseException:
             for reader in readers:

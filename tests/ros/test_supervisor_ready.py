@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers
+from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers, sweep
 from launcher.process_table import (
     NODE_MARK,
     RUN_MARK,
@@ -36,6 +36,8 @@ from tests.ros.supervised import (
 from tests.waiting import until
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from launcher.client import SupervisorClient
 
 TALKER = """
@@ -313,10 +315,34 @@ def is_of_domain(segment: str, domain: int) -> bool:
     return all(domain_of(number) == domain for number in port_numbers([segment]))
 
 
+@pytest.fixture
+def anothers_file(ros_domain: int) -> Iterator[None]:
+    """In place of the lowest port, what nobody can open here, as if another user had left it."""
+    left = SHARED_MEMORY / f"fastrtps_port{7400 + 250 * ros_domain + 11}"
+    sweep([left.name])
+    if left.exists():
+        yield  # It is another user's indeed.
+        return
+    left.mkdir()
+    yield
+    left.rmdir()
+
+
 async def test_a_killed_nodes_shared_memory_is_given_back_and_its_port_is_nobodys(
     start: Launch, tmp_path: Path, ros_domain: int
 ) -> None:
     """Who has talked to it would go on talking to it, and not to a newcomer on its port."""
+    await check_ports_of_killed(start, tmp_path, ros_domain)
+
+
+@pytest.mark.usefixtures("anothers_file")
+async def test_it_is_nobodys_where_files_of_another_user_shift_the_ports(
+    start: Launch, tmp_path: Path, ros_domain: int
+) -> None:
+    await check_ports_of_killed(start, tmp_path, ros_domain)
+
+
+async def check_ports_of_killed(start: Launch, tmp_path: Path, ros_domain: int) -> None:
     client = await start({"node": module(tmp_path, "talker_module", TALKER)})
     dead: set[int] = set()
     # The first may be followed by one on the port of the probe, which has left in order.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from pathlib import Path
 
 import pytest
 
@@ -35,6 +36,29 @@ def test_nobody_else_gets_the_port_for_discovery_before_one_that_is_kept() -> No
         burnt.keep([taken + 1, port + 1])
     assert not is_free(port)
     assert is_free(taken)
+
+
+def free_domain() -> int:
+    """A domain of whose first ports nobody has any."""
+    for domain in range(102, 232):
+        if all(is_free(7400 + 250 * domain + number) for number in range(10, 18)):
+            return domain
+    pytest.fail("there is no free domain on this machine")
+
+
+def test_nobody_gets_a_number_whose_shared_memory_is_another_users(tmp_path: Path) -> None:
+    burnt, domain = BurntPorts(tmp_path), free_domain()
+    first = 7400 + 250 * domain + 10
+    # As who may not open it: not even root opens a folder so.
+    (tmp_path / f"sem.fastrtps_port{first + 1}_mutex").mkdir()
+    (tmp_path / f"fastrtps_port{first + 3}").touch()
+    (tmp_path / f"fastrtps_port{first + 5}").mkdir()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("", first))
+        burnt.avoid_others(domain)
+    assert [is_free(first + number) for number in range(6)] == [True] * 4 + [False, True]
+    burnt.avoid_others(domain)
+    assert [is_free(first + number) for number in range(6)] == [False] + [True] * 3 + [False, True]
 
 
 def test_the_oldest_are_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
