@@ -38,16 +38,16 @@ def at_the_node(terminal: Terminal, name: str) -> None:
     terminal.type(name)
     terminal.wait_for("1 of ")
     terminal.press("enter")
-    terminal.wait_for("p Parameters")
+    terminal.wait_for("E Parameters")
 
 
 def test_a_map_is_drawn_a_parameter_refused_and_a_node_that_hangs_is_told(deck: Deck) -> None:
     terminal = at_the_graph(deck, "02-sonar-safety", 2)
     at_the_node(terminal, "sonar")
-    terminal.press("m")
+    terminal.press("M")
     terminal.wait_for("┌─")
     terminal.wait_for("│ /sonar_front │─┘    safety_stop")
-    terminal.press("m", "p")
+    terminal.press("M", "E")
     terminal.wait_for("read in")
     terminal.press("home", "enter")
     terminal.wait_for("Enter sets it")

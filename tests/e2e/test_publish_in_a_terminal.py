@@ -19,7 +19,7 @@ def test_a_message_is_filled_in_published_and_repeated_until_it_is_stopped(deck:
     # Without a pause, as somebody types who knows the way.
     terminal.type("/ai_command")
     terminal.wait_for("1 of ")
-    terminal.press("enter", "n")
+    terminal.press("enter", "P")
     terminal.wait_for("fits std_msgs/msg/String")
     # A word where a text belongs that YAML takes for a truth: named, and not sent.
     terminal.type("data: on #")

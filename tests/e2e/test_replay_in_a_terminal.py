@@ -34,7 +34,7 @@ def test_a_recording_is_played_paused_and_left(tmp_path: Path) -> None:
         terminal.wait_for("recording drive")
         terminal.wait_for("left wheel slower")
         terminal.wait_for("×2")
-        terminal.type("\x1b[17~")
+        terminal.type("\x1b[18~")
         terminal.wait_for("‖")
         terminal.press("2")
         terminal.wait_for("/sensor/sonar_front")

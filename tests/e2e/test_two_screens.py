@@ -37,7 +37,7 @@ def test_a_second_lesson_in_the_domain_is_asked_about_before_it_starts(deck: Dec
     second = deck.open("08", "--lang", "en")
     second.wait_for("Running there already:")
     second.wait_for("01-hello: ")
-    second.press("b")
+    second.press("s")
     second.wait_for("08-audio")
     second.wait_for("1/1")
     again = deck.open("01", "--lang", "en")

@@ -13,6 +13,7 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, every_look
 from tui.actions import REGISTRY, Action, bindings
+from tui.actions.teleop import MoveAction
 from tui.app import DeckApp, every_action
 from tui.i18n import N_
 from tui.screens.help import HelpScreen
@@ -100,6 +101,45 @@ def test_no_key_of_a_screen_hides_one_that_works_everywhere() -> None:
     for name in every_action():
         if name.split(".")[0] not in {"app", "emergency", "screen", "session", "stopping", "help"}:
             assert everywhere.isdisjoint(REGISTRY[name].key.split(",")), name
+
+
+CURSOR = frozenset("hjklgG")
+"""Letters that move the cursor in lists and trees, beside the arrow keys."""
+DIALOGS = frozenset({"enter", "escape"})
+"""Enter takes what a dialog offers, Escape leaves it: what that is, stands beside the key."""
+
+
+def keys_of_every_screen() -> dict[str, dict[str, list[str]]]:
+    """Return key -> what it is for -> the actions that have it.
+
+    The keys held to drive are those of a game, and named in their panel while they are taken.
+    """
+    table: dict[str, dict[str, list[str]]] = {}
+    for name in every_action():
+        action = REGISTRY[name]
+        for key in () if issubclass(action, MoveAction) else action.key.split(","):
+            table.setdefault(key, {}).setdefault(action.means or action.title, []).append(name)
+    return table
+
+
+def test_a_key_means_one_thing_on_every_screen() -> None:
+    table = keys_of_every_screen()
+    doubled = {key: meanings for key, meanings in table.items() if len(meanings) > 1}
+    assert doubled.keys() <= DIALOGS, doubled
+
+
+def test_no_action_takes_a_letter_that_moves_the_cursor() -> None:
+    assert CURSOR.isdisjoint(keys_of_every_screen())
+
+
+def test_a_russian_letter_means_what_the_key_that_it_stands_on_does() -> None:
+    table = keys_of_every_screen()
+    on_a_key = str.maketrans("фисвуапршолдьтщзйкыегмцчня", "abcdefghijklmnopqrstuvwxyz")
+    for key, meanings in table.items():
+        latin = key.lower().translate(on_a_key)
+        if len(key) == 1 and latin != key.lower():
+            latin = latin.upper() if key.isupper() else latin
+            assert meanings == table[latin], (key, latin)
 
 
 def test_letters_work_on_a_russian_keyboard_too() -> None:

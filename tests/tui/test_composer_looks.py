@@ -101,7 +101,7 @@ def test_refused_and_held(look: Look, snap_compare: SnapCompare) -> None:
         (0.009, result(event="refused", problems=[problem])),
         (0.2, safety("obstacle at 0.38 m")),
     )
-    before = written(BAD, "f7", came=came)
+    before = written(BAD, "ctrl+o", came=came)
     assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
 
 
@@ -111,7 +111,7 @@ def test_hostile_text(language: str, snap_compare: SnapCompare) -> None:
     look = Look((80, 24), language)
     text = '{"thought": "\x1b]52;c;aGVsbG8=\x07 [red] \u202e", "\x1b[2J": "[/]"}'
     answer = result(event="accepted", commands=1, thought="[b]\x1b[31m\x00\u202e[/b]")
-    before = written(text, "f7", came=((0.01, answer),))
+    before = written(text, "ctrl+o", came=((0.01, answer),))
     assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
 
 

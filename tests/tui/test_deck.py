@@ -86,7 +86,7 @@ async def test_a_node_is_muted_heard_alone_and_heard_again() -> None:
         assert deck.log_filter.only == "camera"
         shown = {entry.node for entry in deck.pane.view.index.shown}
         assert shown == {"camera"}
-        await pilot.press("l", "l", "a")
+        await pilot.press("u", "u", "a")
         assert deck.log_filter.muted == frozenset()
         assert deck.log_filter.minimum is Severity.DEBUG
 

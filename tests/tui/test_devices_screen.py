@@ -141,10 +141,10 @@ async def test_frames_both_ways_with_noise_and_a_bad_one() -> None:
         assert lines[0].endswith("$D,17,3200,3400,100*3CC7")
         assert lines[9].startswith("~ noise 2 bytes")
         assert lines[10].startswith("✗ CRC FAILED")
-        await at.press("x")
+        await at.press("v")
         assert at.lines()[0].endswith("33 43 43 37 0A")
         assert at.lines()[9].endswith("FF 00")
-        await at.press("x")
+        await at.press("v")
         assert at.lines() == lines
         await at.press("f9")
         await at.pilot.pause()
@@ -155,13 +155,13 @@ async def test_frames_both_ways_with_noise_and_a_bad_one() -> None:
 async def test_filter_pause_and_clear() -> None:
     async with stage() as at:
         await at.show(of_chassis())
-        await at.press("i")
+        await at.press("b")
         assert not any("drive" in line for line in at.lines())
-        await at.press("ш")
+        await at.press("и")
         assert all("drive" in line for line in at.lines())
-        await at.press("i", "и")
+        await at.press("b", "а")
         assert [line[:2] for line in at.lines()] == ["~ ", "✗ "]
-        await at.press("b", "p")
+        await at.press("f", "p")
         await at.show(of_chassis())
         assert not at.screen.pane.view.following
         assert at.screen.pane.view.fresh == 17
@@ -173,10 +173,10 @@ async def test_filter_pause_and_clear() -> None:
 async def test_lines_are_copied_and_written_to_a_file(tmp_path: Path) -> None:
     async with stage() as at:
         await at.show(of_sonar(1.23), of_chassis(1))
-        await at.press("tab", "up", "c")
+        await at.press("tab", "up", "y")
         assert "wheels left 3.10" in at.app.clipboard
         assert "← in" in at.app.clipboard
-        await at.press("ctrl+s")
+        await at.press("W")
         field = at.screen.pane.prompt.query_one("Input")
         field.value = str(tmp_path / "frames.log")  # type: ignore[attr-defined]
         await at.press("enter")
@@ -231,7 +231,7 @@ async def test_what_others_put_into_it_does_no_harm() -> None:
         assert at.lines()[-1].startswith("␛[31m[bold red]␀")
         assert any("␛[31m[bold red]␀" in row for row in at.drivers())
         assert len(at.drivers()) == len(STATUSES) + 2
-        await at.press("end", "w", "i", "x", "i", "i")
+        await at.press("end", "w", "b", "v", "b", "b")
         at.screen.table.choose("chassis")
         await at.pilot.pause()
         many = [FrameLine(AT_S, "in", Kind.FRAME, b"x" * 9, "x") for _ in range(200)]

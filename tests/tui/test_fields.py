@@ -71,7 +71,7 @@ async def asked(value: object, *keys: str) -> tuple[str, object]:
     graph.node_parameters[NODE] = ParametersResult(NODE, (row,))
     async with opened(graph) as room:
         await room.choose(NODE)
-        await room.press("p")
+        await room.press("E")
         await room.wait(lambda: room.screen.query("GraphParameters"))
         await room.wait_for("topic")
         await room.press("enter")

@@ -93,8 +93,8 @@ async def test_a_call_that_waits_freezes_nothing_and_can_be_given_up(service: Ro
     service.graph.hold_calls = True
     await service.press("ctrl+s")
     await service.wait_for("Still waiting: 0 s of 5 s")
-    assert "f7 stops waiting for it." in service.seen()
-    assert "f7 Cancel" in service.seen()
+    assert "f12 stops waiting for it." in service.seen()
+    assert "f12 Cancel" in service.seen()
     await service.press("escape")
     await service.press("left")
     assert "/ai_brain" in service.seen()
@@ -245,12 +245,12 @@ async def test_several_goals_are_listed_and_the_chosen_one_is_cancelled(action: 
     await action.press("ctrl+s", "ctrl+s")
     await action.wait_for("#2")
     assert "#1" in action.seen()
-    assert "f7 Cancel" in action.seen()
-    await action.press("f7")
+    assert "f12 Cancel" in action.seen()
+    await action.press("f12")
     assert action.graph.canceled_goals == [2]
     action.graph.change_goal(2, status=GoalStatus.CANCELED)
     await action.wait_for("○ canceled")
-    await action.press("f7")
+    await action.press("f12")
     assert action.graph.canceled_goals == [2, 1]
 
 
@@ -330,17 +330,17 @@ async def test_a_goal_of_another_client_is_cancelled_only_after_asking(action: R
     pane = action.screen.ask_pane
     assert pane is not None
     pane.asked_rows.choose(THEIRS)
-    await action.press("f7")
+    await action.press("f12")
     await action.wait_for("Cancel a goal of another client?")
     assert THEIRS in action.seen()
     await action.press("escape")
     assert action.graph.canceled_of_others == []
-    await action.press("f7", "enter")
+    await action.press("f12", "enter")
     await action.wait(lambda: action.graph.canceled_of_others)
     assert action.graph.canceled_of_others == [(ACTION, THEIRS)]
     # What has ended is left alone, and Deck's own come before those of others.
     pane.asked_rows.choose(MINE)
-    await action.press("f7")
+    await action.press("f12")
     assert action.graph.canceled_goals == [1]
     assert action.graph.canceled_of_others == [(ACTION, THEIRS)]
     # Nor can Deck forget what is not its own.
@@ -354,10 +354,10 @@ async def test_the_newest_goal_of_others_is_meant_where_the_chosen_one_has_ended
 ) -> None:
     await action.show(graph_update(seen_goals=SEEN[:1]))
     await action.wait_for("3f2a9c1e ✓ succeeded")
-    assert "f7 Cancel" not in action.seen()
+    assert "f12 Cancel" not in action.seen()
     await action.show(graph_update(seen_goals=SEEN))
-    await action.wait_for("f7 Cancel")
-    await action.press("f7")
+    await action.wait_for("f12 Cancel")
+    await action.press("f12")
     await action.wait_for("Cancel a goal of another client?")
     assert THEIRS in action.seen()
 
@@ -378,8 +378,8 @@ async def test_what_is_not_in_front_is_neither_sent_nor_forgotten(action: Room) 
     await action.press("ctrl+s")
     assert len(action.graph.sent_goals) == 1
     # What is under way can be ended from anywhere.
-    assert "f7 Cancel" in action.seen()
-    await action.press("f7")
+    assert "f12 Cancel" in action.seen()
+    await action.press("f12")
     assert action.graph.canceled_goals == [1]
     action.screen.names.focus()
     await action.press("d")

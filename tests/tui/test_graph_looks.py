@@ -82,7 +82,7 @@ def test_a_node(look: Look, snap_compare: SnapCompare) -> None:
 @both_languages
 def test_parameters(look: Look, snap_compare: SnapCompare) -> None:
     """Five parameters with type and limits; at 80x24 in place of the links, else below them."""
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE, "p", "down"))
+    assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE, "E", "down"))
 
 
 @both_languages
@@ -96,7 +96,7 @@ def test_a_parameter_that_is_refused(look: Look, snap_compare: SnapCompare) -> N
         field = screen.app.screen.query_one(Input)
         field.value = "99.0"
 
-    before = at(NODE, "p", "down", refuse, "enter", type_it, "enter")
+    before = at(NODE, "E", "down", refuse, "enter", type_it, "enter")
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
@@ -107,7 +107,7 @@ def test_a_node_that_does_not_answer(look: Look, snap_compare: SnapCompare) -> N
     def hang(_screen: GraphScreen, graph: RecordedGraph) -> None:
         graph.node_parameters[NODE.name] = ParametersResult(NODE.name, (), "no answer within 5 s")
 
-    before = at(NODE, hang, "p")
+    before = at(NODE, hang, "E")
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
@@ -156,7 +156,7 @@ def test_a_goal_of_another_client_is_to_be_cancelled(look: Look, snap_compare: S
     """A dialog asks: it names the action, the whole id, the state, and who waits for its end."""
     theirs = SeenGoal(ACTION.name, "", "8d00b7f4" * 4, GoalStatus.EXECUTING, 75.25)
     update = graph_update(seen_goals=(theirs,))
-    before = at(ACTION, "enter", "f7")
+    before = at(ACTION, "enter", "f12")
     assert snap_compare(app_of(look, update), terminal_size=look.size, run_before=before)
 
 
@@ -170,7 +170,7 @@ def test_a_type(look: Look, snap_compare: SnapCompare) -> None:
 @both_languages
 def test_the_map(look: Look, snap_compare: SnapCompare) -> None:
     """safety_stop in a box; what it hears at the left, what it says at the right, with whom."""
-    before = at(NODE, "m", "left")
+    before = at(NODE, "M", "left")
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
@@ -205,7 +205,7 @@ def test_hostile_names(drawn: bool, snap_compare: SnapCompare) -> None:
         subscribes=("/\u202enwod_edispu", "/日本語"),
     )
     app = app_of(look, graph_update(nodes=(evil, replace(NODE_ROWS[1], name=long))))
-    before = at(Place(Kind.NODE, evil.name), *(("m",) if drawn else ()))
+    before = at(Place(Kind.NODE, evil.name), *(("M",) if drawn else ()))
     assert snap_compare(app, terminal_size=look.size, run_before=before)
 
 

@@ -28,7 +28,7 @@ BRAIN = """
 async def room() -> AsyncIterator[Room]:
     async with opened() as opened_room:
         await opened_room.choose("/safety_stop")
-        await opened_room.press("m")
+        await opened_room.press("M")
         yield opened_room
 
 
@@ -123,12 +123,12 @@ async def test_a_node_that_vanishes_is_said_to_have_left(room: Room) -> None:
 
 
 async def test_without_a_node_it_says_so(room: Room) -> None:
-    await room.press("m")
+    await room.press("M")
     room.screen.trail.forget()
     await room.show(GraphUpdate(0.0))
-    await room.press("m")
+    await room.press("M")
     assert "no node to draw" in room.seen()
-    await room.press("m")
+    await room.press("M")
     assert "no node in this domain" in room.seen()
 
 

@@ -33,31 +33,31 @@ async def typed(room: Room, text: str) -> None:
 
 async def test_they_are_read_when_asked_and_not_before(room: Room) -> None:
     assert room.graph.asked_parameters == []
-    await room.press("p")
+    await room.press("E")
     await room.wait_for("5 parameters · read in 10 ms")
     assert room.graph.asked_parameters == [NODE]
     assert "0.1…50, above 0" in room.seen()
     assert "⊘ sonar_front" in room.seen()
-    await room.press("p")
+    await room.press("E")
     assert "5 parameters" not in room.seen()
 
 
 async def test_those_of_a_node_that_is_not_in_front_are_not_offered(room: Room) -> None:
-    await room.press("p")
+    await room.press("E")
     await room.wait_for("5 parameters")
     await room.press("slash", "q", "q")
     await room.wait_for("nothing fits the filter")
-    assert "w Save" not in room.seen()
+    assert "W Save" not in room.seen()
     room.screen.names.focus()
-    await room.press("w", "o", "p")
+    await room.press("W", "O", "E")
     assert room.app.screen is room.screen
     assert room.graph.asked_parameters == [NODE]
     await room.press("escape")
-    await room.wait_for("w Save")
+    await room.wait_for("W Save")
 
 
 async def test_another_value_is_set_and_read_back(room: Room) -> None:
-    await room.press("p", "down", "enter")
+    await room.press("E", "down", "enter")
     assert "Allowed: 0.1…50, above 0" in room.seen()
     await typed(room, "2.5")
     await room.wait(lambda: room.app.screen is room.screen)
@@ -75,13 +75,13 @@ def changed(room: Room, node: str) -> GraphUpdate:
 async def test_a_change_from_outside_is_read_at_once(room: Room) -> None:
     """`ros2 param set` in another window; what other nodes change asks this one nothing."""
     assert PARAMETER_EVENTS in room.graph.followed
-    await room.press("p")
+    await room.press("E")
     await room.wait_for("5 parameters")
     await room.show(changed(room, "/camera"))
     assert room.graph.asked_parameters == [NODE]
     await room.show(changed(room, NODE))
     assert room.graph.asked_parameters == [NODE, NODE]
-    await room.press("p")
+    await room.press("E")
     await room.show(changed(room, NODE))
     assert room.graph.asked_parameters == [NODE, NODE], "they are not shown"
 
@@ -97,7 +97,7 @@ async def test_changes_faster_than_the_answers_are_read_once_more(
         return asked[-1]
 
     monkeypatch.setattr(room.graph, "parameters", ask)
-    await room.press("p")
+    await room.press("E")
     for _round in range(3):
         await room.show(changed(room, NODE))
     assert len(asked) == 1
@@ -112,7 +112,7 @@ async def test_changes_faster_than_the_answers_are_read_once_more(
 
 async def test_a_refusal_keeps_the_dialog_open_and_says_why(room: Room) -> None:
     room.graph.refusals["rate"] = "outside of 0.1 to 50"
-    await room.press("p", "down", "enter")
+    await room.press("E", "down", "enter")
     await typed(room, "99")
     await room.wait_for("Refused: outside of 0.1 to 50")
     await room.press("escape")
@@ -120,7 +120,7 @@ async def test_a_refusal_keeps_the_dialog_open_and_says_why(room: Room) -> None:
 
 
 async def test_what_can_only_be_read_is_not_offered_for_change(room: Room) -> None:
-    await room.press("p", "enter")
+    await room.press("E", "enter")
     assert isinstance(room.app.screen, ParameterDialog)
     assert room.app.screen.query_one(Input).disabled
     assert "It can only be read" in room.seen()
@@ -133,7 +133,7 @@ async def test_a_node_that_does_not_answer_freezes_nothing(
 ) -> None:
     future: Future[ParametersResult] = Future()
     monkeypatch.setattr(room.graph, "parameters", lambda _node: future)
-    await room.press("p")
+    await room.press("E")
     assert "the node is being asked" in room.seen()
     assert "asked, no answer for 0 s" in room.seen()
     future.set_result(ParametersResult(NODE, (), "no answer within 5 s"))
@@ -145,10 +145,10 @@ async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
 ) -> None:
     future: Future[ParametersResult] = Future()
     monkeypatch.setattr(room.graph, "parameters", lambda _node: future)
-    await room.press("p", "p")
+    await room.press("E", "E")
     monkeypatch.undo()
     await room.choose("/camera")
-    await room.press("p")
+    await room.press("E")
     await room.wait_for("5 parameters")
     future.set_result(ParametersResult(NODE, (), "too late"))
     await settle(room.pilot)
@@ -157,12 +157,12 @@ async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
 
 async def test_they_are_saved_and_loaded_as_yaml(room: Room, tmp_path: Path) -> None:
     path = tmp_path / "sonar.yaml"
-    await room.press("p", "w")
+    await room.press("E", "W")
     await typed(room, str(path))
     await room.wait(lambda: room.app.screen is room.screen)
     assert "rate: 1.0" in path.read_text()
     path.write_text(path.read_text().replace("rate: 1.0", "rate: 3.0"))
-    await room.press("o")
+    await room.press("O")
     await typed(room, str(path))
     await room.wait(lambda: room.graph.set_to)
     ((node, values),) = room.graph.set_to
@@ -176,7 +176,7 @@ async def test_a_file_that_is_there_is_written_over_only_when_enter_is_pressed_a
 ) -> None:
     path = tmp_path / "notes.yaml"
     path.write_text("precious")
-    await room.press("p", "w")
+    await room.press("E", "W")
     await typed(room, str(path))
     await room.wait_for("Enter again overwrites it")
     assert path.read_text() == "precious"
@@ -191,7 +191,7 @@ async def test_a_file_that_is_wrong_is_told_with_its_line(
     # Short names: a long one is broken into two lines anywhere.
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.yaml").write_text("/sonar_front:\n  ros__parameters:\n    rate: [1, 2\n")
-    await room.press("p", "o")
+    await room.press("E", "O")
     await typed(room, "bad.yaml")
     await room.wait_for("bad.yaml:3:")
     await typed(room, "none.yaml")

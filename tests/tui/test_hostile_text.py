@@ -250,26 +250,26 @@ worlds = pytest.mark.parametrize("keys", [False, True], ids=["values", "all"])
 
 WALKS: dict[str, tuple[str, ...]] = {
     "deck": (
-        *("down", "m", "o", "a", "down", "v", "t", "up", "escape", "l", "f1", "escape"),
+        *("down", "m", "o", "a", "down", "v", "t", "up", "escape", "u", "f1", "escape"),
         *("c", *"abc", "escape", "ctrl+x", "f9"),
     ),
     "topics": (
-        *("a", *(("down", "e", "m", "v", "y", "e") * 10), "i", "s", "r", "w"),
-        *("slash", *"evil", "enter", "down", "n", "ctrl+t", "ctrl+s", "ctrl+g", "escape"),
+        *("a", *(("down", "e", "V", "v", "y", "e") * 10), "i", *"><z"),
+        *("slash", *"evil", "enter", "down", "P", "ctrl+t", "ctrl+s", "ctrl+g", "escape"),
     ),
-    "composer": ("f7", "ctrl+s", "ctrl+t", "escape", "alt+up", "f12"),
+    "composer": ("ctrl+o", "ctrl+s", "ctrl+t", "escape", "alt+up", "ctrl+n"),
     "logs": (
-        *("up", "up", "c", "C", "w", "m", "o", "a", "s", "l", "down", "enter", "escape"),
+        *("up", "up", "y", "Y", "w", "m", "o", "a", "u", "e", "down", "enter", "escape"),
         *("slash", *"evil", "enter", "n", "f", "escape"),
     ),
     "graph": (
-        *("a", *(("down", "enter", "p", "m", "escape", "escape") * 3)),
+        *("a", *(("down", "enter", "E", "M", "escape", "escape") * 3)),
         *("right", *(("down", "enter", "escape") * 3)),
         *("right", *(("down", "enter", "escape") * 2)),
         *("right", *(("down", "enter", "escape") * 3)),
     ),
-    "flow": ("n", "N", "p", "l", "down", "y", "m", "a"),
-    "devices": (*("down", "up") * 3, "p", "i", "b", "x", "slash", *"evil", "enter"),
+    "flow": ("n", "N", "p", "u", "down", "y", "m", "a"),
+    "devices": (*("down", "up") * 3, "p", "b", "f", "v", "slash", *"evil", "enter"),
 }
 """Through all that a screen shows; a hostile name stands beside the one that it is made of."""
 
@@ -291,10 +291,10 @@ async def test_no_screen_gives_it_to_the_terminal(
 @apps
 async def test_a_parameter_is_opened_refused_and_left(kind: type[DeckApp]) -> None:
     async with on_stage(kind, "graph", hostile_pad()) as stage:
-        await stage.press("down", "p")
+        await stage.press("down", "E")
         for _row in range(5):
             await stage.press("down", "enter", "end", "left", "x", "enter", "escape")
-        await stage.press("w", "enter", "escape", "o", "enter", "escape")
+        await stage.press("W", "enter", "escape", "O", "enter", "escape")
 
 
 @apps
@@ -368,7 +368,7 @@ async def test_what_is_composed_and_what_came_of_it(kind: type[DeckApp]) -> None
         text = '{"thought": "' + EVIL + '", "' + EVIL + '": [' + EVIL + "]}"
         stage.app.screen.query_one(JsonEditor).post_message(Paste(text))
         await stage.pilot.pause(0.1)
-        await stage.press("f7")
+        await stage.press("ctrl+o")
         results = [
             sample("/llm_result", STRING, {"data": json.dumps(poisoned(told))})
             for told in ({"event": "refused", "problems": ["x"]}, {"event": "accepted"})
@@ -378,4 +378,4 @@ async def test_what_is_composed_and_what_came_of_it(kind: type[DeckApp]) -> None
         assert isinstance(pad.graph, RecordedGraph)
         pad.graph.show(replace(graph_update(), samples=samples))
         await stage.pilot.pause(0.1)
-        await stage.press("f12", "f9", "alt+up")
+        await stage.press("ctrl+n", "f9", "alt+up")

@@ -178,7 +178,7 @@ async def test_it_may_be_started_beside_the_other() -> None:
         await pilot.press("enter")
         await settle(pilot)
         pad.refusal = None
-        await pilot.press("b")
+        await pilot.press("s")
         await settle(pilot)
         assert [(order.domain, order.beside) for order in pad.orders] == [(42, False), (42, True)]
         assert app.feed.session is SESSION
@@ -189,7 +189,7 @@ async def test_it_may_not_where_both_have_the_same_nodes_and_need_not_be_started
     async with opened(pad, order=PICK) as (app, pilot):
         await pilot.press("enter")
         await settle(pilot)
-        await pilot.press("b")
+        await pilot.press("s")
         await settle(pilot)
         assert isinstance(app.screen, DomainTakenScreen)
         assert "one domain is not enough" in str(app.screen.words())

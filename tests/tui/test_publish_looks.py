@@ -38,7 +38,7 @@ def filled(change: Callable[[PublishDialog], None], *keys: str) -> Before:
         await pilot.pause()
         app.feed.graph.show(lesson_update())  # type: ignore[union-attr]
         await pilot.pause()
-        await pilot.press("n")
+        await pilot.press("P")
         dialog = app.screen
         assert isinstance(dialog, PublishDialog)
         await until(pilot, lambda: dialog.form.value is not None)

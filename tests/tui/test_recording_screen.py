@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import TextArea
 
 from graph import recording
 from graph.bag_errors import not_made
@@ -78,6 +79,14 @@ async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) 
         await until(pilot, lambda: recorder.stopped)
         await until(pilot, lambda: "rec" not in title(app))
         await until(pilot, lambda: any("240 messages" in words for words in told(app)))
+
+
+async def test_the_key_records_from_a_text_field_too() -> None:
+    async with opened(screen="composer") as (app, pilot):
+        assert isinstance(app.focused, TextArea)
+        await pilot.press("f6")
+        await until(pilot, lambda: "● rec 12 s 3.4 MB" in title(app))
+        assert app.focused.selected_text == ""
 
 
 async def test_it_ends_with_the_session() -> None:

@@ -17,6 +17,7 @@ from tests.unit.bags import write_bag, write_robot_bag
 from tui.app import DeckApp
 from tui.i18n import set_language
 from tui.orders import Order, ReplayOrder
+from tui.widgets.key_bar import KeyBar
 from tui.widgets.replay_bar import ReplayBar
 
 
@@ -99,19 +100,19 @@ def state_is(replay: Replay, **wanted: object) -> bool:
 
 async def test_keys_play_pause_step_jump_and_change_the_rate(drive: Path) -> None:
     async with replayed(drive) as (_app, pilot, replay):
-        await pilot.press("f7")
+        await pilot.press("full_stop")
         await until(pilot, lambda: replay.state.position_s == pytest.approx(0.1))
         await pilot.press("shift+right")
         await until(pilot, lambda: replay.state.position_s == pytest.approx(5.1))
         await pilot.press("shift+left")
         await until(pilot, lambda: replay.state.position_s == pytest.approx(0.1))
-        await pilot.press("right_square_bracket")
+        await pilot.press("plus")
         await until(pilot, lambda: state_is(replay, rate=2.0))
-        await pilot.press("х", "х")
+        await pilot.press("minus", "minus")
         await until(pilot, lambda: state_is(replay, rate=0.5))
         await pilot.press("L")
         await until(pilot, lambda: state_is(replay, loop=True))
-        await pilot.press("f6")
+        await pilot.press("f7")
         await until(pilot, lambda: state_is(replay, paused=False))
         await until(pilot, lambda: replay.state.position_s > 0.2)
 
@@ -135,6 +136,17 @@ async def test_the_emergency_stop_has_nothing_to_stop(drive: Path) -> None:
         told = [notice.message for notice in app._notifications]
         assert told == ["This is a recording: there is nothing to stop."]
         assert not app.brake.state.engaged
+
+
+async def test_the_footer_offers_nothing_that_needs_a_robot(drive: Path) -> None:
+    async with replayed(drive) as (app, pilot, _replay):
+        for key, title in (("1", "Restart"), ("2", "Publish"), ("3", "Send")):
+            await pilot.press(key)
+            await pilot.pause()
+            shown = str(app.screen.query_one(KeyBar).render())
+            assert "f7 P" in shown
+            for robots in (title, "STOP", "Start", "Stop", "Mute"):
+                assert robots not in shown, (key, shown)
 
 
 async def test_a_bag_without_panels_opens_on_its_topics(tmp_path: Path) -> None:

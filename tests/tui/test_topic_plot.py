@@ -274,9 +274,9 @@ async def stage() -> Any:
 
 async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(stage: Any) -> None:
     screen, pilot, graph = stage
-    await pilot.press("m")
+    await pilot.press("V")
     assert screen.plot_place is PlotPlace.NONE
-    await pilot.press("enter", "down", "down", "m")
+    await pilot.press("enter", "down", "down", "V")
     await pilot.pause()
     assert screen.plot.fields == (PlotField("/drive", ("drive", "steering_angle")),)
     assert screen.plot.display
@@ -298,7 +298,7 @@ async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(
     graph.show(lesson_update())
     await pilot.pause()
     screen.detail.echo.focus()
-    await pilot.press("home", "down", "down", "m")
+    await pilot.press("home", "down", "down", "V")
     await pilot.pause()
     assert not screen.plot.fields
     assert screen.plot_place is PlotPlace.NONE
@@ -307,11 +307,11 @@ async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(
 
 async def test_the_plot_goes_beside_alone_and_away(stage: Any) -> None:
     screen, pilot, _graph = stage
-    await pilot.press("enter", "down", "down", "m", "v")
+    await pilot.press("enter", "down", "down", "V", "v")
     await pilot.pause()
     assert screen.is_covered
     assert not screen.table.display
-    await pilot.press("w", "p")
+    await pilot.press("z", "p")
     assert screen.plot.window_s == 60.0
     assert screen.plot.paused
     await pilot.press("escape")
@@ -324,5 +324,5 @@ async def test_the_plot_goes_beside_alone_and_away(stage: Any) -> None:
     await pilot.pause()
     assert not screen.plot.display
     assert screen.plot.fields
-    await pilot.press("M")
+    await pilot.press("D")
     assert not screen.plot.fields

@@ -98,7 +98,7 @@ def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
     }  # fmt: skip
     rows = tuple(replace(row, **changed.get(row.name, {})) for row in TOPICS)
     update = lesson_update(topics=rows, samples={})
-    keys = ("s",) * (7 if look.size[0] >= 100 else 6)
+    keys = ("greater_than_sign",) * (7 if look.size[0] >= 100 else 6)
     before = shown("/sensor/sonar_front", update, *keys)
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
@@ -127,10 +127,10 @@ def test_endpoints(look: Look, snap_compare: SnapCompare) -> None:
 @both_languages
 def test_a_plot_of_two_fields(look: Look, snap_compare: SnapCompare) -> None:
     """A wave with a gap and a line that steps, each with its letter, its range and its marks."""
-    before = shown("/drive", None, "enter", "down", "down", "down", "down", "m")
+    before = shown("/drive", None, "enter", "down", "down", "down", "down", "V")
 
     async def plot(pilot: Pilot[Any]) -> None:
-        await shown("/sensor/sonar_front", None, "m")(pilot)
+        await shown("/sensor/sonar_front", None, "V")(pilot)
         await before(pilot)
         app = pilot.app
         assert isinstance(app, DeckApp)

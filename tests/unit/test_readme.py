@@ -76,7 +76,7 @@ def test_the_page_on_profiles_tells_every_key_and_panel(page: str) -> None:
         ("f5", "screen.logs"),
         ("f1", "app.help"),
         ("f6", "recording.toggle"),
-        ("f6", "replay.toggle"),
+        ("f7", "replay.toggle"),
         ("f8", "session.close"),
         ("f9", "app.language"),
         ("f10", "app.theme"),

@@ -28,6 +28,8 @@ class Action(Generic[Target]):
     """Two or three words, marked by `N_`."""
     tooltip: ClassVar[str]
     """A sentence, marked by `N_`."""
+    means: ClassVar[str] = ""
+    """What its keys are for on every screen, for actions that share them; empty: its title."""
     footer: ClassVar[bool] = False
     """Whether the footer shows it."""
     priority: ClassVar[bool] = False
@@ -54,6 +56,12 @@ class Action(Generic[Target]):
     @classmethod
     def possible(cls, target: Target) -> bool | None:
         """Return whether it can be done now; None shows it dimmed, False hides it."""
+        del target
+        return True
+
+    @classmethod
+    def shown(cls, target: Target) -> bool:
+        """Return whether the footer shows it now; a key that is not shown may say why not."""
         del target
         return True
 

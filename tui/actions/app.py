@@ -35,6 +35,11 @@ class EmergencyStop(SessionAction):
     priority = True
 
     @classmethod
+    def shown(cls, target: DeckApp) -> bool:
+        """Not beside a recording."""
+        return target.feed.replay is None
+
+    @classmethod
     async def run(cls, target: DeckApp) -> None:
         """Engage it; an engaged one is told again."""
         if target.feed.replay is None:
@@ -161,6 +166,7 @@ class ShowHelp(AppAction):
     id = "app.help"
     key = "f1,question_mark"
     title = N_("Help")
+    means = "help"
     tooltip = N_("Every key of this screen, and what it shows.")
     footer = True
 
@@ -271,6 +277,7 @@ class Quit(AppAction):
     id = "app.quit"
     key = "q,й,ctrl+q"
     title = N_("Quit")
+    means = "leave"
     tooltip = N_("Leave; nodes that this screen has started are stopped, others go on.")
     footer = True
     priority = True

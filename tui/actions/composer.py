@@ -17,12 +17,22 @@ class ComposerAction(Action["ComposerScreen"]):
     priority = True
 
 
-class Send(ComposerAction):
+class _SendAction(ComposerAction):
+    """Something that needs a robot; without one the screen tells why nothing is sent."""
+
+    @classmethod
+    def shown(cls, target: ComposerScreen) -> bool:
+        """Not beside a recording."""
+        return target.feed.replay is None
+
+
+class Send(_SendAction):
     """The JSON on its way."""
 
     id = "composer.send"
-    key = "ctrl+s,f6"
+    key = "ctrl+s"
     title = N_("Send")
+    means = "submit"
     tooltip = N_("Send the JSON to /llm_raw_json, if nothing is wrong with it.")
     footer = True
 
@@ -32,11 +42,11 @@ class Send(ComposerAction):
         target.send()
 
 
-class SendAnyway(ComposerAction):
+class SendAnyway(_SendAction):
     """Broken JSON on its way, to see it refused."""
 
     id = "composer.send_anyway"
-    key = "f7"
+    key = "ctrl+o"
     title = N_("Send anyway")
     tooltip = N_("Send it although it is wrong, to see llm_parser refuse it.")
     footer = True
@@ -58,6 +68,7 @@ class Templates(ComposerAction):
     id = "composer.templates"
     key = "ctrl+t"
     title = N_("Templates")
+    means = "begin with what is there"
     tooltip = N_("Begin with an example: right ones and wrong ones.")
     footer = True
     from_elsewhere = True
@@ -101,7 +112,7 @@ class NextProblem(ComposerAction):
     """To where something is wrong."""
 
     id = "composer.next_problem"
-    key = "f12"
+    key = "ctrl+n"
     title = N_("Next problem")
     tooltip = N_("Put the cursor where the next thing is wrong.")
     from_elsewhere = True

@@ -15,17 +15,26 @@ class DeckAction(Action["LessonDeck"]):
     """Something on the Deck."""
 
 
-class _AskNode(DeckAction):
+class _OfNode(DeckAction):
+    """Something about the chosen node."""
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only with a node chosen, in a session that has any of its own: a recording has none."""
+        if target.feed.watching or not target.feed.nodes:
+            return False
+        return True if target.chosen_node else None
+
+
+class _AskNode(_OfNode):
     """Ask the supervisor to do something with the chosen node."""
 
     asked: ClassVar[str]
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:
-        """Only with a node chosen, in a session that has any of its own."""
-        if target.feed.watching:
-            return False
-        return True if target.chosen_node else None
+        """Not when the session is over."""
+        return False if target.feed.link is None else super().possible(target)
 
     @classmethod
     async def run(cls, target: LessonDeck) -> None:
@@ -39,6 +48,7 @@ class StartNode(_AskNode):
     id = "node.start"
     key = "s,ы"
     title = N_("Start")
+    means = "start"
     tooltip = N_("Start the chosen node, with all that it needs.")
     footer = True
     asked = "start"
@@ -50,6 +60,7 @@ class StopNode(_AskNode):
     id = "node.stop"
     key = "x,ч"
     title = N_("Stop")
+    means = "stop"
     tooltip = N_("Stop the chosen node; pressed again, at once.")
     footer = True
     asked = "stop"
@@ -112,12 +123,13 @@ class RestartAll(_AskAll):
     asked = "restart"
 
 
-class MuteNode(_AskNode):
+class MuteNode(_OfNode):
     """Leave out one node's lines."""
 
     id = "log.mute"
     key = "m,ь"
     title = N_("Mute")
+    means = "leave out"
     tooltip = N_("Leave the chosen node out of the log, or let it be heard again.")
     footer = True
 
@@ -127,12 +139,13 @@ class MuteNode(_AskNode):
         target.filter_log(target.log_filter.toggled(target.chosen_node))
 
 
-class HearOnly(_AskNode):
+class HearOnly(_OfNode):
     """Leave out all others."""
 
     id = "log.only"
     key = "o,щ"
     title = N_("Only this")
+    means = "only this"
     tooltip = N_("Show only the chosen node's log; again: as before.")
     footer = True
 
@@ -146,8 +159,9 @@ class Severity(DeckAction):
     """Leave out the least severe lines."""
 
     id = "log.severity"
-    key = "l,д"
+    key = "u,г"
     title = N_("Severity")
+    means = "how much of the log"
     tooltip = N_("Leave out the least severe lines that are shown; after FATAL comes all.")
     from_elsewhere = True
 
@@ -163,6 +177,7 @@ class HearAll(DeckAction):
     id = "log.all"
     key = "a,ф"
     title = N_("Whole log")
+    means = "all"
     tooltip = N_("Let every node be heard, at every severity.")
     from_elsewhere = True
 
@@ -178,6 +193,7 @@ class TurnPage(DeckAction):
     id = "deck.page"
     key = "v,м"
     title = N_("More panels")
+    means = "another view"
     tooltip = N_("Show the panels that have no room on this page.")
     footer = True
     from_elsewhere = True

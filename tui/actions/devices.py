@@ -33,7 +33,7 @@ class OneWay(DevicesAction):
     """Both ways, or one."""
 
     id = "devices.way"
-    key = "i,ш"
+    key = "b,и"
     title = N_("In/out")
     tooltip = N_("Show only what comes from the device, only what goes to it, or both.")
     footer = True
@@ -49,8 +49,9 @@ class OnlyBad(DevicesAction):
     """What is no good frame, or everything."""
 
     id = "devices.bad"
-    key = "b,и"
+    key = "f,а"
     title = N_("Only bad")
+    means = "only"
     tooltip = N_("Show only noise and frames whose check failed, or all.")
     footer = True
     from_elsewhere = True
@@ -70,8 +71,9 @@ class Hex(DevicesAction):
     """Hex, or text."""
 
     id = "devices.hex"
-    key = "x,ч"
+    key = "v,м"
     title = N_("Hex")
+    means = "another view"
     tooltip = N_("Show the bytes of lines of text in hex, or as text.")
     footer = True
     from_elsewhere = True
@@ -99,6 +101,7 @@ class Clear(DevicesAction):
     id = "devices.clear"
     key = "d,в"
     title = N_("Clear")
+    means = "clear"
     tooltip = N_("Forget the frames that have come so far.")
     footer = True
 
@@ -112,6 +115,7 @@ class Search(lines.Search["DevicesScreen"], DevicesAction):
     """Search."""
 
     id = "devices.search"
+    means = "find"
     tooltip = N_("Find text in the frames while it is written; Escape ends it.")
 
 
@@ -119,6 +123,7 @@ class FindNext(lines.FindNext["DevicesScreen"], DevicesAction):
     """The next found frame."""
 
     id = "devices.next"
+    means = "next"
     tooltip = N_("Go to the next frame that was found.")
 
 
@@ -126,6 +131,7 @@ class FindPrevious(lines.FindPrevious["DevicesScreen"], DevicesAction):
     """The previous found frame."""
 
     id = "devices.previous"
+    means = "previous"
     tooltip = N_("Go to the previous frame that was found.")
 
 
@@ -139,6 +145,7 @@ class Save(lines.Save["DevicesScreen"], DevicesAction):
     """Write frames to a file."""
 
     id = "devices.save"
+    means = "write to a file"
 
 
 class _MakeTrouble(DevicesAction):

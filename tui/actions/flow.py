@@ -34,6 +34,7 @@ class Older(FlowAction):
     id = "flow.older"
     key = "n,т"
     title = N_("Older")
+    means = "next"
     tooltip = N_("Go to the utterance before this one.")
     footer = True
 
@@ -54,6 +55,7 @@ class Newer(FlowAction):
     id = "flow.newer"
     key = "N,Т"
     title = N_("Newer")
+    means = "previous"
     tooltip = N_("Go to the utterance after this one.")
 
     @classmethod
@@ -93,6 +95,7 @@ class HideLane(_Chosen):
     id = "flow.hide"
     key = "m,ь"
     title = N_("Hide")
+    means = "leave out"
     tooltip = N_("Leave out all steps of the chosen one's kind: microphone, brain, wheels...")
     footer = True
 
@@ -109,6 +112,7 @@ class ShowAllLanes(FlowAction):
     id = "flow.all"
     key = "a,ф"
     title = N_("Show all")
+    means = "all"
     tooltip = N_("Show every step again, without the logs of other nodes.")
     footer = True
 
@@ -122,8 +126,9 @@ class OtherLogs(FlowAction):
     """What the other nodes wrote into their logs meanwhile."""
 
     id = "flow.logs"
-    key = "l,д"
+    key = "u,г"
     title = N_("Other logs")
+    means = "how much of the log"
     tooltip = N_("Show or hide what other nodes wrote into their logs meanwhile.")
     footer = True
 
@@ -137,8 +142,9 @@ class Scale(FlowAction):
     """A linear axis, or one that spreads the beginning."""
 
     id = "flow.scale"
-    key = "s,ы"
+    key = "z,я"
     title = N_("Scale")
+    means = "time span"
     tooltip = N_("Let the axis of time spread the first milliseconds, or be even.")
     footer = True
 
@@ -152,7 +158,7 @@ class CopyChain(_Chosen):
     """The utterance for the clipboard."""
 
     id = "flow.copy"
-    key = "y,c,н,с"
+    key = "y,н"
     title = N_("Copy")
     tooltip = N_("Copy the steps of this utterance, with their delays, as text.")
     footer = True

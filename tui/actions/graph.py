@@ -21,6 +21,7 @@ class Filter(GraphAction):
     id = "graph.filter"
     key = "slash,ctrl+f"
     title = N_("Filter")
+    means = "find"
     tooltip = N_("Show only what has the words that you type in its name or type.")
     footer = True
     priority = True
@@ -71,7 +72,7 @@ class Map(GraphAction):
     """The graph drawn."""
 
     id = "graph.map"
-    key = "m,ь"
+    key = "M,Ь"
     title = N_("Map")
     tooltip = N_("Draw the chosen node with those that it talks to; arrows walk, Enter goes on.")
     footer = True
@@ -92,7 +93,7 @@ class Parameters(GraphAction):
     """The node's parameters."""
 
     id = "graph.parameters"
-    key = "p,з"
+    key = "E,У"
     title = N_("Parameters")
     tooltip = N_("Read the parameters of the chosen node, or hide them; Enter changes one.")
     footer = True
@@ -125,8 +126,9 @@ class SaveParameters(ParametersAction):
     """Into a file."""
 
     id = "graph.save"
-    key = "w,ц"
+    key = "W,Ц"
     title = N_("Save")
+    means = "write to a file"
     tooltip = N_("Save the node's parameters as YAML.")
 
     @classmethod
@@ -139,7 +141,7 @@ class LoadParameters(ParametersAction):
     """From a file."""
 
     id = "graph.load"
-    key = "o,щ"
+    key = "O,Щ"
     title = N_("Load")
     tooltip = N_("Set the node's parameters from a YAML file.")
 
@@ -155,6 +157,7 @@ class Ask(GraphAction):
     id = "graph.ask"
     key = "ctrl+s"
     title = N_("Call")
+    means = "submit"
     tooltip = N_("Call the service, or send the goal, with what is filled in.")
     footer = True
 
@@ -179,8 +182,9 @@ class Cancel(GraphAction):
     """What is under way."""
 
     id = "graph.cancel"
-    key = "f7,x,ч"
+    key = "f12,x,ч"
     title = N_("Cancel")
+    means = "stop"
     tooltip = N_("Wait no longer for the call, or cancel the chosen goal; asks first for others'.")
     footer = True
     priority = True
@@ -203,6 +207,7 @@ class ForgetGoal(GraphAction):
     id = "graph.forget"
     key = "delete,d,в"
     title = N_("Forget")
+    means = "clear"
     tooltip = N_("Take the chosen goal off the list; one that has not ended is cancelled.")
 
     @classmethod
@@ -224,6 +229,7 @@ class Housekeeping(GraphAction):
     id = "graph.housekeeping"
     key = "a,ф"
     title = N_("All")
+    means = "all"
     tooltip = N_("Show or hide what ROS itself needs: parameter services, hidden nodes.")
     footer = True
     from_elsewhere = True

@@ -100,7 +100,7 @@ class Fold(Action[Shown]):
 class Copy(Action[Shown]):
     """Copy the lines chosen."""
 
-    key = "c,с"
+    key = "y,н"
     title = N_("Copy")
     tooltip = N_("Copy the lines chosen to the clipboard of your terminal.")
     footer = True
@@ -114,7 +114,7 @@ class Copy(Action[Shown]):
 class Save(Action[Shown]):
     """Write lines to a file."""
 
-    key = "ctrl+s"
+    key = "W,Ц"
     title = N_("Write")
     tooltip = N_("Write the lines chosen, else all shown, to a file.")
     footer = True

@@ -30,6 +30,7 @@ class Search(lines.Search["LogsScreen"]):
     """Search."""
 
     id = "logs.search"
+    means = "find"
     tooltip = N_("Find text in the lines while it is written; Escape ends it.")
     footer = True
 
@@ -38,6 +39,7 @@ class FindNext(lines.FindNext["LogsScreen"]):
     """The next found line."""
 
     id = "logs.next"
+    means = "next"
     tooltip = N_("Go to the next line that was found.")
 
 
@@ -45,6 +47,7 @@ class FindPrevious(lines.FindPrevious["LogsScreen"]):
     """The previous found line."""
 
     id = "logs.previous"
+    means = "previous"
     tooltip = N_("Go to the previous line that was found.")
 
 
@@ -54,6 +57,7 @@ class OnlyFound(LogsAction):
     id = "logs.only_found"
     key = "f,а"
     title = N_("Only found")
+    means = "only"
     tooltip = N_("Leave out the lines that do not hold the text searched for.")
 
     @classmethod
@@ -72,8 +76,9 @@ class RaiseSeverity(LogsAction):
     """A higher lowest severity."""
 
     id = "logs.severity"
-    key = "s,ы"
+    key = "u,г"
     title = N_("Severity")
+    means = "how much of the log"
     tooltip = N_("Leave out the least severe lines that are shown; after FATAL comes all.")
     footer = True
 
@@ -87,8 +92,9 @@ class ShowNodes(LogsAction):
     """The list of nodes."""
 
     id = "logs.nodes"
-    key = "l,д"
+    key = "e,у"
     title = N_("Nodes")
+    means = "nodes behind it"
     tooltip = N_("Go to the list of nodes; there Enter mutes one, or lets it be heard.")
     footer = True
 
@@ -104,6 +110,7 @@ class Mute(LogsAction):
     id = "logs.mute"
     key = "m,ь"
     title = N_("Mute")
+    means = "leave out"
     tooltip = N_("Mute the node of the chosen line or row, or let it be heard again.")
     footer = True
     from_elsewhere = False
@@ -126,6 +133,7 @@ class Alone(LogsAction):
     id = "logs.alone"
     key = "o,щ"
     title = N_("Only this")
+    means = "only this"
     tooltip = N_("Mute all but the node of the chosen line or row; again: as before.")
     footer = True
     from_elsewhere = False
@@ -148,6 +156,7 @@ class HearAll(LogsAction):
     id = "logs.all"
     key = "a,ф"
     title = N_("All nodes")
+    means = "all"
     tooltip = N_("Let every node be heard, at every severity.")
 
     @classmethod
@@ -172,7 +181,7 @@ class CopyAll(LogsAction):
     """Copy all lines shown."""
 
     id = "logs.copy_all"
-    key = "C,С"
+    key = "Y,Н"
     title = N_("Copy all")
     tooltip = N_("Copy all lines that are shown to the clipboard of your terminal.")
     from_elsewhere = False
@@ -187,6 +196,7 @@ class Save(lines.Save["LogsScreen"]):
     """Write lines to a file."""
 
     id = "logs.save"
+    means = "write to a file"
 
 
 LOGS_ACTIONS = (

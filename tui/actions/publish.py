@@ -17,15 +17,15 @@ class OpenPublish(TopicsAction):
     """A message of one's own."""
 
     id = "topics.publish"
-    key = "n,т"
+    key = "P,З"
     title = N_("Publish")
     tooltip = N_("Publish a message to the chosen topic or to a new one, once or at a rate.")
     footer = True
 
     @classmethod
     def possible(cls, target: TopicsScreen) -> bool | None:
-        """Only while there is a graph to publish in."""
-        return target.feed.graph is not None
+        """Only while there is a graph to publish in: a recording takes nothing."""
+        return target.feed.graph is not None and target.feed.replay is None
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:
@@ -47,8 +47,9 @@ class PublishOnce(PublishAction):
     """The message, once."""
 
     id = "publish.once"
-    key = "ctrl+s,f6"
+    key = "ctrl+s"
     title = N_("Once")
+    means = "submit"
     tooltip = N_("Publish the message once, if nothing is wrong with it.")
 
     @classmethod
@@ -61,7 +62,7 @@ class PublishAtRate(PublishAction):
     """The message, again and again."""
 
     id = "publish.rate"
-    key = "ctrl+g,f7"
+    key = "ctrl+g"
     title = N_("At a rate")
     tooltip = N_("Publish the message again and again, so many times a second.")
 
@@ -77,6 +78,7 @@ class StopPublication(PublishAction):
     id = "publish.stop"
     key = "f12"
     title = N_("Stop it")
+    means = "stop"
     tooltip = N_("Publish the chosen one no more; Enter in the list does the same.")
 
     @classmethod
@@ -96,6 +98,7 @@ class TakeMessage(PublishAction):
     id = "publish.take"
     key = "ctrl+t"
     title = N_("From message")
+    means = "begin with what is there"
     tooltip = N_("Fill the form with the newest message of the topic.")
 
     @classmethod

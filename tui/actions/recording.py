@@ -18,6 +18,7 @@ class RecordToggle(Action["DeckApp"]):
     key = "f6"
     title = N_("Record")
     tooltip = N_("Record all topics into a folder that `ros2 bag` and `deck replay` read.")
+    priority = True
 
     @classmethod
     def possible(cls, target: DeckApp) -> bool | None:

@@ -39,10 +39,11 @@ class PlayPause(ReplayAction):
     """Stand still, or go on."""
 
     id = "replay.toggle"
-    key = "f6"
+    key = "f7"
     title = N_("Pause")
     tooltip = N_("Let the recording stand still, or go on; at its end begin anew.")
     footer = True
+    priority = True
 
     @classmethod
     def label(cls, target: DeckApp) -> str:
@@ -60,7 +61,7 @@ class Step(ReplayAction):
     """One message on."""
 
     id = "replay.step"
-    key = "f7"
+    key = "full_stop,ю"
     title = N_("Step")
     tooltip = N_("Stand still and show the next message of the topics on the screen.")
 
@@ -102,7 +103,7 @@ class Slower(ReplayAction):
     """Slower."""
 
     id = "replay.slower"
-    key = "left_square_bracket,х"
+    key = "minus,underscore"
     title = N_("Slower")
     tooltip = N_("Play the recording slower: down to a tenth.")
 
@@ -116,7 +117,7 @@ class Faster(ReplayAction):
     """Faster."""
 
     id = "replay.faster"
-    key = "right_square_bracket,ъ"
+    key = "plus,equals_sign"
     title = N_("Faster")
     tooltip = N_("Play the recording faster: up to ten times.")
 

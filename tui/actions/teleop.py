@@ -20,6 +20,7 @@ class OpenTeleop(DeckAction):
     id = "deck.teleop"
     key = "t,е"
     title = N_("Drive")
+    means = "drive"
     tooltip = N_(
         "Drive by the arrow keys or W A S D while they are held; letting go stops. Escape closes."
     )
@@ -47,6 +48,7 @@ class CloseTeleop(TeleopAction):
     id = "teleop.close"
     key = "escape,t,е"
     title = N_("Close")
+    means = "drive"
     tooltip = N_("Stop, and drive no more.")
     footer = True
 

@@ -28,6 +28,7 @@ class Filter(TopicsAction):
     id = "topics.filter"
     key = "slash,ctrl+f"
     title = N_("Filter")
+    means = "find"
     tooltip = N_("Show only topics whose name or type has the words that you type.")
     footer = True
     priority = True
@@ -75,6 +76,7 @@ class Plot(TopicsAction):
     id = "topics.plot"
     key = "v,м"
     title = N_("Plot")
+    means = "another view"
     tooltip = N_("Show the plot beside the message, then alone, then not at all.")
     footer = True
 
@@ -101,7 +103,7 @@ class PlotField(TopicsAction):
     """A number of the message against time."""
 
     id = "topics.plot_field"
-    key = "m,ь"
+    key = "V,М"
     title = N_("Plot field")
     tooltip = N_("Plot the number at the cursor against time, or take it out of the plot.")
     footer = True
@@ -121,8 +123,9 @@ class PlotWindow(TopicsAction):
     """How many seconds the plot shows."""
 
     id = "topics.plot_window"
-    key = "w,ц"
+    key = "z,я"
     title = N_("Time span")
+    means = "time span"
     tooltip = N_("Let the plot show 10, 30 or 60 seconds, or 5 minutes.")
     footer = True
 
@@ -141,7 +144,7 @@ class ClearPlot(TopicsAction):
     """Nothing plotted any more."""
 
     id = "topics.plot_clear"
-    key = "M,Ь"
+    key = "D,В"
     title = N_("Clear plot")
     tooltip = N_("Take all fields out of the plot.")
 
@@ -160,7 +163,7 @@ class CopyMessage(TopicsAction):
     """The message for the clipboard."""
 
     id = "topics.copy"
-    key = "y,c,н,с"
+    key = "y,н"
     title = N_("Copy")
     tooltip = N_("Copy the message as YAML, as `ros2 topic pub` takes it.")
     footer = True
@@ -178,6 +181,7 @@ class FilterMessages(TopicsAction):
     id = "topics.condition"
     key = "f,а"
     title = N_("Only if")
+    means = "only"
     tooltip = N_("Show only messages for which an expression holds: m.data > 0.5; Esc ends it.")
     footer = True
     priority = True
@@ -219,6 +223,7 @@ class Endpoints(TopicsAction):
     id = "topics.endpoints"
     key = "e,у"
     title = N_("Endpoints")
+    means = "nodes behind it"
     tooltip = N_("Show every publisher and subscriber with its QoS, and which of them do not fit.")
     footer = True
 
@@ -237,7 +242,7 @@ class SortByNext(TopicsAction):
     """Another column to sort by."""
 
     id = "topics.sort"
-    key = "s,ы"
+    key = "greater_than_sign,Ю"
     title = N_("Sort")
     tooltip = N_("Sort by the next column; a click on a title sorts by that one.")
     footer = True
@@ -252,7 +257,7 @@ class Reverse(TopicsAction):
     """The order turned round."""
 
     id = "topics.reverse"
-    key = "r,к"
+    key = "less_than_sign,Б"
     title = N_("Reverse")
     tooltip = N_("Turn the order of the topics round.")
 
@@ -269,6 +274,7 @@ class Housekeeping(TopicsAction):
     id = "topics.housekeeping"
     key = "a,ф"
     title = N_("All")
+    means = "all"
     tooltip = N_("Show or hide topics of ROS itself: /rosout, /parameter_events.")
     footer = True
 

@@ -17,6 +17,7 @@ class SubmitForm(Action["YamlForm"]):
     id = "form.submit"
     key = "ctrl+s"
     title = N_("Submit")
+    means = "submit"
     tooltip = N_("Take the message as it is filled in, if nothing is wrong with it.")
     footer = True
     priority = True

@@ -32,6 +32,7 @@ class ExplainDialog(Action["Dialog[Any]"]):
     id = "help.dialog"
     key = "f1"
     title = N_("Help")
+    means = "help"
     tooltip = N_("Every key of this screen, and what it shows.")
     palette = False
 

@@ -48,8 +48,9 @@ class StartTogether(Action["DomainTakenScreen"]):
     """Where the other is."""
 
     id = "domain_taken.together"
-    key = "b,и"
+    key = "s,ы"
     title = N_("Start beside it")
+    means = "start"
     tooltip = N_("Start it in the same domain: their nodes see and hear each other.")
     footer = True
     palette = False

@@ -30,6 +30,7 @@ class CloseHelp(Action["HelpScreen"]):
     id = "help.close"
     key = "escape,f1,enter"
     title = N_("Close")
+    means = "help"
     tooltip = N_("Go back to the screen.")
     footer = True
     palette = False

@@ -22,6 +22,7 @@ class StopNow(Action["StoppingScreen"]):
     id = "stopping.now"
     key = "q,й,ctrl+q,ctrl+c"
     title = N_("Stop at once")
+    means = "leave"
     tooltip = N_("Kill what has not stopped yet.")
     footer = True
     priority = True

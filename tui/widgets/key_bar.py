@@ -71,7 +71,7 @@ class KeyBar(Widget):
         found: dict[str, list[ActiveBinding]] = {}
         for active in self.screen.active_bindings.values():
             name = active.binding.id or ""
-            if active.binding.show and name in REGISTRY:
+            if active.binding.show and name in REGISTRY and REGISTRY[name].shown(active.node):
                 found.setdefault(name, []).append(active)
         place = _places(found)
         names = sorted(found, key=lambda name: (found[name][0].node is self.app, place[name]))
