@@ -165,7 +165,7 @@ def _files(path: Path) -> list[Path]:
         return [path]
     if not path.is_dir():
         raise no_bag(path, say("it is neither a file nor a folder"))
-    metadata = _metadata(path / METADATA)
+    metadata = metadata_of(path)
     storage = metadata.get("storage_identifier", "mcap")
     if storage not in STORAGES:
         raise unknown_storage(path, storage)
@@ -187,12 +187,12 @@ def unknown_storage(path: Path, storage: object) -> BagError:
     )
 
 
-def _metadata(path: Path) -> Mapping[str, Any]:
+def metadata_of(folder: Path) -> Mapping[str, Any]:
     """Return what metadata.yaml says; nothing if it is missing or broken: readers say more."""
     import yaml
 
     try:
-        found = yaml.safe_load(path.read_text(encoding="utf-8"))
+        found = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
         inner = found["rosbag2_bagfile_information"]
     except (OSError, yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
         return {}

@@ -1,4 +1,4 @@
-"""Where the launcher keeps what lives as long as a run, and the logs that outlive it.
+"""Where the launcher keeps what lives as long as a run, and what outlives it: logs, recordings.
 
 The run directory holds control sockets: it must be the user's own, and nobody else may write to
 it. One that Deck makes is closed to all others; one that was there before is never changed.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import stat
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,6 +76,20 @@ def log_dir() -> Path:
         raise _not_made(path, error) from error
     check_writable(path)
     return path
+
+
+def recordings_path() -> Path:
+    """Return the folder of recordings, whether there are any or not: one that people find.
+
+    `DECK_RECORDINGS_DIR`, else `~/deck-recordings`.
+    """
+    chosen = os.environ.get("DECK_RECORDINGS_DIR")
+    return Path(chosen) if chosen else Path.home() / "deck-recordings"
+
+
+def new_recording(what: str) -> Path:
+    """Return where a recording of this robot that begins now goes; the folder is not made."""
+    return recordings_path() / f"{Path(what).name}-{time.strftime('%Y-%m-%d-%H-%M-%S')}"
 
 
 def check_writable(logs: Path) -> None:

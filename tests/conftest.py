@@ -84,6 +84,7 @@ def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("LANG", "C.UTF-8")
     monkeypatch.setenv("DECK_RUN_DIR", str(tmp_path / "run"))
     monkeypatch.setenv("DECK_LOG_DIR", str(tmp_path / "logs"))
+    monkeypatch.setenv("DECK_RECORDINGS_DIR", str(tmp_path / "recordings"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros-logs"))
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")

@@ -6,8 +6,6 @@ All that touches the disk or ROS is done on threads; here it is only asked for a
 from __future__ import annotations
 
 import asyncio
-import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from text.plain import plain
@@ -133,11 +131,10 @@ def _toggle() -> type:
 
 
 def _started(session: SessionInfo) -> Recorder:
-    """Begin to record everything of the session, in a folder beside its logs."""
+    """Begin to record everything of the session, where `deck replay` finds it by its name."""
     from graph.recording import Recorder
-    from launcher.rundir import log_dir
+    from launcher.rundir import new_recording
 
-    name = f"{Path(session.name).name}-{time.strftime('%Y-%m-%d-%H-%M-%S')}"
-    recorder = Recorder(session.domain, session.discovery, log_dir() / "bags" / name)
+    recorder = Recorder(session.domain, session.discovery, new_recording(session.name))
     recorder.start()
     return recorder

@@ -73,7 +73,7 @@ async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) 
         (recorder,) = Recorder.made
         assert app.feed.session is not None
         assert recorder.asked == (app.feed.session.domain, app.feed.session.discovery)
-        assert recorder.status.folder.startswith(str(tmp_path / "logs" / "bags" / "09-brain"))
+        assert recorder.status.folder.startswith(str(tmp_path / "recordings" / "09-brain"))
         assert f"Recording into {recorder.status.folder}; f6 ends it." in told(app)
         await pilot.press("f6")
         await until(pilot, lambda: recorder.stopped)

@@ -224,7 +224,10 @@ def _add_record(parser: Parser) -> None:
         "--output",
         metavar="FOLDER",
         type=folder,
-        help=_("where to, a folder that is not there yet; by default named by the time"),
+        help=_(
+            "where to, a new folder; by default in DECK_RECORDINGS_DIR, else ~/deck-recordings,"
+            " named by lesson and time"
+        ),
     )
     parser.add_argument(
         "--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds")
@@ -243,7 +246,12 @@ def _add_record(parser: Parser) -> None:
 
 
 def _add_replay(parser: Parser) -> None:
-    parser.add_argument("bag", metavar="BAG", help=_("folder with metadata.yaml, or an .mcap file"))
+    parser.add_argument(
+        "bag",
+        nargs="?",
+        metavar="BAG",
+        help=_("name, folder with metadata.yaml, or .mcap file; without it: which ones there are"),
+    )
     parser.add_argument(
         "--rate", metavar="R", type=rate, default=1.0, help=_("how fast, 0.1 to 10 times")
     )
@@ -254,6 +262,20 @@ def _add_replay(parser: Parser) -> None:
         type=seconds,
         default=0.0,
         help=_("begin S seconds after the first message"),
+    )
+    parser.add_argument(
+        "--publish",
+        action="store_true",
+        help=_("onto the ROS graph instead of on a screen, but nothing that moves a robot"),
+    )
+    parser.add_argument(
+        "--motion", action="store_true", help=_("with --publish: also what moves a robot")
+    )
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("with --publish: ROS domain; by default that of the robot which runs"),
     )
     _add_bandwidth(parser)
 

@@ -11,7 +11,6 @@ With `--json` it writes one object a line, told apart by `event`:
 from __future__ import annotations
 
 import math
-import os
 import signal
 import sys
 import threading
@@ -20,12 +19,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from graph.bag_errors import BagError
-from launcher.domain import choose_domain
 from launcher.errors import UsageError
 from launcher.process_shm_unfinished import discard_unfinished
+from launcher.rundir import new_recording
 from launcher.words import say
 from text.plain import plain
 from tui.cli.output import BOLD, Paint, json_text, keep_stdout_to_ourselves, table, write
+from tui.cli.robot_to_hear import robot_to_hear
 from tui.i18n import _
 from tui.recording_words import complaints, progress, size_words
 
@@ -44,8 +44,8 @@ def record_command(options: Namespace) -> int:
     from graph.recording import Recorder
 
     topics = [_topic(name) for name in options.topics]
-    domain, discovery = _where(options.domain)
-    folder = Path(options.output or f"deck-{time.strftime('%Y-%m-%d-%H-%M-%S')}")
+    what, domain, discovery = robot_to_hear(options.domain)
+    folder = Path(options.output) if options.output else new_recording(what)
     recorder = Recorder(
         domain, discovery, folder, topics or None, hidden=options.hidden, images=options.images
     )
@@ -65,23 +65,6 @@ def record_command(options: Namespace) -> int:
     finally:
         status = recorder.stop()
     return _end(status, as_json=options.json)
-
-
-def _where(asked: int | None) -> tuple[int, str | tuple[str, ...]]:
-    """Return domain and discovery: of the robot that Deck runs, else of the environment."""
-    from launcher.client import running
-
-    sessions = [one for one in running() if asked is None or one.domain == asked]
-    domains = sorted({one.domain for one in sessions})
-    if len(domains) > 1:
-        named = ", ".join(map(str, domains))
-        raise UsageError(
-            say("robots run in the domains {domains}: choose one by --domain", domains=named)
-        )
-    if sessions:
-        return sessions[0].domain, sessions[0].discovery
-    wide = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "SUBNET"
-    return choose_domain(asked, None, os.environ), "subnet" if wide else "localhost"
 
 
 def _topic(name: str) -> str:

@@ -1,26 +1,36 @@
-"""`deck replay`: the screen on a recording; no robot, no ROS."""
+"""`deck replay`: the screen on a recording, with no robot and no ROS; or which ones there are."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.errors import UsageError
+from launcher.words import say
 from tui.cli.output import say_error
+from tui.cli.recordings import find_recording, list_recordings
 from tui.cli.screen import has_terminal
 from tui.i18n import _
 from tui.orders import Order, ReplayOrder
 
 if TYPE_CHECKING:
     from argparse import Namespace
+    from pathlib import Path
 
 
 def replay_command(options: Namespace) -> int:
-    """Show the screen on a bag until it is left; 2 for what is no bag."""
-    bag = Path(options.bag)
+    """Show the screen on a bag until it is left, or publish it; 2 for what is no bag."""
+    if (options.motion or options.domain is not None) and not options.publish:
+        raise UsageError(say("--motion and --domain are for --publish alone"))
+    if options.bag is None:
+        return list_recordings()
+    bag = find_recording(options.bag)
+    if options.publish:
+        from tui.cli.replay_publishing import publish_bag
+
+        return publish_bag(bag, options)
     _check(bag, whole=not has_terminal())
     if not has_terminal():
-        say_error(_("replay needs a terminal; `ros2 bag play` does without"))
+        say_error(_("replay needs a terminal; `deck replay --publish` does without"))
         return 2
     from tui.live import run_live
 

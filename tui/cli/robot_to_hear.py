@@ -1,0 +1,31 @@
+"""Which domain a command means that names none: that of the robot which runs."""
+
+from __future__ import annotations
+
+import os
+
+from launcher.domain import choose_domain
+from launcher.errors import UsageError
+from launcher.words import say
+
+
+def robot_to_hear(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
+    """Return name, domain and discovery: of the robot that Deck runs, else of the environment.
+
+    Raises:
+        UsageError: if robots run in several domains.
+    """
+    from launcher.client import running
+
+    sessions = [one for one in running() if asked is None or one.domain == asked]
+    domains = sorted({one.domain for one in sessions})
+    if len(domains) > 1:
+        named = ", ".join(map(str, domains))
+        raise UsageError(
+            say("robots run in the domains {domains}: choose one by --domain", domains=named)
+        )
+    if sessions:
+        return sessions[0].name, sessions[0].domain, sessions[0].discovery
+    wide = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() == "SUBNET"
+    domain = choose_domain(asked, None, os.environ)
+    return f"domain-{domain}", domain, "subnet" if wide else "localhost"
