@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from graph.recording_room import RESERVE_BYTES, Room
 from graph.recording_topics import Choice, RecordingTopics
 from graph.words import say
 
@@ -61,6 +62,10 @@ class RecordingStatus:
     """Messages that are missing, for whatever reason."""
     dropped: int = 0
     """Those of them for which the disk was too slow, or full."""
+    bytes_per_s: float = 0.0
+    """How fast it grows, over the last seconds."""
+    left_s: float | None = None
+    """How long the disk has room at this rate; None if nobody can tell."""
     slow: bool = False
     """Whether the disk does not keep up."""
     error: str = ""
@@ -84,15 +89,18 @@ class Recorder:
         *,
         hidden: bool = False,
         images: bool = True,
+        reserve_bytes: int = RESERVE_BYTES,
     ) -> None:
         """`topics`: None for all, also those that appear later.
 
         With `hidden`, all has the inner topics of actions in it; without `images`, no pictures.
+        It ends by itself when no more than `reserve_bytes` are free on the disk.
         """
         self._domain = domain
         self._discovery = discovery
         self._folder = folder
         self._choice = Choice(None if topics is None else frozenset(topics), hidden, images)
+        self._room = Room(folder, reserve_bytes)
         self._error = ""
         self._since_s = time.time()
         self._begun_s = time.monotonic()
@@ -103,9 +111,10 @@ class Recorder:
         self._topics: RecordingTopics | None = None
 
     def start(self) -> None:
-        """Make the folder and begin. Raises BagError if the folder cannot be made."""
+        """Make the folder and begin. Raises BagError if it cannot be made or the disk is full."""
         from graph.recording_file import BagFile
 
+        self._room.check()
         file = BagFile(self._folder)
         self._thread = threading.Thread(
             target=self._run, args=(file,), name="deck-recorder", daemon=True
@@ -147,6 +156,8 @@ class Recorder:
             topics=rows,
             lost=sum(row.lost for row in rows),
             dropped=sum(writer.dropped.values()),
+            bytes_per_s=self._room.bytes_per_s,
+            left_s=self._room.left_s,
             slow=writer.waiting_bytes > SLOW_BYTES,
             error=writer.error or self._error,
             skipped=dict(topics.skipped),
@@ -187,9 +198,10 @@ class Recorder:
     def _take_turns(self, topics: RecordingTopics, writer: RecordingWriter) -> None:
         look_at_s = 0.0
         while not writer.error:
-            ending = self._stopping.is_set()
+            ending = self._stopping.is_set() or bool(self._error)
             if time.monotonic() >= look_at_s:
                 topics.look()
+                self._look_at_room(topics)
                 look_at_s = time.monotonic() + LOOK_S
             messages = topics.drain()
             if messages:
@@ -197,3 +209,8 @@ class Recorder:
             if ending:
                 return
             self._stopping.wait(TURN_S)
+
+    def _look_at_room(self, topics: RecordingTopics) -> None:
+        self._room.look(time.monotonic(), sum(tap.topic.bytes for tap in topics.all()))
+        if self._room.end is not None:
+            self._error = self._room.end

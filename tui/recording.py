@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 
 from text.plain import plain
 from tui.i18n import _, said
-from tui.recording_words import complaints, length_words, progress, size_words
+from tui.recording_words import (
+    complaints,
+    is_low,
+    length_words,
+    low_words,
+    progress,
+    rate_words,
+    size_words,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,7 +41,7 @@ class Recording:
         self._recorder: Recorder | None = None
         self._timer: Timer | None = None
         self._busy = asyncio.Lock()
-        self._slow_told = False
+        self._slow_told = self._low_told = False
 
     @property
     def active(self) -> bool:
@@ -47,16 +55,17 @@ class Recording:
 
     @property
     def words(self) -> Sequence[str]:
-        """What the title says of it, from long to short: nothing, or `● rec 12 s 3.4 MB`."""
+        """What the title says of it, the longest first: `● rec 12 s 3.4 MB 80 kB/s`, or nothing."""
         status = self.status
         if status is None:
             return ()
         length, size = length_words(status.seconds), size_words(status.bytes)
-        return (_("● rec {length} {size}").format(length=length, size=size), f"● {size}")
+        short = _("● rec {length} {size}").format(length=length, size=size)
+        return (f"{short} {rate_words(status.bytes_per_s)}", short, f"● {size}")
 
-    def toggle(self) -> None:
-        """Begin, or end."""
-        self._app.run_worker(self.end() if self.active else self._begin(), group="recording")
+    def toggle(self, *, images: bool = True) -> None:
+        """Begin, with pictures or without, or end."""
+        self._app.run_worker(self.end() if self.active else self._begin(images), group="recording")
 
     async def end(self) -> None:
         """End it, if there is one, and say where it is."""
@@ -69,7 +78,7 @@ class Recording:
             self._changed()
             self._tell(await asyncio.to_thread(recorder.stop))
 
-    async def _begin(self) -> None:
+    async def _begin(self, images: bool) -> None:
         from graph.bag_errors import BagError
         from launcher.errors import LauncherError
 
@@ -78,7 +87,7 @@ class Recording:
             if session is None or self.active:
                 return
             try:
-                recorder = await asyncio.to_thread(_started, session)
+                recorder = await asyncio.to_thread(_started, session, images)
             except BagError as error:
                 self._complain(said(error.words))
                 return
@@ -86,7 +95,7 @@ class Recording:
                 self._complain(said(error.args[0]))
                 return
             self._recorder = recorder
-            self._slow_told = False
+            self._slow_told = self._low_told = False
             self._timer = self._app.set_interval(LOOK_S, self._look)
         folder = plain(recorder.status.folder, 400)
         words = _("Recording into {folder}; {key} ends it.")
@@ -104,6 +113,10 @@ class Recording:
         elif status.slow and not self._slow_told:
             self._slow_told = True
             self._complain(_("The disk does not keep up with the recording."))
+        elif is_low(status) and not self._low_told:
+            self._low_told = True
+            words = _("Recording: {words}.")
+            self._complain(words.format(words=low_words(status)))
         self._changed()
 
     def _tell(self, status: RecordingStatus) -> None:
@@ -130,11 +143,12 @@ def _toggle() -> type:
     return RecordToggle
 
 
-def _started(session: SessionInfo) -> Recorder:
+def _started(session: SessionInfo, images: bool) -> Recorder:
     """Begin to record everything of the session, where `deck replay` finds it by its name."""
     from graph.recording import Recorder
     from launcher.rundir import new_recording
 
-    recorder = Recorder(session.domain, session.discovery, new_recording(session.name))
+    folder = new_recording(session.name)
+    recorder = Recorder(session.domain, session.discovery, folder, images=images)
     recorder.start()
     return recorder

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 BETWEEN = " · "
 LONGEST = 300
 KILO = 1000.0
+LOW_S = 300.0
+"""Room for less than this is told of."""
 
 
 def size_words(size_bytes: float) -> str:
@@ -25,6 +27,21 @@ def size_words(size_bytes: float) -> str:
         size, unit = size / KILO, unit + 1
     digits = 1 if unit and size < 10 else 0
     return decimal(f"{size:.{digits}f}") + f" {units[unit]}"
+
+
+def rate_words(bytes_per_s: float) -> str:
+    """Return `8.0 MB/s`."""
+    return _("{size}/s").format(size=size_words(bytes_per_s))
+
+
+def is_low(status: RecordingStatus) -> bool:
+    """Tell whether the disk will soon have no more room for it."""
+    return status.left_s is not None and status.left_s < LOW_S
+
+
+def low_words(status: RecordingStatus) -> str:
+    """Return for how long the disk has room."""
+    return _("the disk has room for {length}").format(length=length_words(status.left_s or 0.0))
 
 
 def length_words(seconds: float) -> str:
@@ -45,6 +62,10 @@ def progress(status: RecordingStatus) -> str:
         size_words(status.bytes),
         ngettext("{n} topic", "{n} topics", len(status.topics)).format(n=len(status.topics)),
     ]
+    if not status.ended:
+        parts.insert(3, rate_words(status.bytes_per_s))
+        if is_low(status):
+            parts.append(low_words(status))
     if status.lost:
         parts.append(_("{n} lost").format(n=status.lost))
     if status.slow:

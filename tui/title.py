@@ -111,7 +111,9 @@ def _recorded(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     recorded = app.recording.words
     if not recorded:
         return _running(app, session)
-    everything = (f"{recorded[0]} · {running}" for running in _running(app, session))
+    everything = (
+        f"{words} · {running}" for running in _running(app, session) for words in recorded[:2]
+    )
     short = (f"{words} · {domain_words(session)}" for words in recorded)
     return (*everything, *short, recorded[-1])
 

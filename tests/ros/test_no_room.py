@@ -55,6 +55,16 @@ def test_a_full_disk_is_told_of_and_stops_nothing(
     assert (run.returncode, run.stderr) == (0, "")
 
 
+def test_a_recording_does_not_begin_where_the_disk_is_nearly_full(
+    small: Path, ros_domain: int
+) -> None:
+    command = (sys.executable, "-m", "tui", "record", "--domain", str(ros_domain))
+    run = in_small_folder(small, "100M", *command, "-o", str(small / "walk"))
+    assert run.returncode == 2
+    assert "are free on this disk, and 500 MB must stay free" in run.stderr
+    assert "another disk" in run.stderr
+
+
 def test_a_run_directory_that_takes_no_more_files_is_told_of(
     tmp_path: Path, small: Path, ros_domain: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

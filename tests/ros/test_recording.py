@@ -20,7 +20,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Bool, Float32, String
 from tf2_msgs.msg import TFMessage
 
-from graph import recording_tap
+from graph import recording_room, recording_tap
 from graph.bag import open_bag
 from graph.bag_decoding import bag_decoder
 from graph.bag_errors import BagError
@@ -264,6 +264,31 @@ def test_a_full_disk_leaves_a_whole_bag_and_a_word(ros_domain: int, tmp_path: Pa
     assert kept == read_by_rosbags(tmp_path / "bag")["/big"]
     dropped = int(lines[-1].split()[-1])
     assert len(kept) + dropped == 50
+
+
+def test_before_the_disk_is_full_it_ends_by_itself_with_a_whole_bag(
+    ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free = [600_000_000]
+    monkeypatch.setattr(recording_room, "free_bytes", lambda _: free[0])
+    recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
+    recorder.start()
+    try:
+        with Peer(ros_domain) as peer, peer.saying("/text", String(data="still here")):
+            recorded(recorder, "/text", 3)
+            wait_until(lambda: recorder.status.bytes_per_s > 0, "the rate")
+            assert recorder.status.left_s is not None
+            free[0] = 499_000_000
+            wait_until(lambda: recorder.status.ended, "the end")
+    finally:
+        status = recorder.stop()
+    assert "499 MB are free on the disk of" in status.error
+    assert status.dropped == 0
+    kept = read_by_mcap(tmp_path / "bag")["/text"]
+    (row,) = (row for row in status.topics if row.name == "/text")
+    assert len(kept) == row.messages >= 3
+    with open_bag(tmp_path / "bag") as bag:
+        assert bag.cut is None
 
 
 def test_a_recorder_does_not_pass_for_somebody_who_obeys(ros_domain: int, tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from tui.app import DeckApp
 from tui.widgets.title_bar import TitleBar
 
 ROW = RecordedTopic("/number", "std_msgs/msg/Float32", 240, 3_400_000)
-GOING = RecordingStatus("", 0.0, 12.0, 240, 3_400_000, (ROW,))
+GOING = RecordingStatus("", 0.0, 12.0, 240, 3_400_000, (ROW,), bytes_per_s=280_000)
 
 
 class Recorder:
@@ -29,8 +29,8 @@ class Recorder:
     made: list[Recorder]
     refusal: Exception | None
 
-    def __init__(self, domain: int, discovery: object, folder: Path) -> None:
-        self.asked = (domain, discovery)
+    def __init__(self, domain: int, discovery: object, folder: Path, *, images: bool) -> None:
+        self.asked = (domain, discovery, images)
         self.status = replace(GOING, folder=str(folder))
         self.stopped = False
 
@@ -72,13 +72,39 @@ async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) 
         await until(pilot, lambda: "● rec 12 s 3.4 MB" in title(app))
         (recorder,) = Recorder.made
         assert app.feed.session is not None
-        assert recorder.asked == (app.feed.session.domain, app.feed.session.discovery)
+        session = app.feed.session
+        assert recorder.asked == (session.domain, session.discovery, True)
         assert recorder.status.folder.startswith(str(tmp_path / "recordings" / "09-brain"))
         assert f"Recording into {recorder.status.folder}; f6 ends it." in told(app)
         await pilot.press("f6")
         await until(pilot, lambda: recorder.stopped)
         await until(pilot, lambda: "rec" not in title(app))
         await until(pilot, lambda: any("240 messages" in words for words in told(app)))
+
+
+async def test_with_shift_it_records_without_pictures() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("shift+f6")
+        await until(pilot, lambda: "● rec" in title(app))
+        (recorder,) = Recorder.made
+        assert recorder.asked[2] is False
+        # Another press does not end it, and does not begin a second one.
+        await pilot.press("shift+f6")
+        await pilot.press("f6")
+        await until(pilot, lambda: recorder.stopped)
+        assert Recorder.made == [recorder]
+
+
+async def test_that_the_disk_will_be_full_is_told_once() -> None:
+    async with opened() as (app, pilot):
+        await pilot.press("f6")
+        await until(pilot, lambda: Recorder.made)
+        (recorder,) = Recorder.made
+        recorder.status = replace(recorder.status, left_s=90.0)
+        await until(pilot, lambda: "Recording: the disk has room for 1:30." in told(app))
+        recorder.status = replace(recorder.status, left_s=80.0, seconds=13.0)
+        await until(pilot, lambda: "● rec 13 s" in title(app))
+        assert not any("1:20" in words for words in told(app))
 
 
 async def test_the_key_records_from_a_text_field_too() -> None:

@@ -36,4 +36,25 @@ class RecordToggle(Action["DeckApp"]):
         target.recording.toggle()
 
 
-RECORDING_ACTIONS = (RecordToggle,)
+class RecordWithoutImages(Action["DeckApp"]):
+    """Begin to record all but pictures, which are most of what a robot with a camera says."""
+
+    id = "recording.without_images"
+    key = "shift+f6"
+    title = N_("Record without images")
+    tooltip = N_("Record all topics but those of pictures; F6 ends it.")
+    priority = True
+    footer = False
+
+    @classmethod
+    def possible(cls, target: DeckApp) -> bool | None:
+        """Only while nothing is recorded yet."""
+        return RecordToggle.possible(target) and not target.recording.active
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Begin."""
+        target.recording.toggle(images=False)
+
+
+RECORDING_ACTIONS = (RecordToggle, RecordWithoutImages)

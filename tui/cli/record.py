@@ -3,7 +3,7 @@
 With `--json` it writes one object a line, told apart by `event`:
 
     recording   the first one: folder, domain
-    status      each second: seconds, messages, bytes, lost, topics
+    status      each second: seconds, messages, bytes, bytes_per_s, lost, topics
     summary     the last one: the same with exit_code, complaints, and of each topic its type,
                 messages, bytes and lost
 """
@@ -137,6 +137,7 @@ def _figures(status: RecordingStatus) -> dict[str, object]:
         "seconds": round(status.seconds, 3),
         "messages": status.messages,
         "bytes": status.bytes,
+        "bytes_per_s": round(status.bytes_per_s),
         "lost": status.lost,
     }
 
