@@ -36,6 +36,10 @@ class Trouble(str, Enum):
     """Publishers are there, nothing has come for longer than is usual."""
 
 
+PROCESS_NUMBERS = 1 << 16
+"""The middleware tells the number of a process modulo this."""
+
+
 @dataclass(frozen=True)
 class EndpointInfo:
     """One publisher or subscription."""
@@ -57,6 +61,8 @@ class EndpointInfo:
     lease_s: float | None = None
     liveliness: str = ""
     """`automatic`, `manual_by_topic`; empty where the peer does not tell."""
+    process: int | None = field(default=None, compare=False)
+    """Number of its process modulo `PROCESS_NUMBERS`; None where the middleware does not tell."""
 
 
 @dataclass(frozen=True)
@@ -137,6 +143,9 @@ class NodeRow:
     """Services that it calls."""
     action_servers: tuple[str, ...] = ()
     action_clients: tuple[str, ...] = ()
+    processes: tuple[int, ...] = ()
+    """Numbers of its processes modulo `PROCESS_NUMBERS`: more than one if there are nodes of the
+    same name. Empty where the middleware does not tell."""
 
 
 @dataclass(frozen=True)

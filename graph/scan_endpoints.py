@@ -15,6 +15,8 @@ INFINITE_NS = 2**63 - 1
 """Source: rmw, `RMW_DURATION_INFINITE` in time.h; 0 there stands for a policy left alone."""
 NANOSECONDS = 1e-9
 HISTORIES = frozenset({"keep_last", "keep_all"})
+FAST_DDS = b"\x01\x0f"
+"""How every identifier that eProsima gives begins. Source: OMG, "DDS Vendor IDs"."""
 LIVELINESS = frozenset({"automatic", "manual_by_topic"})
 
 
@@ -58,7 +60,16 @@ def _endpoint(info: dict[str, Any]) -> EndpointInfo:
         _seconds(qos["lifespan"]),
         _seconds(qos["liveliness_lease_duration"]),
         liveliness,
+        _process(bytes(info["endpoint_gid"])),
     )
+
+
+def _process(gid: bytes) -> int | None:
+    """Return the lower half of the number of the process that an endpoint belongs to.
+
+    Source: Fast DDS, `guid_prefix_create`: vendor, host, process and chance, two bytes each.
+    """
+    return int.from_bytes(gid[4:6], "little") if gid.startswith(FAST_DDS) else None
 
 
 @lru_cache(maxsize=64)

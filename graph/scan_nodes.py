@@ -77,11 +77,15 @@ def node_rows(topics: Mapping[str, TopicEnds], found: Mapping[str, Party]) -> tu
     """Return a row for each node, sorted by name."""
     publishes: defaultdict[str, set[str]] = defaultdict(set)
     subscribes: defaultdict[str, set[str]] = defaultdict(set)
+    processes: defaultdict[str, set[int]] = defaultdict(set)
     for topic in topics.values():
         for end in topic.publishers:
             publishes[end.node].add(topic.name)
         for end in topic.subscribers:
             subscribes[end.node].add(topic.name)
+        for end in (*topic.publishers, *topic.subscribers):
+            if end.process is not None:
+                processes[end.node].add(end.process)
     return tuple(
         NodeRow(
             name,
@@ -91,6 +95,7 @@ def node_rows(topics: Mapping[str, TopicEnds], found: Mapping[str, Party]) -> tu
             tuple(party.calls.services),
             tuple(party.serves.actions),
             tuple(party.calls.actions),
+            tuple(sorted(processes[name])),
         )
         for name, party in sorted(found.items())
     )

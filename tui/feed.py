@@ -17,6 +17,7 @@ from tui.history import KEPT_LINES, LogHistory
 from tui.i18n import _
 from tui.inbox import GraphInbox
 from tui.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
+from tui.outside import Outside
 from tui.rosout import TOPIC as ROSOUT
 from tui.rosout import RosoutReader
 from tui.screens.base import DeckScreen
@@ -49,6 +50,8 @@ class Feed:
         self.update: GraphUpdate | None = None
         """The newest of the graph; None until the first."""
         self.history = LogHistory()
+        self.outside = Outside()
+        """Nodes of the domain that Deck has not started, beside those it has."""
         self._rosout = RosoutReader()
         self.ended = ""
         """Why the session before has ended."""
@@ -104,6 +107,7 @@ class Feed:
         self.link, self.graph = link, graph
         self.update, self.ended, self._remains = None, "", {}
         self.history.clear()
+        self.outside.forget()
         self._rosout = RosoutReader()
         self.tell(SessionChanged)
         self._tell_status(frozenset(link.nodes))
@@ -117,6 +121,7 @@ class Feed:
         link, graph = self.link, self.graph
         self.link = self.graph = None
         self.ended = ended
+        self.outside.forget()
         if ended and link is not None:
             self._show_remains(link.nodes)
         if graph is not None:
@@ -140,6 +145,11 @@ class Feed:
         self.ended, self._remains = "", {}
         self._screens.clear()
         self.history.clear()
+
+    def log_file(self, node: str) -> str:
+        """Return the path of the file with all lines of a node, empty if there is none."""
+        folder = "" if self.session is None else self.session.log_dir
+        return f"{folder}/{node}.log" if folder and node in self.nodes else ""
 
     def note(self, lines: Sequence[LogLine]) -> None:
         """Add lines of this screen's own to the log."""
@@ -184,6 +194,7 @@ class Feed:
 
     def hand_over(self, update: GraphUpdate) -> None:
         """Give an update to the screens that want it."""
+        self._see_outside(update)
         front = self.front
         for screen in self._screens:
             wanted = screen.follow_topics() | screen.keep_topics()
@@ -191,16 +202,27 @@ class Feed:
                 screen.post_message(GraphChanged(update))
         self._note_rosout(update)
 
+    def _see_outside(self, update: GraphUpdate) -> None:
+        session = self.session
+        if session is None or self._hears_everybody:
+            return
+        if self.outside.see(update, self.nodes, session.run_id):
+            self.ask_for_topics()
+
     @property
-    def _hears_rosout(self) -> bool:
-        """Whether nodes have no other way to be heard."""
+    def _hears_everybody(self) -> bool:
+        """Whether all nodes are others', as those of a recording are."""
         return self.watching or self.replay is not None
 
     def _note_rosout(self, update: GraphUpdate) -> None:
         """Nodes that others have started can be heard on /rosout only."""
-        samples = update.samples.get(ROSOUT, ()) if self._hears_rosout else ()
-        if samples:
-            self.note(self._rosout.lines(samples))
+        samples = update.samples.get(ROSOUT, ())
+        if self._hears_everybody:
+            lines = self._rosout.lines(samples)
+        else:
+            lines = self.outside.lines(samples, self.nodes) if self.outside.now else ()
+        if lines:
+            self.note(lines)
 
     def catch_up(self, screen: DeckScreen) -> None:
         """Tell a screen that has just been opened how things stand, and keep telling it."""
@@ -226,7 +248,7 @@ class Feed:
         graph, front = self.graph, self.front
         if graph is None:
             return
-        own = {*FOLLOWED, ROSOUT} if self._hears_rosout else FOLLOWED
+        own = {*FOLLOWED, ROSOUT} if self._hears_everybody or self.outside.now else FOLLOWED
         followed = set(own).union(*(screen.follow_topics() for screen in self._screens))
         kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
         graph.watch(kept if front is None else kept | front.watch_topics())

@@ -24,20 +24,24 @@ class RosoutReader:
     def __init__(self) -> None:
         self._numbers: dict[str, int] = {}
 
-    def lines(self, samples: Iterable[Sample]) -> tuple[LogLine, ...]:
-        """Read messages of rcl_interfaces/msg/Log; what is none of them is left out."""
-        return tuple(self._line(one) for one in samples if "msg" in one.value)
+    def lines(self, samples: Iterable[Sample], node: str = "") -> tuple[LogLine, ...]:
+        """Read messages of rcl_interfaces/msg/Log; what is none of them is left out.
 
-    def _line(self, sample: Sample) -> LogLine:
+        `node` has said them; empty: whoever the logger is named after.
+        """
+        return tuple(self._line(one, node) for one in samples if "msg" in one.value)
+
+    def _line(self, sample: Sample, node: str) -> LogLine:
         from launcher.status import LogLine
 
         value: Any = sample.value
-        node = plain(str(value.get("name", "")), 200) or "?"
+        logger = plain(str(value.get("name", "")), 200) or "?"
+        node = node or logger
         number = self._numbers[node] = self._numbers.get(node, 0) + 1
         text = plain(str(value["msg"]), LONGEST)
         time_s = _seconds(value.get("stamp")) or sample.received_s
         severity = _severity(value.get("level"))
-        return LogLine(node, number, time_s, severity, text, logger=node, source="rosout")
+        return LogLine(node, number, time_s, severity, text, logger=logger, source="rosout")
 
 
 def _severity(level: object) -> Severity:

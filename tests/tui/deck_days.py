@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from graph.data import Trouble
+from graph.data import NodeRow, Trouble
 from launcher.status import NodeState
 from tests.tui.recorded import (
     NODES,
@@ -29,7 +29,8 @@ def hello() -> RecordedPad:
     node = replace(NODES["camera"], name="hello_node", command="nodes.hello")
     lines = [line("hello_node", n, f"I have worked for {n} s", at_s=n) for n in range(1, 12)]
     session = RecordedSession(HELLO, {"hello_node": node}, lines)
-    return RecordedPad(session, RecordedGraph(lesson_update(topics=(), samples={})))
+    graph = lesson_update(topics=(), samples={}, nodes=(NodeRow("/hello_node"),))
+    return RecordedPad(session, RecordedGraph(graph))
 
 
 LLM_JSON = (

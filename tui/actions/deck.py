@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
+from text.plain import plain
 from tui.actions.action import Action
-from tui.i18n import N_
+from tui.i18n import N_, _
 
 if TYPE_CHECKING:
     from tui.screens.deck import LessonDeck
@@ -37,9 +38,19 @@ class _AskNode(_OfNode):
         return False if target.feed.link is None else super().possible(target)
 
     @classmethod
+    def shown(cls, target: LessonDeck) -> bool:
+        """Not of a node that Deck has not started: there the key says so."""
+        return target.chosen_node not in target.feed.outside.now
+
+    @classmethod
     async def run(cls, target: LessonDeck) -> None:
-        """Ask."""
-        target.ask(cls.asked, target.chosen_node)
+        """Ask; what others have started is theirs."""
+        name = target.chosen_node
+        if name in target.feed.outside.now:
+            words = _("{name} was not started by Deck: stop and restart it where it was started")
+            target.notify(words.format(name=plain(name, 60)), severity="warning", markup=False)
+        else:
+            target.ask(cls.asked, name)
 
 
 class StartNode(_AskNode):

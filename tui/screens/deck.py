@@ -92,7 +92,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         with Container(id="board"):
             yield NodesTable(id="nodes")
             with Vertical(id="talk"):
-                yield LogPane(file_of=self._file_of)
+                yield LogPane(file_of=self.feed.log_file)
                 yield CommandLine(id="command")
 
     # What the actions do
@@ -226,6 +226,10 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         seen = self.feed.front is self
         for panel in self.panels:
             panel.take(message.update, seen=seen)
+        if self.table.outside != self.feed.outside.now:
+            self._show_nodes()
+            self._lay_out(self.size.height)
+            self.refresh_bindings()
         row = row_of(message.update, COMMANDS)
         self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
 
@@ -249,18 +253,15 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
 
     def _show_nodes(self) -> None:
         chosen = self.log_filter
-        names = self.feed.nodes
-        self.table.show_nodes(names, [name for name in names if not chosen.shows_node(name)])
+        nodes, outside = self.feed.nodes, self.feed.outside.now
+        muted = [name for name in (*nodes, *outside) if not chosen.shows_node(name)]
+        self.table.show_nodes(nodes, muted, outside)
 
     def _lay_out(self, height: int) -> None:
         """Give the table of nodes the rows it needs, but never most of them."""
         if self.feed.replay is not None or self.feed.watching:
             self.query_one("#board").styles.grid_rows = "1fr"
             return
-        wanted = len(self.feed.nodes) + 1
+        wanted = len(self.feed.nodes) + len(self.feed.outside.now) + 1
         rows = max(2, min(wanted, height * 9 // 20))
         self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
-
-    def _file_of(self, node: str) -> str:
-        session = self.feed.session
-        return f"{session.log_dir}/{node}.log" if session and session.log_dir else ""

@@ -66,7 +66,7 @@ class LogsScreen(DeckScreen):
         """The nodes beside the lines."""
         with Horizontal():
             yield LogNodes()
-            yield LogPane(file_of=self._file_of)
+            yield LogPane(file_of=self.feed.log_file)
 
     @property
     def pane(self) -> LogPane:
@@ -154,9 +154,5 @@ class LogsScreen(DeckScreen):
 
     def _show_nodes(self) -> None:
         view = self.pane.view
-        names = dict.fromkeys((*self.feed.nodes, *view.ring.counts))
+        names = dict.fromkeys((*self.feed.nodes, *self.feed.outside.now, *view.ring.counts))
         self.node_list.show_nodes(names, view.ring.counts, view.log_filter)
-
-    def _file_of(self, node: str) -> str:
-        session = self.feed.session
-        return f"{session.log_dir}/{node}.log" if session and session.log_dir else ""

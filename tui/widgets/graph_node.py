@@ -79,6 +79,9 @@ class NodePane(GraphPane):
         update = self.graph_now
         node = node_called(update, self.name_shown)
         status = status_of(self.name_shown, self.deck.feed.nodes)
+        if status and not status.state.alive and self.name_shown in self.deck.feed.outside.now:
+            # What runs is somebody's own in its place.
+            status = None
         self.query_one(GraphHead).show(self.name_shown, process_words(status))
         words = self.query_one(Words)
         if update is None or node is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
@@ -28,6 +28,9 @@ STATES = {
 }
 """State to sign, word and meaning: never the colour alone."""
 
+OUTSIDE = ("◇", N_("outside"))
+UNKNOWN = "—"
+
 FULL, TOLD = 42, 66
 """Cells besides the names from which on there are columns for the process, and for a word more."""
 MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
@@ -36,21 +39,27 @@ LONGEST_S = 1000.0 * DAY_S
 
 
 class NodesTable(Rows):
-    """Shows the nodes in the profile's order."""
+    """Shows the nodes in the profile's order, below them those that Deck has not started."""
 
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._statuses: tuple[NodeStatus, ...] = ()
+        self.outside: tuple[str, ...] = ()
+        """Names of those that Deck has not started."""
         self._muted: frozenset[str] = frozenset()
         self._full = self._told = False
         self._word = 0
         """Cells of the sign and the longest word of a process that runs."""
 
     def show_nodes(
-        self, nodes: Mapping[str, NodeStatus], muted: Collection[str] = frozenset()
+        self,
+        nodes: Mapping[str, NodeStatus],
+        muted: Collection[str] = frozenset(),
+        outside: Sequence[str] = (),
     ) -> None:
-        """Show these nodes; `muted` are those whose log is not shown."""
-        self._statuses, self._muted = tuple(nodes.values()), frozenset(muted)
+        """Show these nodes; `muted` are those whose log is not shown, `outside` those of others."""
+        self._statuses, self.outside = tuple(nodes.values()), tuple(outside)
+        self._muted = frozenset(muted)
         self._show()
 
     def on_resize(self) -> None:
@@ -63,7 +72,8 @@ class NodesTable(Rows):
             return
         alive = [word for state, (_sign, word, _meaning) in STATES.items() if state.alive]
         self._word = max(cell_len(_(word)) for word in alive) + 2
-        name = max((cell_len(self._named(node)) for node in self._statuses), default=4)
+        names = [node.name for node in self._statuses]
+        name = max((cell_len(self._named(each)) for each in (*names, *self.outside)), default=4)
         pid = max((len(str(node.pid or "")) for node in self._statuses), default=0)
         self._full = width >= name + FULL
         columns = [Column(_("Node"), name if self._full else 0), Column(_("State"), self._word)]
@@ -74,10 +84,20 @@ class NodesTable(Rows):
         if self._full:
             self._told = width >= name + TOLD
             columns.append(Column(_("Detail") if self._told else ""))
-        self.show(columns, [Row(node.name, self._cells(node)) for node in self._statuses])
+        rows = [Row(node.name, self._cells(node)) for node in self._statuses]
+        self.show(columns, [*rows, *(Row(name, self._cells_of(name)) for name in self.outside)])
 
-    def _named(self, node: NodeStatus) -> str:
-        return plain(node.name) + (" ⊘" if node.name in self._muted else "")
+    def _named(self, name: str) -> str:
+        return plain(name) + (" ⊘" if name in self._muted else "")
+
+    def _cells_of(self, name: str) -> tuple[Cell, ...]:
+        """Return the row of a node that Deck has not started, of which no more is known."""
+        sign, word = OUTSIDE
+        cells = [Cell(self._named(name)), Cell(f"{sign} {_(word)}", "dim")]
+        cells += [Cell(UNKNOWN, "dim")] * (5 if self._full else 2)
+        if self._full:
+            cells.append(Cell(_("not started by Deck") if self._told else "", "dim"))
+        return tuple(cells)
 
     def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
         sign, word, meaning = STATES[node.state]
@@ -85,8 +105,8 @@ class NodesTable(Rows):
         if not node.state.alive:
             # One cell to the edge: a long word of a state would widen the column for all.
             told = f"{state:<{self._word}} {why(node)}"
-            return (Cell(self._named(node)), Cell(told, meaning))
-        cells = [Cell(self._named(node)), Cell(state, meaning)]
+            return (Cell(self._named(node.name)), Cell(told, meaning))
+        cells = [Cell(self._named(node.name)), Cell(state, meaning)]
         if self._full:
             cells += [
                 Cell("" if node.pid is None else str(node.pid), "dim"),

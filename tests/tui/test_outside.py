@@ -1,0 +1,241 @@
+"""A node that is started by hand beside the lesson: listed, heard, and nobody's to stop."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from graph.data import GraphUpdate, NodeRow, Sample
+from launcher.status import NodeState
+from tests.tui.app_runs import opened
+from tests.tui.recorded import NODES, NOW_S, RecordedPad, lesson_update, sample
+from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
+from tui import title
+from tui.app import DeckApp
+from tui.i18n import set_language
+from tui.outside import Outside
+from tui.screens.deck import LessonDeck
+from tui.screens.logs import LogsScreen
+from tui.widgets.key_bar import KeyBar
+
+OWN = tuple(NodeRow(f"/{name}") for name in NODES)
+HELPERS = ("/_deck_observer_7", "/_deck_recorder_7", "/_ros2cli_daemon_42_1", "/a/_hidden")
+STARTED_HERE = 7
+
+
+def graph(*names: str, samples: tuple[Sample, ...] = ()) -> GraphUpdate:
+    """The lesson's graph with these nodes beside its own."""
+    rows = sorted((*OWN, *map(NodeRow, names)), key=lambda row: row.name)
+    return lesson_update(nodes=tuple(rows), samples={"/rosout": samples} if samples else {})
+
+
+def said(text: str, logger: str = "my_node", at_s: int = 0) -> Sample:
+    stamp = {"sec": int(NOW_S) + at_s, "nanosec": 0}
+    value = {"stamp": stamp, "level": 30, "name": logger, "msg": text, "line": 1}
+    return sample("/rosout", "rcl_interfaces/msg/Log", value)
+
+
+def rows_of(app: DeckApp) -> list[list[str]]:
+    """The table of nodes, those below its last line as well."""
+    assert isinstance(app.screen, LessonDeck)
+    return [[cell.text for cell in row.cells] for row in app.screen.table._rows]
+
+
+def offered(app: DeckApp) -> set[str]:
+    """The keys in the footer."""
+    bar = app.screen.query_one(KeyBar)
+    return {key.title for key in bar.keys()}  # noqa: SIM118 - no mapping
+
+
+async def show(pad: RecordedPad, pilot: Pilot[Any], update: GraphUpdate) -> None:
+    pad.graph.show(update)
+    await settle(pilot)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
+async def test_it_stands_below_decks_own_until_it_leaves_the_graph(size: tuple[int, int]) -> None:
+    pad = RecordedPad()
+    async with opened(pad, size=size) as (app, pilot):
+        own = rows_of(app)
+        await show(pad, pilot, graph("/my_node", "/arm/driver", *HELPERS))
+        shown = rows_of(app)
+        assert shown[: len(NODES)] == own
+        assert [row[:3] for row in shown[len(NODES) :]] == [
+            ["arm/driver", "◇ outside", "—"],
+            ["my_node", "◇ outside", "—"],
+        ]
+        assert "● 8/8" in title.states(app)[0]
+        await show(pad, pilot, graph())
+        assert rows_of(app) == own
+
+
+async def test_it_cannot_be_started_or_stopped_and_the_keys_say_why() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await show(pad, pilot, graph("/my_node"))
+        titles = offered(app)
+        assert {"Start", "Stop", "Restart"} <= titles
+        await pilot.press("end")
+        await pilot.pause()
+        titles = offered(app)
+        assert {"Start", "Stop", "Restart"}.isdisjoint(titles)
+        for key in "sxr":
+            app.clear_notifications()
+            await pilot.press(key)
+            await pilot.pause()
+            (told,) = (one.message for one in app._notifications)
+            assert "my_node was not started by Deck" in told
+        assert pad.link.asked == []
+        await pilot.press("X")
+        await pilot.pause()
+        assert pad.link.asked == [("stop",)]
+
+
+async def test_what_it_says_on_rosout_is_in_the_log_and_decks_own_are_not_doubled() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        assert "/rosout" not in pad.graph.followed
+        early = said("I am awake")
+        await show(pad, pilot, graph("/my_node", "/arm/driver"))
+        assert "/rosout" in pad.graph.followed
+        lines = (
+            early,
+            said("of Deck's own", "sonar_front"),
+            said("of a part of it", "sonar_front.serial"),
+            said("moved", "arm.driver.motor"),
+            said("here before it is seen", "late"),
+            # A subscription that is opened anew hears again what publishers keep.
+            early,
+        )
+        await show(pad, pilot, graph("/my_node", "/arm/driver", samples=lines))
+
+        def heard() -> list[tuple[str, str]]:
+            every = app.feed.history.all()
+            return [(line.node, line.text) for line in every if line.source == "rosout"]
+
+        first = [("my_node", "I am awake"), ("arm/driver", "moved")]
+        assert heard() == first
+        await show(pad, pilot, graph("/my_node", "/arm/driver", "/late"))
+        assert heard() == [*first, ("late", "here before it is seen")]
+        await pilot.press("4")
+        await settle(pilot)
+        assert isinstance(app.screen, LogsScreen)
+        assert {"my_node", "arm/driver", "late"} <= app.screen.pane.view.ring.counts.keys()
+        await show(pad, pilot, graph())
+        assert "/rosout" not in pad.graph.followed
+
+
+async def test_its_log_is_muted_and_heard_alone_like_any() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await show(pad, pilot, graph("/my_node", samples=(said("I am awake"),)))
+        assert isinstance(app.screen, LessonDeck)
+        await pilot.press("end", "o")
+        await pilot.pause()
+        assert {entry.text for entry in app.screen.pane.view.index.shown} == {"I am awake"}
+        await pilot.press("o", "m")
+        await pilot.pause()
+        assert rows_of(app)[-1][0] == "my_node ⊘"
+
+
+def outside(*rows: NodeRow) -> tuple[str, ...]:
+    """Who is outside beside the nodes of lesson 9."""
+    found = Outside()
+    found.see(lesson_update(nodes=rows), NODES, "run")
+    return found.now
+
+
+def test_a_process_that_deck_has_started_is_its_own_under_any_name(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    marks = {STARTED_HERE: {"DECK_RUN_ID": "run"}, 8: {}, 9: {"DECK_RUN_ID": "another"}}
+    monkeypatch.setattr("launcher.process_table.process_numbers", lambda: [*marks, 65536 + 8])
+    monkeypatch.setattr("launcher.process_table.read_marks", marks.get)
+    # `exec: [rviz2]` under the key `viewer`.
+    assert outside(NodeRow("/rviz", processes=(STARTED_HERE,))) == ()
+    # A second one of the name of a node of Deck's.
+    assert outside(NodeRow("/camera", processes=(STARTED_HERE,))) == ()
+    assert outside(NodeRow("/camera", processes=(STARTED_HERE, 8))) == ("/camera",)
+    assert outside(NodeRow("/camera", processes=(9,))) == ("/camera",)
+    # One that has crashed stays in the tables for a while; one may be on another machine.
+    assert outside(NodeRow("/camera", processes=(10,))) == ()
+    assert outside(NodeRow("/far", processes=(10,))) == ("far",)
+    # The name of a node may be known a little before its process.
+    assert outside(NodeRow("/camera", processes=(STARTED_HERE,)), NodeRow("/new")) == ()
+
+
+def test_of_two_by_one_name_it_is_heard_only_when_it_is_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("launcher.process_table.process_numbers", lambda: [8])
+    monkeypatch.setattr("launcher.process_table.read_marks", lambda _pid: {})
+    here = Outside()
+    here.see(lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)), NODES, "run")
+    assert here.lines((said("whose?", "camera"),), NODES) == ()
+    stopped = {**NODES, "camera": replace(NODES["camera"], state=NodeState.EXITED)}
+    (line,) = here.lines((said("mine", "camera", at_s=1),), stopped)
+    assert (line.node, line.text) == ("/camera", "mine")
+
+
+async def test_one_in_place_of_a_node_that_was_stopped_is_not_told_to_be_decks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("launcher.process_table.process_numbers", lambda: [8])
+    monkeypatch.setattr("launcher.process_table.read_marks", lambda _pid: {})
+    pad = RecordedPad()
+    async with opened(pad, "graph") as (app, pilot):
+        pad.link.set_state("camera", NodeState.EXITED, pid=None)
+        await show(pad, pilot, lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)))
+        await pilot.press("home")
+        await settle(pilot)
+        shown = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
+        assert "not started by Deck" in shown
+        await pilot.press("1")
+        await settle(pilot)
+        assert rows_of(app)[-1][:2] == ["/camera", "◇ outside"]
+
+
+async def test_a_name_that_would_write_the_terminal_is_harmless() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await show(pad, pilot, graph("/e\x1b]52;c;eA==\x07vil"))
+        (name,) = (row[0] for row in rows_of(app) if "vil" in row[0])
+        assert "\x1b" not in name
+
+
+async def test_another_session_begins_without_those_of_the_one_before() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await show(pad, pilot, graph("/my_node"))
+        await pilot.press("f8")
+        await settle(pilot)
+        assert app.feed.outside.now == ()
+
+
+async def test_russian() -> None:
+    set_language("ru")
+    pad = RecordedPad()
+    async with opened(pad, size=(80, 24)) as (app, pilot):
+        await show(pad, pilot, graph("/my_node"))
+        assert rows_of(app)[-1][:2] == ["my_node", "◇ извне"]
+        await pilot.press("end", "x")
+        await pilot.pause()
+        (told,) = (one.message for one in app._notifications)
+        assert told.startswith("my_node запущен не из Deck")
+
+
+@both_languages
+def test_a_node_started_by_hand(look: Look, snap_compare: SnapCompare) -> None:
+    """Below Deck's own, chosen: `outside` and dashes; its line in the log; no key to stop it."""
+    pad = RecordedPad()
+    app = look.app("deck", pad)
+
+    async def by_hand(pilot: Pilot[Any]) -> None:
+        await look.settle(pilot)
+        await show(pad, pilot, graph("/my_node", samples=(said("I am awake"),)))
+        await pilot.press("end")
+
+    assert snap_compare(app, terminal_size=look.size, run_before=by_hand)
