@@ -22,8 +22,10 @@ from tui.panels.panel import row_of
 from tui.screens.deck_panels import ScreenWithPanels
 from tui.screens.deck_teleop import DrivenScreen
 from tui.widgets.command_line import CommandLine
+from tui.widgets.graph_pane import GraphHead
 from tui.widgets.log_view_pane import LogPane
 from tui.widgets.nodes_table import NodesTable
+from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -63,6 +65,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         #board { layout: grid; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
         &.-shelved #board { grid-size: 2; grid-columns: 11fr 9fr; }
         #nodes { height: 1fr; }
+        #nodes GraphHead { display: none; max-height: 100%; }
         #shelf { height: 1fr; }
         #talk { height: 1fr; }
         &.-flat #teleop { height: 4; }
@@ -85,12 +88,17 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
     }
     """
 
+    _cut: tuple[str, str] = ("", "")
+    """Name and state of the chosen node where the table has no room for all of it."""
+
     def compose_body(self) -> ComposeResult:
         """The nodes above the log; panels come with the session."""
         yield Static(id="small", markup=False)
         yield Static(id="watched", markup=False)
         with Container(id="board"):
-            yield NodesTable(id="nodes")
+            with Vertical(id="nodes"):
+                yield NodesTable()
+                yield GraphHead()
             with Vertical(id="talk"):
                 yield LogPane(file_of=self.feed.log_file)
                 yield CommandLine(id="command")
@@ -246,6 +254,12 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         message.stop()
         self.refresh_bindings()
 
+    def on_nodes_table_cut(self, message: NodesTable.Cut) -> None:
+        """Show below the table what it has no room for."""
+        message.stop()
+        self._cut = (message.node, message.facts)
+        self._lay_out(self.size.height)
+
     def on_rows_opened(self, message: Rows.Opened) -> None:
         """Listen to the node that was opened, alone."""
         message.stop()
@@ -263,5 +277,18 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
             self.query_one("#board").styles.grid_rows = "1fr"
             return
         wanted = len(self.feed.nodes) + len(self.feed.outside.now) + 1
-        rows = max(2, min(wanted, height * 9 // 20))
+        rows = max(2, min(wanted, height * 9 // 20)) + self._lay_out_head(height // 4)
         self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
+
+    def _lay_out_head(self, most: int) -> int:
+        """Give what the table has cut its lines, and return how many."""
+        head = self.query_one(GraphHead)
+        head.display = any(self._cut)
+        if not head.display:
+            return 0
+        head.show(*self._cut)
+        width = self.table.size.width - 2
+        wanted = len(word_strips(self._cut, width, self.rich_style, self.app.console))
+        lines = max(1, min(wanted, most))
+        head.styles.height = lines
+        return lines

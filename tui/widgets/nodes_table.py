@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
+from textual.message import Message
 
 from launcher.status import NodeState
 from text.plain import plain
@@ -41,6 +42,15 @@ LONGEST_S = 1000.0 * DAY_S
 class NodesTable(Rows):
     """Shows the nodes in the profile's order, below them those that Deck has not started."""
 
+    class Cut(Message):
+        """What the chosen row has no room for is something else now; or it has room for all."""
+
+        def __init__(self, node: str, facts: str) -> None:
+            """Carry all of it, empty if there is room."""
+            super().__init__()
+            self.node = node
+            self.facts = facts
+
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._statuses: tuple[NodeStatus, ...] = ()
@@ -48,6 +58,7 @@ class NodesTable(Rows):
         """Names of those that Deck has not started."""
         self._muted: frozenset[str] = frozenset()
         self._full = self._told = False
+        self._cut = ("", "")
         self._word = 0
         """Cells of the sign and the longest word of a process that runs."""
 
@@ -86,6 +97,26 @@ class NodesTable(Rows):
             columns.append(Column(_("Detail") if self._told else ""))
         rows = [Row(node.name, self._cells(node)) for node in self._statuses]
         self.show(columns, [*rows, *(Row(name, self._cells_of(name)) for name in self.outside)])
+        self._tell_what_is_cut()
+
+    def on_rows_highlighted(self) -> None:
+        """Tell of the row that is chosen now."""
+        self._tell_what_is_cut()
+
+    def _tell_what_is_cut(self) -> None:
+        cut = self._whole() if self.is_chosen_cut else ("", "")
+        if cut != self._cut:
+            self._cut = cut
+            self.post_message(self.Cut(*cut))
+
+    def _whole(self) -> tuple[str, str]:
+        """Return the name of the chosen node, and its state with all that is told of it."""
+        node = next((node for node in self._statuses if node.name == self.chosen), None)
+        if node is None:
+            sign, word = OUTSIDE
+            return (self.chosen, f"{sign} {_(word)} · {_('not started by Deck')}")
+        sign, word, _meaning = STATES[node.state]
+        return (node.name, f"{sign} {_(word)} · {why(node)}")
 
     def _named(self, name: str) -> str:
         return plain(name) + (" ⊘" if name in self._muted else "")

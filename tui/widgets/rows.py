@@ -132,6 +132,18 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         """Key of the chosen row, empty where there is none."""
         return self._chosen
 
+    @property
+    def is_chosen_cut(self) -> bool:
+        """Whether the chosen row has a text that its column has no room for."""
+        index = self._index(self._chosen)
+        if index is None:
+            return False
+        if self._placed_in != self.scrollable_size.width:
+            self._place()
+        cells = self._rows[index].cells
+        rooms = self._room_for(len(cells))
+        return any(cell_len(cell.text) > room for cell, room in zip(cells, rooms))  # noqa: B905
+
     def choose(self, key: str) -> None:
         """Choose a row by its key, if there is one."""
         index = self._index(key)
