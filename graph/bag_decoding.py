@@ -49,8 +49,9 @@ def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
     if kind.name not in store.fielddefs:
         raise BagError(
             say(
-                "type {type} is not defined in the bag, and is none of ROS itself; record the bag "
-                "anew with its definitions: `deck record`, or `ros2 bag record -s mcap`",
+                "type {type} is not defined in the bag, and is not one of ROS's own; record "
+                "the bag again with its definitions: `deck record`, or `ros2 bag record -s "
+                "mcap`",
                 type=kind.name,
             )
         )

@@ -34,7 +34,7 @@ def not_written(file: Path, error: OSError) -> Words:
     reason = error.strerror or str(error)
     return say(
         "recording has ended: {path} cannot be written ({reason}); what was recorded till then "
-        "can be replayed. Make room, and record anew",
+        "can be replayed. Free some space and record again",
         path=file,
         reason=reason,
     )
@@ -44,8 +44,8 @@ def no_bag(path: Path, reason: Words) -> BagError:
     """Return that there is no bag at this place."""
     return BagError(
         say(
-            "{path} is no bag: {reason}. Give the folder that holds metadata.yaml, or an .mcap "
-            "file",
+            "{path} is not a bag: {reason}. Give the folder that holds metadata.yaml, or an "
+            ".mcap file",
             path=path,
             reason=reason,
         )
@@ -59,7 +59,7 @@ def unreadable(path: Path, error: Exception) -> BagError:
     reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
     return BagError(
         say(
-            "{path} cannot be read: {reason}. Is it whole? `ros2 bag reindex` mends many a bag",
+            "{path} cannot be read: {reason}. Is it whole? `ros2 bag reindex` repairs many bags",
             path=path,
             reason=str(reason).rstrip("."),
         )

@@ -133,8 +133,8 @@ class CutFiles:
         if not cut:
             return None
         return say(
-            "{path} was cut short: the recording has not ended in order. {messages} messages are "
-            "whole, the last {bytes} bytes are not; what was to come after is missing. "
+            "{path} was cut short: the recording was not ended properly. {messages} messages "
+            "are whole, the last {bytes} bytes are not; what was to come after is missing. "
             "`ros2 bag reindex` mends the index",
             path=path,
             messages=self.message_count,

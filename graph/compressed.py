@@ -38,7 +38,7 @@ def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
     """
     words, data = value.get("format"), value.get("data")
     if not isinstance(words, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError(say("this is no {type}", type="sensor_msgs/CompressedImage"))
+        raise ImageError(say("this is not a {type}", type="sensor_msgs/CompressedImage"))
     raw = bytes(data)
     head: tuple[int, float, float] | None = None
     if "compressedDepth" in words and len(raw) > DEPTH_HEAD.size:
@@ -120,7 +120,7 @@ def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uin
     try:
         import cv2
     except ImportError as error:
-        words = say("OpenCV is missing, which decodes them: {error}", error=error)
+        words = say("OpenCV, which decodes them, is missing: {error}", error=error)
         raise ImageError(words) from error
     modes: dict[int, int] = {
         1: cv2.IMREAD_COLOR,

@@ -79,18 +79,18 @@ class Condition:
         except SyntaxError as error:
             # No place is given where the end has come too soon.
             at = min(error.offset or len(text) + 1, len(text) + 1)
-            why = say("it cannot be understood from here on")
+            why = say("cannot be parsed from here on")
             if text[at - 1 : at] == "=" or "'=='" in (error.msg or ""):
                 why = say("write == to compare")
             raise ConditionError(at + self._skipped, "", why) from error
         except (ValueError, RecursionError, MemoryError) as error:
-            why = say("it cannot be understood from here on")
+            why = say("cannot be parsed from here on")
             raise ConditionError(1, "", why) from error
 
     def _check(self, node: ast.AST, depth: int) -> None:
         """Refuse whatever is not listed above, before any message comes."""
         if depth > DEEPEST:
-            raise self._error(node, say("too many brackets within brackets"))
+            raise self._error(node, say("too many nested brackets"))
         if isinstance(node, (*_OPERATORS, ast.Load)):
             return
         if not isinstance(node, _NODES):

@@ -111,7 +111,7 @@ def _binary(node: ast.BinOp, names: Mapping[str, Any]) -> Any:  # noqa: ANN401
     except ZeroDivisionError as error:
         raise RefusalError(node, say("it divides by zero")) from error
     except ArithmeticError as error:
-        raise RefusalError(node, say("the number is too great")) from error
+        raise RefusalError(node, say("the number is too large")) from error
 
 
 def _compare(node: ast.Compare, names: Mapping[str, Any]) -> bool:
@@ -210,7 +210,7 @@ def _listed_out(value: Any) -> Any:  # noqa: ANN401
 def _number(node: ast.expr, value: Any) -> Any:  # noqa: ANN401
     if _is_number(value):
         return value
-    raise RefusalError(node, say("{kind} is no number", kind=_kind(value)))
+    raise RefusalError(node, say("{kind} is not a number", kind=_kind(value)))
 
 
 def _is_number(value: Any) -> bool:  # noqa: ANN401

@@ -185,7 +185,7 @@ class GoalLife:
         self._wants_cancel = False
         status = STATUS.get(response.status)
         if status not in ENDS:
-            self._end(GoalStatus.FAILED, say("the server knows nothing of it"))
+            self._end(GoalStatus.FAILED, say("the server does not know it"))
             return
         result = to_tree(response.result)
         self._end(status, _reason(result) if status == GoalStatus.ABORTED else "")

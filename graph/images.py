@@ -63,7 +63,7 @@ class UnknownEncodingError(ImageError):
         known = ", ".join([*COLOURS, *DEPTHS, *YUV, *BAYER])
         super().__init__(
             say(
-                "encoding '{encoding}' is not shown; known are {known}",
+                "encoding '{encoding}' is not shown; known: {known}",
                 encoding=encoding,
                 known=known,
             )
@@ -78,7 +78,7 @@ def to_rgb(value: Mapping[str, Value]) -> Rgb:
     width, height, step = (whole(value, name) for name in ("width", "height", "step"))
     encoding, data = value.get("encoding"), value.get("data")
     if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError(say("this is no {type}", type="sensor_msgs/Image"))
+        raise ImageError(say("this is not a {type}", type="sensor_msgs/Image"))
     if encoding in COLOURS:
         pixel_bytes, order = COLOURS[encoding]
         pixels = pixel_rows(data, width, height, step, pixel_bytes)
@@ -114,7 +114,7 @@ def whole(value: Mapping[str, Value], name: str) -> int:
     """Return a field that is a whole number; raises ImageError."""
     number = value.get(name)
     if not isinstance(number, int):
-        words = say("this is no {type}: {name} is missing", type="sensor_msgs/Image", name=name)
+        words = say("this is not a {type}: {name} is missing", type="sensor_msgs/Image", name=name)
         raise ImageError(words)
     return number
 

@@ -148,10 +148,10 @@ def _check_length(kind: FieldType, length: int, path: str) -> None:
 
 def _text(kind: FieldType, value: Value, path: str) -> str:
     if isinstance(value, (bool, int, float)):
-        words = say("expected a text, got {value}: put it into quotes", value=_shown(value))
+        words = say("expected text, got {value}: put it in quotes", value=_shown(value))
         raise FieldError(path, words)
     if not isinstance(value, str):
-        raise FieldError(path, say("expected a text, got {value}", value=_shown(value)))
+        raise FieldError(path, say("expected text, got {value}", value=_shown(value)))
     if kind.text_limit is not None and len(value) > kind.text_limit:
         raise FieldError(
             path,
@@ -162,7 +162,7 @@ def _text(kind: FieldType, value: Value, path: str) -> str:
             ),
         )
     if "\0" in value:
-        raise FieldError(path, say("a text of ROS cannot hold the character NUL"))
+        raise FieldError(path, say("a ROS string cannot hold the character NUL"))
     _encoded(value, path)
     return value
 
@@ -171,7 +171,7 @@ def _encoded(value: str, path: str) -> bytes:
     try:
         return value.encode()
     except UnicodeEncodeError as error:
-        raise FieldError(path, say("{value} is no valid Unicode", value=_shown(value))) from error
+        raise FieldError(path, say("{value} is not valid Unicode", value=_shown(value))) from error
 
 
 def _boolean(value: Value, path: str) -> bool:
@@ -192,7 +192,7 @@ def _float(element: str, value: Value, path: str) -> float:
         math.isfinite(number) and 0 < greatest * ROUNDED < abs(number)
     ):
         raise FieldError(
-            path, say("{value} is too great for a {type}", value=_shown(value), type=element)
+            path, say("{value} is too large for a {type}", value=_shown(value), type=element)
         )
     is_rounded = math.isfinite(number) and 0 < greatest < abs(number)
     return math.copysign(greatest, number) if is_rounded else number

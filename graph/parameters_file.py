@@ -87,7 +87,7 @@ def load_file(path: Path, node: str) -> dict[str, Value]:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise YamlError(line, 1, say("this is no text in UTF-8")) from error
+        raise YamlError(line, 1, say("this is not UTF-8 text")) from error
     if "\0" in text:
         tell_character(text, text.index("\0"))
     return load(text, node)
@@ -137,7 +137,7 @@ def _nodes(branch: Node, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
         if key == KEY:
             if not path:
                 words = say(
-                    "`{key}:` stands under no node; write the node's name, or `/**:`, above it",
+                    "`{key}:` is not under any node; write the node's name, or `/**:`, above it",
                     key=KEY,
                 )
                 raise YamlError(below.key_line, below.key_column, words)
@@ -168,7 +168,7 @@ def _flatten(branch: Node, prefix: str, found: dict[str, Value]) -> None:
         if isinstance(below.value, dict):
             _flatten(below, f"{name}.", found)
         elif name in found:
-            words = say("the parameter {name} stands here a second time", name=repr(name))
+            words = say("the parameter {name} appears a second time", name=repr(name))
             raise YamlError(below.key_line, below.key_column, words)
         else:
             found[name] = _value(below, name)

@@ -68,7 +68,7 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Talk:
             if not result["successful"]:
                 refused[name] = result["reason"] or say("the node refuses it and gives no reason")
         for name in some[len(results) :]:
-            refused[name] = say("the node says nothing of it")
+            refused[name] = say("the node says nothing about it")
 
 
 def _made(

@@ -137,7 +137,7 @@ def _integer(value: Value) -> int:
         raise WrongValueError(say("expected a whole number, got {value}", value=_shown(value)))
     if number not in INTEGERS:
         raise WrongValueError(
-            say("{value} is too great for an integer of 64 bits", value=_shown(value))
+            say("{value} is too large for an integer of 64 bits", value=_shown(value))
         )
     return number
 
@@ -156,19 +156,19 @@ def _double(value: Value) -> float:
         return float(value)
     except OverflowError:
         raise WrongValueError(
-            say("{value} is too great for a double", value=_shown(value))
+            say("{value} is too large for a double", value=_shown(value))
         ) from None
 
 
 def _string(value: Value) -> str:
     if not isinstance(value, str):
-        raise WrongValueError(say("expected a text, got {value}", value=_shown(value)))
+        raise WrongValueError(say("expected text, got {value}", value=_shown(value)))
     if "\0" in value:
-        raise WrongValueError(say("a text of ROS cannot hold the character NUL"))
+        raise WrongValueError(say("a ROS string cannot hold the character NUL"))
     try:
         value.encode()
     except UnicodeEncodeError:
-        raise WrongValueError(say("{value} is no valid Unicode", value=_shown(value))) from None
+        raise WrongValueError(say("{value} is not valid Unicode", value=_shown(value))) from None
     return value
 
 

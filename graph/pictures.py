@@ -70,7 +70,7 @@ def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Pictur
     width, height, step = (whole(value, name) for name in ("width", "height", "step"))
     encoding, data = value.get("encoding"), value.get("data")
     if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError(say("this is no {type}", type="sensor_msgs/Image"))
+        raise ImageError(say("this is not a {type}", type="sensor_msgs/Image"))
     if encoding in COLOURS:
         pixel_bytes, order = COLOURS[encoding]
         rows = pixel_rows(data, width, height, step, pixel_bytes)

@@ -90,6 +90,6 @@ def _opencv() -> ModuleType:
     try:
         import cv2
     except ImportError as error:
-        words = say("OpenCV is missing, which decodes them: {error}", error=error)
+        words = say("OpenCV, which decodes them, is missing: {error}", error=error)
         raise ImageError(words) from error
     return cv2

@@ -63,8 +63,8 @@ class Room:
         if free <= self._reserve_bytes:
             raise BagError(
                 say(
-                    "{path}: {free} MB are free on this disk, and {reserve} MB must stay free: make"
-                    " room, or record into a folder on another disk",
+                    "{path}: {free} MB are free on this disk, and {reserve} MB must stay free: "
+                    "free some space, or record into a folder on another disk",
                     path=self._folder,
                     free=round(free / MEGA),
                     reserve=round(self._reserve_bytes / MEGA),
@@ -88,8 +88,8 @@ class Room:
         self.left_s = max(0.0, spare / self.bytes_per_s) if self.bytes_per_s > 0 else None
         if spare <= 0:
             self.end = say(
-                "recording has ended: {free} MB are free on the disk of {path}. All that was"
-                " recorded till then is whole. Make room, and record anew",
+                "recording has ended: {free} MB are free on the disk of {path}. All that was "
+                "recorded till then is whole. Free some space and record again",
                 free=round(free / MEGA),
                 path=self._folder,
             )

@@ -96,7 +96,7 @@ class Refusals:
 
 
 def _words() -> str:
-    return say("this is a recording: there is nobody who could hear it")
+    return say("this is a recording: nobody can hear it")
 
 
 def _failed() -> Future[T]:

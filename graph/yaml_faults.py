@@ -14,7 +14,7 @@ _INDENT = say("the indentation does not fit the lines above")
 _NO_VALUE = say("a value is missing here, or a ']' or '}'")
 _BEGUN_BEFORE = {
     "could not find expected ':'": say(
-        "a ':' is missing after the name of the field, or a blank after it"
+        "a ':' is missing after the name of the field, or a space after it"
     ),
     "did not find expected ',' or ']'": _LIST,
     "expected ',' or ']'": _LIST,
@@ -25,7 +25,7 @@ _BEGUN_BEFORE = {
 """How PyYAML's own words begin (of both its parsers), and what is meant; told of where it began."""
 _WORDS = {
     "found character that cannot start any token": say(
-        "nothing can begin with this character: put the text into quotes"
+        "nothing can begin with this character: put the text in quotes"
     ),
     "did not find expected key": _INDENT,
     "expected <block end>": _INDENT,
@@ -33,11 +33,11 @@ _WORDS = {
     "expected the node content": _NO_VALUE,
     "did not find expected '-' indicator": say("the indentation does not fit the list above"),
     "block sequence entries are not allowed": say(
-        "a list cannot begin here: put it on a line of its own, or the '-' into quotes"
+        "a list cannot begin here: put it on a line of its own, or the '-' in quotes"
     ),
 }
 _COLON = "mapping values are not allowed"
-_SECOND_COLON = say("a second ':' in one line: put the text that holds it into quotes")
+_SECOND_COLON = say("a second ':' in one line: put the text that holds it in quotes")
 _NO_COLON = say(
     "this line does not fit the one above: a ':' is missing there, or the indentation differs"
 )
@@ -64,7 +64,7 @@ def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
     content = lines[mark.line] if mark.line < len(lines) else ""
     indent = content[: len(content) - len(content.lstrip())]
     if "\t" in indent:
-        tab = say("a tab indents this line: YAML wants blanks")
+        tab = say("this line is indented with a tab: use spaces, not tabs")
         raise YamlError(mark.line + 1, indent.index("\t") + 1, tab) from error
     words = getattr(error, "problem", None) or str(error)
     meant = _meant(words, _BEGUN_BEFORE)

@@ -151,7 +151,7 @@ class _Builder:
         first = top.node.value.get(key.value)
         if first is not None:
             words = say(
-                "the field {name} stands here a second time, first on line {line}",
+                "the field {name} appears a second time, first on line {line}",
                 name=repr(key.value),
                 line=first.key_line,
             )

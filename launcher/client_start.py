@@ -168,7 +168,7 @@ class StartingSupervisor:
 
         words = os.pread(self._words, 1 << 16, 0).decode(errors="replace").strip()
         if not words:
-            return say("the supervisor ended without a word")
+            return say("the supervisor ended without saying why")
         return say("the supervisor ended: {words}", words=words.splitlines()[-1])
 
 

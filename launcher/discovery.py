@@ -60,8 +60,8 @@ def why_open(environ: Mapping[str, str], discovery: str | tuple[str, ...]) -> Wo
     name = _chosen_by_user(environ)
     if name:
         return say(
-            "{name} is set, so Deck's own settings of Fast DDS are not in use: it cannot promise"
-            " that nobody on the network hears or drives this robot",
+            "{name} is set, so Deck's own settings of Fast DDS are not used: it cannot promise "
+            "that nobody on the network hears or drives this robot",
             name=name,
         )
     if environ.get(RMW, "") not in FAST_RTPS:

@@ -37,8 +37,8 @@ def parse_domain(text: str, source: str) -> int:
     if not 0 <= domain <= LAST_DOMAIN:
         raise DomainError(
             say(
-                "{source}: {text!r} is no ROS domain; expected a whole number from 0 to {last},"
-                " best 1 to {safe}",
+                "{source}: {text!r} is not a ROS domain; expected a whole number from 0 to "
+                "{last}, best 1 to {safe}",
                 source=source,
                 text=text,
                 last=LAST_DOMAIN,

@@ -102,7 +102,9 @@ class ProfileNotFoundError(UsageError):
         self.name = name
         self.near = tuple(near)
         if near:
-            words = say("no profile {name!r}; near it: {near}", name=name, near=", ".join(near))
+            words = say(
+                "no profile {name!r}; did you mean {near}?", name=name, near=", ".join(near)
+            )
         else:
             words = say("no profile {name!r}; `deck list` shows them all", name=name)
         super().__init__(words)
@@ -177,9 +179,9 @@ class NotRunningError(SessionError):
             words = say("nothing runs in the background; `deck up PROFILE` starts a profile")
         elif running:
             names = ", ".join(running)
-            words = say("{name!r} does not run; running: {names}", name=name, names=names)
+            words = say("{name!r} is not running; running: {names}", name=name, names=names)
         else:
-            words = say("{name!r} does not run, nor does anything else", name=name)
+            words = say("{name!r} is not running, nor is anything else", name=name)
         super().__init__(words)
 
 
@@ -219,15 +221,15 @@ class AlreadyRunningError(SessionError):
         }
         if run_dir:
             words = say(
-                "{name} runs already in domain {domain} (pid {pid}, run directory {run_dir});"
-                " `{down}` stops it, `--domain {free}` starts another beside it",
+                "{name} is already running in domain {domain} (pid {pid}, run directory "
+                "{run_dir}); `{down}` stops it, `--domain {free}` starts another beside it",
                 run_dir=run_dir,
                 **values,
             )
         else:
             words = say(
-                "{name} runs already in domain {domain} (pid {pid}); `deck attach` shows it,"
-                " `{down}` stops it, `--domain {free}` starts another beside it",
+                "{name} is already running in domain {domain} (pid {pid}); `deck attach` shows "
+                "it, `{down}` stops it, `--domain {free}` starts another beside it",
                 **values,
             )
         super().__init__(words)

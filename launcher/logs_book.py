@@ -75,7 +75,7 @@ class LogBook:
             parsed = parser.parse(text, now, suggested)
             shown = parsed.text
             if raw.lost:
-                shown += say(" … [{count} bytes more, see the log file]", count=raw.lost)
+                shown += say(" … [{count} more bytes, see the log file]", count=raw.lost)
             ring.append(
                 LogLine(
                     node,

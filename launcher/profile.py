@@ -122,7 +122,7 @@ class _Reader:
         return {name: self._node(name, node, running) for name, node in running.items()}
 
     def _nothing_runs(self, left_out: bool, hardware: str) -> None:
-        message = say("there is no node to start")
+        message = say("there are no nodes to start")
         if left_out:
             message = say("no node is left with --hardware {hardware}", hardware=hardware)
         self.problems.add(place_of(self.tree, ("nodes",), key=True), ("nodes",), message)

@@ -41,7 +41,7 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
         problems.add(
             place,
             where,
-            say("{name!r} is no name of a ROS node", name=name),
+            say("{name!r} is not a valid name for a ROS node", name=name),
             say("letters, digits and _, not beginning with a digit"),
         )
     given = {key for key in ("run", "exec") if not empty(find(tree, (*where, key)))}
@@ -64,7 +64,7 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
                 problems.add(
                     place_of(tree, (*where, "ready", key), key=True),
                     (*where, "ready", key),
-                    say("`{key}` is of a topic, and there is none here", key=key),
+                    say("`{key}` belongs to a topic, and none is given here", key=key),
                     say("write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1}"),
                 )
 
@@ -117,7 +117,7 @@ def check_needs(
         where = ("nodes", cycle[0], "needs")
         path = " -> ".join([*cycle, cycle[0]])
         message = say("nodes need each other in a cycle: {cycle}", cycle=path)
-        problems.add(place_of(tree, where), where, message, say("take one of the needs out"))
+        problems.add(place_of(tree, where), where, message, say("remove one of the needs"))
 
 
 def _cycles(needs: Mapping[str, tuple[str, ...]]) -> list[list[str]]:

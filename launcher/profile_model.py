@@ -42,8 +42,8 @@ def _module(value: object) -> object:
     if isinstance(value, str) and not is_file(value) and not MODULE.fullmatch(value):
         raise refuse(
             say(
-                "{value!r} is no Python module; write it as nodes.hello, and a file of your own"
-                " as ./my_node.py",
+                "{value!r} is not a Python module; write it as nodes.hello, and a file of your "
+                "own as ./my_node.py",
                 value=value,
             )
         )
@@ -52,14 +52,16 @@ def _module(value: object) -> object:
 
 def _ros_name(value: object) -> object:
     if isinstance(value, str) and not ROS_NAME.fullmatch(value):
-        raise refuse(say("{value!r} is no ROS name; write it as /sensor/sonar_front", value=value))
+        raise refuse(
+            say("{value!r} is not a ROS name; write it as /sensor/sonar_front", value=value)
+        )
     return value
 
 
 def _type_name(value: object) -> object:
     if isinstance(value, str) and not TYPE_NAME.fullmatch(value):
         raise refuse(
-            say("{value!r} is no message type; write it as std_msgs/msg/Float32", value=value)
+            say("{value!r} is not a message type; write it as std_msgs/msg/Float32", value=value)
         )
     return value
 
@@ -73,7 +75,7 @@ def _ros_names(value: object) -> object:
 def _variables(value: object) -> object:
     for name, text in value.items() if isinstance(value, dict) else ():
         if not ENV_NAME.fullmatch(name):
-            raise refuse(say("{name!r} is no name of an environment variable", name=name))
+            raise refuse(say("{name!r} is not a valid name for an environment variable", name=name))
         if isinstance(text, str) and "\0" in text:
             raise refuse(say("the variable {name} holds a NUL character", name=name))
     return value
@@ -101,7 +103,7 @@ def _discovery(value: object) -> object:
     for peer in value:
         if not isinstance(peer, str) or not PEER.fullmatch(peer):
             raise refuse(
-                say("{peer!r} is no address; write it as 192.168.1.7 or robot.local", peer=peer)
+                say("{peer!r} is not an address; write it as 192.168.1.7 or robot.local", peer=peer)
             )
     return tuple(value)
 
@@ -245,7 +247,7 @@ class ProfileDocument(Document):
     title: Texts = Field(
         {}, description="A line for the picker, by language: `{en: ..., ru: ...}`."
     )
-    about: Texts = Field({}, description="What it starts and what one sees, by language.")
+    about: Texts = Field({}, description="What it starts and what you see, by language.")
     lesson: Annotated[str, WithJsonSchema({"type": ["string", "integer"]})] = Field(
         "", description="Number of the lesson: 9, 4b."
     )

@@ -92,11 +92,13 @@ def _flatten(
             problems.add(
                 entry.key_place,
                 here,
-                say("{name!r} is no name of a ROS parameter", name=name),
+                say("{name!r} is not a valid name for a ROS parameter", name=name),
                 say("letters, digits and _, joined by dots"),
             )
         elif name in flat:
-            problems.add(entry.key_place, here, say("the parameter {name} stands twice", name=name))
+            problems.add(
+                entry.key_place, here, say("the parameter {name} is given twice", name=name)
+            )
         elif isinstance(entry.value, Listing):
             items = _list(entry.value, here, problems)
             if items is not None:
@@ -127,7 +129,7 @@ def _text_trouble(text: str) -> str:
     if "\0" in text:
         return say("ROS cannot carry a NUL character in a text")
     if any("\ud800" <= character <= "\udfff" for character in text):
-        return say("half a character: a surrogate stands alone")
+        return say("an incomplete character: a lone surrogate")
     if len(text) > LONGEST_TEXT:
         return say("the text is longer than {limit} characters", limit=LONGEST_TEXT)
     return ""

@@ -83,7 +83,7 @@ class Filler:
 
     def _unknown(self, name: str, scalar: Scalar, where: Where) -> None:
         message = say("there is no device setting {name!r}", name=name)
-        known = say("known are {keys}", keys=", ".join(self._settings))
+        known = say("known: {keys}", keys=", ".join(self._settings))
         hint = did_you_mean(name, self._settings) or known
         self._problems.add(scalar.place, where, message, hint if self._settings else "")
 

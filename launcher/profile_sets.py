@@ -35,7 +35,7 @@ def read_sets(
         elif node in left_out:
             problems.add(place, (), say("{name} does not run on this hardware", name=node))
         elif node not in result:
-            known = did_you_mean(node, result) or say("known are {keys}", keys=", ".join(result))
+            known = did_you_mean(node, result) or say("known: {keys}", keys=", ".join(result))
             problems.add(place, (), say("there is no node {name!r}", name=node), known)
         else:
             value = read_value(written, place.file, problems)

@@ -46,7 +46,9 @@ def read_text(path: Path, problems: Problems) -> str | None:
         return None
     if len(data) > MAX_BYTES:
         limit = MAX_BYTES // 1024
-        problems.add(place, (), say("is larger than {limit} KiB, no profile is", limit=limit))
+        problems.add(
+            place, (), say("is larger than {limit} KiB: too large for a profile", limit=limit)
+        )
         return None
     return _decoded(data, place.file, problems)
 

@@ -126,7 +126,7 @@ def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
         return context["words"], ""
     if kind == "extra_forbidden":
         known = _keys(where[:-1])
-        hint = did_you_mean(str(where[-1]), known) or say("known are {keys}", keys=", ".join(known))
+        hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
         return say("unknown key"), hint
     if kind in WANTED:
         wanted = WANTED[kind]
@@ -152,7 +152,7 @@ def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
 
 def _mend(kind: str, found: object) -> str:
     if kind == "string_type" and isinstance(found, (bool, int, float)):
-        return say("put it between quotes")
+        return say("put it in quotes")
     if kind == "float_type" and isinstance(found, str):
         comma = _DECIMAL_COMMA.fullmatch(found)
         if comma:

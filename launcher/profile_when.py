@@ -42,7 +42,7 @@ def holds(expression: str, facts: Mapping[str, str]) -> bool:
     try:
         tree = ast.parse(expression.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
-        raise WhenError(say("{text!r} is no condition", text=expression)) from error
+        raise WhenError(say("{text!r} is not a condition", text=expression)) from error
     return _truth(tree.body, facts)
 
 
@@ -75,7 +75,7 @@ def _items(node: ast.expr) -> list[ast.expr]:
     if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
         return node.elts
     raise WhenError(
-        say("{text!r} is no list", text=ast.unparse(node)), say('write: hardware in ["real"]')
+        say("{text!r} is not a list", text=ast.unparse(node)), say('write: hardware in ["real"]')
     )
 
 
@@ -84,7 +84,7 @@ def _name(node: ast.expr) -> str:
         if node.id in NAMES:
             return node.id
         raise WhenError(say("{name!r} is not known", name=node.id), did_you_mean(node.id, NAMES))
-    raise WhenError(say("{text!r} is no name to ask about", text=ast.unparse(node)))
+    raise WhenError(say("{text!r} is not a name that can be asked about", text=ast.unparse(node)))
 
 
 def _word(node: ast.expr, name: str) -> str:
@@ -102,5 +102,5 @@ def _word(node: ast.expr, name: str) -> str:
             did_you_mean(node.value, NAMES[name]),
         )
     raise WhenError(
-        say("{text!r} is no quoted word", text=ast.unparse(node)), say("put it between quotes")
+        say("{text!r} is not a quoted word", text=ast.unparse(node)), say("put it in quotes")
     )

@@ -130,7 +130,7 @@ class _Builder:
         if top.size > MAX_VALUES:
             self._stop(
                 tree.place,
-                say("comes to more than {limit} values, aliases counted", limit=MAX_VALUES),
+                say("has more than {limit} values, counting aliases", limit=MAX_VALUES),
             )
         if not top.mapping:
             top.items.append(tree)
@@ -149,9 +149,7 @@ class _Builder:
                 self._problems.add(place, ("<<",), say("expected a mapping to merge"))
         elif name in top.entries:
             first = top.entries[name].key_place.line
-            message = say(
-                "the key stands here for the second time; first on line {line}", line=first
-            )
+            message = say("this key appears a second time; first on line {line}", line=first)
             self._problems.add(place, self._where(name), message, say("join them or rename one"))
         else:
             top.entries[name] = Entry(place, value)
@@ -159,7 +157,7 @@ class _Builder:
     def _key(self, tree: Tree) -> str:
         if isinstance(tree, Scalar):
             return tree.text
-        self._stop(tree.place, say("expected a word as key, found a list or a mapping"))
+        self._stop(tree.place, say("expected a word as the key, found a list or a mapping"))
         raise AssertionError  # pragma: no cover
 
     def _where(self, name: str) -> tuple[str | int, ...]:
@@ -177,7 +175,9 @@ class _Builder:
         if any(opened.anchor == name for opened in self._stack):
             self._stop(place, say("*{name} contains itself", name=name))
         if name not in self._anchors:
-            self._stop(place, say("*{name} stands for nothing: no &{name} before it", name=name))
+            self._stop(
+                place, say("*{name} refers to nothing: there is no &{name} before it", name=name)
+            )
         return replace(self._anchors[name], place=place)
 
     def _scalar(self, event: yaml.ScalarEvent) -> Scalar:
@@ -192,7 +192,7 @@ class _Builder:
         except (ValueError, KeyError, IndexError):
             kind = tag.removeprefix(TAG)
             self._problems.add(
-                place, (), say("{text!r} is no {kind}", text=event.value[:40], kind=kind)
+                place, (), say("{text!r} is not a valid {kind}", text=event.value[:40], kind=kind)
             )
             value = None
         return Scalar(value, event.value, place)

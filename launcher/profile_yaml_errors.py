@@ -26,7 +26,7 @@ def tell_syntax(error: yaml.YAMLError, text: str, file: str, problems: Problems)
     if "\t" in indent:
         place = Place(file, line, indent.index("\t") + 1)
         problems.add(
-            place, (), say("a tab indents this line"), say("YAML wants blanks: replace the tab")
+            place, (), say("this line is indented with a tab"), say("use spaces, not tabs")
         )
         return
     words = getattr(error, "problem", None) or str(error)

@@ -148,7 +148,7 @@ class Node:
         """Nothing of ours should raise here; if it does, the node must not seem to be well."""
         if not task.cancelled() and task.exception() is not None:
             self._become(
-                NodeState.FAILED, say("fault of Deck's own: {error!r}", error=task.exception())
+                NodeState.FAILED, say("an error in Deck itself: {error!r}", error=task.exception())
             )
             asyncio.get_running_loop().call_exception_handler(
                 {"message": f"life of {self.plan.name}", "exception": task.exception()}
@@ -254,13 +254,13 @@ class Node:
             left = now.process.left()
             if not left:
                 return
-            self._become(NodeState.STOPPING, say("it ended, and left {who}", who=who(left)))
+            self._become(NodeState.STOPPING, say("it ended and left {who} running", who=who(left)))
         stop = now.stop
         now.process.ended.add_done_callback(lambda _ended: stop.look())
         await stop.run()
 
     def _held_up(self, left: Sequence[Process], number: signal.Signals) -> None:
-        words = say("{signal} sent, waits for {who}", signal=number.name, who=who(left))
+        words = say("{signal} sent, waiting for {who}", signal=number.name, who=who(left))
         self._become(NodeState.STOPPING, words)
         if number.name != "SIGINT":
             self._around.say(self.plan.name, Severity.WARN, words)
@@ -270,7 +270,7 @@ class Node:
         if condition is None:
             self._become(NodeState.RUNNING, serves=True)
             return
-        self._become(NodeState.STARTING, say("waits for {what}", what=what(condition)))
+        self._become(NodeState.STARTING, say("waiting for {what}", what=what(condition)))
         clock = self._around.clock
         seen: Seen | None = None
 
@@ -321,7 +321,7 @@ class Node:
             return False
         if verdict.crashes > 1:
             why = say(
-                "given up after {count} ends in {seconds:.0f} s: {why}",
+                "given up: it ended {count} times in {seconds:.0f} s: {why}",
                 count=verdict.crashes,
                 seconds=verdict.within_s,
                 why=why,

@@ -344,8 +344,8 @@ class Supervisor:
         users = other_users(self.info.domain)
         if users:
             words = say(
-                "{users}: they have ROS processes in domain {domain}, too, on this machine;"
-                " `--domain` chooses another",
+                "{users} also have ROS processes in domain {domain} on this machine; choose "
+                "another with `--domain`",
                 users=", ".join(users),
                 domain=self.info.domain,
             )

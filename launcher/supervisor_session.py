@@ -153,7 +153,7 @@ class Session:
         absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
         if not absent:
             return ""
-        return say("waits for {nodes}", nodes=", ".join(map(_with_state, absent)))
+        return say("waiting for {nodes}", nodes=", ".join(map(_with_state, absent)))
 
     def last_words(self, name: str) -> str:
         """Return what the node said last."""

@@ -40,8 +40,8 @@ class SharedMemory:
         found = discard_unfinished(self._folder)
         if found.removed:
             words = say(
-                "removed {files} from /dev/shm: half made by a process that was killed, it holds"
-                " up every node that comes across it",
+                "removed {files} from /dev/shm: incomplete, left by a process that was killed; "
+                "any node that opens it hangs",
                 files=", ".join(found.removed),
             )
             self._tell(Severity.WARN, words)
@@ -49,8 +49,8 @@ class SharedMemory:
             if name not in self._kept:
                 self._kept.add(name)
                 words = say(
-                    "/dev/shm/{file} was half made by another user's process that was killed, and"
-                    " holds up every node that comes across it: sudo rm /dev/shm/{file}",
+                    "/dev/shm/{file} is incomplete, left by another user's process that was "
+                    "killed; any node that opens it hangs: sudo rm /dev/shm/{file}",
                     file=name,
                 )
                 self._tell(Severity.ERROR, words)

@@ -62,7 +62,7 @@ def instead(condition: Condition, seen: Seen) -> str:
     """What there is in place of what is waited for: another type, or too few messages."""
     if condition.type and condition.type not in seen.types:
         return say(
-            "{name} is published as {types}, awaited is {type}",
+            "{name} is published as {types}, expected {type}",
             name=condition.name,
             types=", ".join(seen.types),
             type=condition.type,
@@ -74,7 +74,7 @@ def instead(condition: Condition, seen: Seen) -> str:
             types=", ".join(seen.types),
         )
     return say(
-        "{name} comes at {rate:.2g} Hz, awaited are {wanted:g} Hz",
+        "{name} comes at {rate:.2g} Hz, expected {wanted:g} Hz",
         name=condition.name,
         rate=seen.rate_hz,
         wanted=condition.rate_hz,

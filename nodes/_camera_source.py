@@ -29,8 +29,8 @@ _NOT_IN_GROUP = Phrase(
     "нет прав; sudo usermod -aG video $USER, затем войдите заново",
 )
 _NO_PICTURES = Phrase(
-    "it gives no pictures: another program has it (fuser -v {source}), or it is another device of"
-    " the same camera (v4l2-ctl --list-devices)",
+    "it gives no pictures: another program is using it (fuser -v {source}), or it is another device"
+    " of the same camera (v4l2-ctl --list-devices)",
     "она не даёт кадров: занята другой программой (fuser -v {source}) или это другое устройство"
     " той же камеры (v4l2-ctl --list-devices)",
 )

@@ -119,7 +119,7 @@ SERVO_SETTINGS: tuple[Setting, ...] = (
         high=60.0,
         unit="s",
     ),
-    Number("battery_low", 6.0, "Less is told as a warning", low=0.0, high=30.0, unit="V"),
+    Number("battery_low", 6.0, "Below this it warns", low=0.0, high=30.0, unit="V"),
 )
 
 

@@ -48,10 +48,10 @@ _PROBLEMS = {
         "нет прав; sudo usermod -aG dialout $USER, затем войдите заново",
     ),
     errno.EAGAIN: Phrase(
-        "another program has it; close that one (fuser -v {port})",
+        "another program is using it; close that one (fuser -v {port})",
         "занят другой программой; закройте её (fuser -v {port})",
     ),
-    errno.ENOTTY: Phrase("it is no serial port", "это не последовательный порт"),
+    errno.ENOTTY: Phrase("it is not a serial port", "это не последовательный порт"),
 }
 _PROBLEMS[errno.EBUSY] = _PROBLEMS[errno.EAGAIN]
 _PROBLEMS[errno.EPERM] = _PROBLEMS[errno.EACCES]

@@ -74,7 +74,7 @@ _PROBLEMS = {
         "или sudo usermod -aG audio $USER и войдите заново",
     ),
     "busy": Phrase(
-        "another program has it; close that one (fuser -v /dev/snd/*)",
+        "another program is using it; close that one (fuser -v /dev/snd/*)",
         "занято другой программой; закройте её (fuser -v /dev/snd/*)",
     ),
     "rate": Phrase("it cannot do {detail} Hz", "оно не умеет {detail} Гц"),

@@ -60,7 +60,7 @@ class Camera(LessonNode):
         Whole("height", 480, "Rows", low=16, high=4096, fixed=True),
         Choice("encoding", "bgr8", "Order of colours", choices=("bgr8", "rgb8"), fixed=True),
         Text("frame_id", "camera_color_optical_frame", "Frame of the pictures", fixed=True),
-        Switch("loop", True, "Whether a file begins anew when it is over", fixed=True),
+        Switch("loop", True, "Whether a file is played again from the start", fixed=True),
     )
 
     def __init__(self) -> None:

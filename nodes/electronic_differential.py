@@ -109,7 +109,7 @@ class ElectronicDifferential(LessonNode):
         Number(
             "max_steering",
             STEERING.high,
-            "The steering's stop",
+            "Limit of the steering",
             low=0.05,
             high=STEERING.high,
             unit="rad",

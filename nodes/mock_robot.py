@@ -93,7 +93,7 @@ class MockRobot(LessonNode):
         Number("battery", 7.4, "Voltage of the battery", low=0.0, high=30.0, unit="V"),
         Number("noise", 0.01, "Standard deviation of the sonars", high=1.0, unit="m", fixed=True),
         Number("dropout", 0.01, "Share of readings without a distance", high=1.0, fixed=True),
-        Whole("seed", 0, "Of the dice that are thrown", high=2**31, fixed=True),
+        Whole("seed", 0, "Seed of the random numbers", high=2**31, fixed=True),
     )
 
     def __init__(self) -> None:

@@ -47,7 +47,7 @@ class MockSonar(LessonNode):
         Number("min_distance", 0.2, "Nearest distance", low=0.0, high=100.0, unit="m"),
         Number("max_distance", 3.0, "Farthest distance", low=0.0, high=100.0, unit="m"),
         Number("value", 1.5, "Distance of the constant pattern", high=math.inf, unit="m"),
-        Number("sweep_period", 10.0, "To and fro of the sweep", low=0.1, high=3600.0, unit="s"),
+        Number("sweep_period", 10.0, "Period of the sweep", low=0.1, high=3600.0, unit="s"),
         Number("noise", 0.0, "Standard deviation added to each reading", high=10.0, unit="m"),
         Number("dropout", 0.0, "Share of readings that are nan instead", high=1.0),
     )

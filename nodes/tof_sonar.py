@@ -60,7 +60,7 @@ class TofSonar(LessonNode):
         ),
         Text("topic", SONAR_FRONT, "Where the distance is published", fixed=True),
         Text("frame_id", "sonar_front_link", "Frame of the readings", fixed=True),
-        Whole("every", 2, "Of so many readings one is published", low=1, high=1000),
+        Whole("every", 2, "One of so many readings is published", low=1, high=1000),
         Number(
             "silent_after_s", 0.5, "Without a reading it is silent", low=0.1, high=10.0, unit="s"
         ),

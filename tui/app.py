@@ -286,7 +286,7 @@ class DeckApp(App[int], Acting):
         from textual.command import CommandPalette
 
         if not isinstance(self.screen, CommandPalette):
-            words = _("What is to be done?")
+            words = _("What would you like to do?")
             self.push_screen(CommandPalette(placeholder=words, id="--command-palette"))
 
     def action_help_quit(self) -> None:

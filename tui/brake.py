@@ -115,7 +115,7 @@ class Brake:
         names = [name for name in ended if name in feed.nodes]
         if feed.link is None or not names:
             return
-        words = _("Started again what the stop had ended: {nodes}")
+        words = _("Restarted what the stop had ended: {nodes}")
         told = words.format(nodes=", ".join(map(plain, names)))
         self._app.notify(told, timeout=WHY_S, markup=False)
         await feed.link.start(*names)
@@ -140,7 +140,7 @@ class Brake:
         publications = () if feed.update is None else feed.update.publications
         topics = dict.fromkeys(one.topic for one in publications if not one.error)
         if topics:
-            words = _("Deck publishes no more to {topics}: the emergency stop has ended it.")
+            words = _("Deck has stopped publishing to {topics}: the emergency stop ended it.")
             told = words.format(topics=", ".join(topics))
             self._app.notify(told, severity="warning", timeout=WHY_S, markup=False)
 

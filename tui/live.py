@@ -157,7 +157,7 @@ def run_live(order: Order, lang: str | None, bandwidth: int | None = None) -> in
     gc.set_threshold(GARBAGE_AFTER)
     set_language(detect(lang))
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        return _refused(_("the screen needs a terminal; `deck run` does without"))
+        return _refused(_("the screen needs a terminal; `deck run` works without one"))
     themes = {*BUILTIN_THEMES, HIGH_CONTRAST.name}
     try:
         settings = load(settings_path(), themes, every_action)
@@ -172,7 +172,7 @@ def run_live(order: Order, lang: str | None, bandwidth: int | None = None) -> in
     if app.sessions.parting_words:
         return _refused(app.sessions.parting_words, app.return_code or 0)
     if app.crashed:
-        words = _("Deck has failed; what is known is in {path}")
+        words = _("Deck has crashed; details are in {path}")
         return _refused(words.format(path=plain(str(stray.path))), 1)
     return app.return_code or 0
 

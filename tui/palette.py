@@ -119,12 +119,12 @@ def entries(app: DeckApp, front: Screen[Any]) -> Iterable[Entry]:
     yield from _possible(app)
     for code, name in NAMES.items():
         run = partial(app.speak, code)
-        yield Entry(name, (name,), _("Speak this language."), run)
+        yield Entry(name, (name,), _("Use this language."), run)
     for theme in sorted(app.available_themes):
         names = tuple(words.format(name=theme) for words in in_every_language("Theme: {name}"))
         take = partial(setattr, app, "theme", theme)
         words = _("Theme: {name}").format(name=theme)
-        yield Entry(words, names, _("Take these colours."), take, offered=theme in CYCLE)
+        yield Entry(words, names, _("Use these colours."), take, offered=theme in CYCLE)
     yield from _impossible(app, front)
     yield from _impossible(app, app)
     for place in PLACES:
@@ -218,4 +218,4 @@ class Commands(Provider):
                 shown = matcher.highlight(entry.shown(matcher))
                 yield Hit(score, shown, entry.run, help=entry.sentence)
         if not found:
-            yield Hit(0.01, _("Nothing is called that."), lambda: None)
+            yield Hit(0.01, _("Nothing has that name."), lambda: None)

@@ -18,6 +18,7 @@ from tui.actions.app import (
 )
 from tui.emergency import held_reason
 from tui.emergency_words import stop_words
+from tui.hardware_words import hardware_words
 from tui.i18n import _, ngettext, pick, said
 from tui.widgets.watched import robot_nodes
 
@@ -125,7 +126,7 @@ def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     well = sum(node.state.value in WELL for node in nodes)
     sign = "◔" if starting(app) else "●" if well == len(nodes) else "○"
     count = f"{sign} {well}/{len(nodes)}"
-    name, hardware = plain(session.name), plain(session.hardware)
+    name, hardware = plain(session.name), hardware_words(session.hardware)
     title = f"{plain(session.lesson)} {pick(session.title)}".strip() or name
     domain = domain_words(session)
     names = (f"{title} · {hardware}", title, name)

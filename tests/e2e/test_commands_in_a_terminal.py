@@ -60,6 +60,6 @@ def test_attach_with_nothing_to_attach_to_says_so(deck: Deck) -> None:
 
 def test_attach_to_what_does_not_run_says_so_without_a_screen(deck: Deck) -> None:
     terminal = deck.open("attach", "02")
-    terminal.wait_for("'02' does not run, nor does anything else")
+    terminal.wait_for("'02' is not running, nor is anything else")
     assert terminal.wait_exit() == 1
     assert terminal.received < 200, "a screen takes thousands of bytes"

@@ -70,7 +70,7 @@ def test_what_is_no_bag_at_all_is_told_before_any_screen(tmp_path: Path) -> None
         terminal = replay(path, columns=ONE_LINE)
         try:
             assert terminal.wait_exit() == 2
-            terminal.wait_for("is no bag")
+            terminal.wait_for("is not a bag")
             assert terminal.received < WORDS_BYTES
         finally:
             terminal.close()

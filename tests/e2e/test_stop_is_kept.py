@@ -148,7 +148,7 @@ def test_where_nobody_listens_the_release_starts_again_what_the_stop_has_ended(
     terminal.wait_for("^r starts them again")
     terminal.wait_until(lambda _screen: not marked.nodes(deck.mark), "the end of the node")
     terminal.press("ctrl+r")
-    terminal.wait_for("Started again what the stop had ended: hello")
+    terminal.wait_for("Restarted what the stop had ended: hello")
     terminal.wait_for("1/1")
     assert STOP not in terminal.text()
     detach(terminal)

@@ -58,7 +58,7 @@ def test_from_up_to_down(tmp_path: Path, ros_domain: int) -> None:
 
     again = deck("up", path)
     assert again.process.returncode == 1
-    assert f"one runs already in domain {ros_domain}" in again.errors[0]
+    assert f"one is already running in domain {ros_domain}" in again.errors[0]
 
     down = deck("down")
     assert (down.process.returncode, down.lines) == (0, ["one stopped, 2 nodes"])
@@ -108,7 +108,7 @@ def test_up_says_what_did_not_come_up(tmp_path: Path) -> None:
     assert up.process.returncode == 1
     assert "bad   failed" in up.lines[2]
     assert "exit code 4: oh" in up.lines[2]
-    assert up.errors[0].startswith("not all is well; `deck logs NODE`")
+    assert up.errors[0].startswith("something is wrong; `deck logs NODE`")
 
 
 def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -> None:
@@ -122,7 +122,7 @@ def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -
     assert deck("logs", "quiet", "--profile", "two").process.returncode == 0
     missing = deck("down", "three")
     assert missing.process.returncode == 1
-    assert missing.errors == ["'three' does not run; running: one, two"]
+    assert missing.errors == ["'three' is not running; running: one, two"]
     assert deck("down", "one").lines == ["one stopped, 2 nodes"]
     assert deck("down").lines == ["two stopped, 2 nodes"]
 
@@ -135,7 +135,7 @@ def test_a_second_one_in_the_same_domain_is_refused_where_the_two_collide(
         second = deck(command, str(written(tmp_path, TWO, "two.yaml")))
         assert second.process.returncode == 2
         assert len(second.errors) == 1
-        assert f"one runs already in domain {ros_domain}" in second.errors[0]
+        assert f"one is already running in domain {ros_domain}" in second.errors[0]
         assert re.search(r"`--domain \d+` starts another beside it", second.errors[0])
     assert [session.name for session in running()] == ["one"]
 
@@ -144,7 +144,7 @@ def test_two_that_drive_are_not_started_in_one_domain(ros_domain: int) -> None:
     assert deck("up", "04-ackermann").process.returncode == 0
     second = deck("up", "03b-drive-to-point")
     assert second.process.returncode == 2
-    assert f"04-ackermann runs already in domain {ros_domain}" in second.errors[0]
+    assert f"04-ackermann is already running in domain {ros_domain}" in second.errors[0]
 
 
 def test_a_second_one_that_only_hears_the_first_is_told_of_it(
@@ -170,5 +170,5 @@ def test_what_runs_is_named_as_it_was_to_start_it(tmp_path: Path) -> None:
         for other in ("72", elsewhere):
             missing = deck("down", other)
             assert missing.process.returncode == 1
-            assert missing.errors == [f"{other!r} does not run; running: 71-one"]
+            assert missing.errors == [f"{other!r} is not running; running: 71-one"]
         assert deck("down", name).lines == ["71-one stopped, 2 nodes"]

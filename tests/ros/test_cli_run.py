@@ -106,7 +106,7 @@ except (KeyboardInterrupt, ExternalShutdownException): pass
     assert (run.process.returncode, nodes["sonar_front"]["healthy"]) == (1, False)
     assert nodes["sonar_front"]["detail"] == (
         "not ready within 2 s: /sensor/sonar_front is published as std_msgs/msg/String,"
-        " awaited is std_msgs/msg/Float32"
+        " expected std_msgs/msg/Float32"
     )
 
 
@@ -128,7 +128,7 @@ def test_a_profile_that_runs_already_is_not_started(tmp_path: Path) -> None:
     first.signal(signal.SIGINT)
     assert first.finish() == 0
     assert second.process.returncode == 2
-    assert "runs already in domain" in second.errors[0]
+    assert "is already running in domain" in second.errors[0]
 
 
 @pytest.mark.parametrize(

@@ -259,7 +259,7 @@ def test_a_port_of_another_program_is_left_alone_until_it_is_free(
     other = os.open(bench.path, os.O_RDWR | os.O_NOCTTY)
     fcntl.flock(other, fcntl.LOCK_EX)
     with Head(peer, ros_domain, bench.path) as head:
-        head.wait_says("another program has it")
+        head.wait_says("another program is using it")
         assert head.turn(10, 0) == 0
         assert bench.taken == b""
         os.close(other)

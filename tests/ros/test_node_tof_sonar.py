@@ -171,7 +171,7 @@ def test_a_port_of_another_program_is_left_alone_until_it_is_free(
     other = os.open(port.path, os.O_RDWR | os.O_NOCTTY)
     fcntl.flock(other, fcntl.LOCK_EX)
     with sonar(module_domain, port.path) as node:
-        node.wait_for_words("another program has it")
+        node.wait_for_words("another program is using it")
         assert "Connected" not in node.output
         os.close(other)
         node.wait_for_words("Connected")
@@ -180,7 +180,7 @@ def test_a_port_of_another_program_is_left_alone_until_it_is_free(
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("missing", "no such port"), ("file", "no serial port"), ("loo://", "Cannot open loo://")],
+    [("missing", "no such port"), ("file", "not a serial port"), ("loo://", "Cannot open loo://")],
 )
 def test_what_is_no_port_is_told_and_the_node_lives_on(
     module_domain: int, tmp_path: Path, name: str, words: str

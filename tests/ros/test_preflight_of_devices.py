@@ -66,7 +66,7 @@ def test_devices_in_each_others_place(folder: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("DECK_TOF_FRONT_PORT", str(folder / "pico"))
     code, found = preflight()
     assert code == 2
-    assert "a ToF sonar talks here, not the Pico" in found["pico"]
+    assert "a ToF sonar is talking here, not the Pico" in found["pico"]
     assert found["tof_front"].startswith("FAIL")
     assert "TF-Luna" in found["tof_front"], "a Pico that is not greeted may be quiet"
     assert found["tof_rear"].startswith("ok")
@@ -96,4 +96,4 @@ def test_a_noisy_pico_is_told_as_that(peer: Peer) -> None:
     finally:
         set_parameter(peer, "mock_robot", "pico", "fine")
     assert not found["pico"].startswith("ok")
-    assert "some lines come garbled" in found["pico"]
+    assert "some lines arrive garbled" in found["pico"]

@@ -145,4 +145,4 @@ def test_from_the_middle_and_again(ros_domain: int, tmp_path: Path) -> None:
 def test_what_is_no_bag_is_told_with_exit_code_two(tmp_path: Path) -> None:
     run = DeckProcess("replay", str(tmp_path), "--publish")
     assert run.finish() == 2
-    assert "is no bag" in run.errors[0]
+    assert "is not a bag" in run.errors[0]

@@ -121,7 +121,7 @@ def test_up_again_after_the_directory_went_starts_no_second_robot(
         spoil(tmp_path / "run")
         again = deck("up", str(path))
         assert again.process.returncode == 1
-        assert f"one runs already in domain {ros_domain}" in again.errors[0]
+        assert f"one is already running in domain {ros_domain}" in again.errors[0]
     shutil.rmtree(tmp_path / "run")
     down = deck("down")
     assert (down.process.returncode, down.lines) == (0, ["one stopped, 1 node"])

@@ -160,7 +160,7 @@ async def test_hostile_text_is_text(start: Launch) -> None:
     assert lines[0].text == "␛]52;c;aGk=␇ ␛[2Jred [bold]x[/] a␀b �"
     assert lines[1].text == "␛]0;never finished"
     missing = 1_000_000 - MAX_LINE_BYTES
-    assert lines[2].text.endswith(f"x … [{missing} bytes more, see the log file]")
+    assert lines[2].text.endswith(f"x … [{missing} more bytes, see the log file]")
     assert (lines[3].severity, lines[3].logger) == (Severity.ERROR, "глаз")
     assert (lines[3].text, lines[3].time_s) == ("нет камеры", 1_700_000_000.5)
     assert lines[4].text == "half �"

@@ -205,7 +205,7 @@ async def test_a_crash_loop_is_given_up(start: Launch) -> None:
         await client.start("node")
     status = await until_state(client, "node", NodeState.FAILED)
     assert status.restarts == 4
-    assert status.detail.startswith("given up after 5 ends in ")
+    assert status.detail.startswith("given up: it ended 5 times in ")
     assert status.detail.endswith("exit code 1: no port")
 
 
@@ -247,7 +247,7 @@ async def test_a_deaf_grandchild_is_ended_with_its_node(start: Launch) -> None:
             lambda name=name, pid=pid: str(pid) in client.nodes[name].detail, "who holds it up"
         )
         assert client.nodes[name].state is NodeState.STOPPING
-        assert "SIGINT sent, waits for" in client.nodes[name].detail
+        assert "SIGINT sent, waiting for" in client.nodes[name].detail
         assert alive(pid)
     await client.stop(now=True)
     await stopping
@@ -351,7 +351,7 @@ async def test_a_suspended_node_can_be_stopped(start: Launch) -> None:
 
 
 async def test_what_a_node_costs_is_that_of_its_whole_group(start: Launch) -> None:
-    """And not that of a wrapper which only waits for the work to be done."""
+    """And not that of a wrapper which only waiting for the work to be done."""
     work = "x = bytearray(30_000_000)\nwhile True: pass"
     wrapper = (
         f"import subprocess, sys; subprocess.run([sys.executable, '-I', '-S', '-c', {work!r}])"

@@ -217,7 +217,7 @@ async def test_a_node_that_is_late_says_so_and_becomes_ready_all_the_same(
     )
     status = await until_state(client, "late", NodeState.RUNNING)
     assert status.detail == "not ready within 0.5 s: nobody publishes /said"
-    assert client.nodes["eager"].detail == "waits for late (not ready)"
+    assert client.nodes["eager"].detail == "waiting for late (not ready)"
     await until_state(client, "late", NodeState.READY)
     await running_pid(client, "eager")
 
@@ -244,14 +244,14 @@ async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(
     status = await until_state(client, "wrong", NodeState.RUNNING)
     assert status.detail == (
         "not ready within 3 s: /said is published as std_msgs/msg/String,"
-        " awaited is std_msgs/msg/Float32"
+        " expected std_msgs/msg/Float32"
     )
     await until_state(client, "seldom", NodeState.RUNNING)
     await until(
         lambda: re.search(r"/ticks comes at [1-9]\S* Hz", client.nodes["seldom"].detail),
         "the rate that is measured",
     )
-    assert client.nodes["seldom"].detail.endswith("awaited are 500 Hz")
+    assert client.nodes["seldom"].detail.endswith("expected 500 Hz")
 
 
 async def test_a_node_that_never_gets_ready_leaves_others_waiting_till_started_by_hand(

@@ -77,7 +77,7 @@ def test_a_form_says_what_may_be_filled_in() -> None:
 @pytest.mark.parametrize(
     ("type_name", "text", "line", "column", "words"),
     [
-        ("std_msgs/msg/String", "\n\ndata: on", 3, 7, "got True: put it into quotes"),
+        ("std_msgs/msg/String", "\n\ndata: on", 3, 7, "got True: put it in quotes"),
         ("std_msgs/msg/Header", "stamp:\n  sec: a", 2, 8, "stamp.sec: expected a whole number"),
         ("std_msgs/msg/Header", "stamp:\n  sce: 1", 2, 3, "did you mean sec?"),
         ("geometry_msgs/msg/Polygon", "points:\n- x: 1\n- {y: b}", 3, 7, "points[1].y: expected"),

@@ -259,7 +259,7 @@ async def test_a_goal_is_forgotten(action: Room) -> None:
     await action.wait_for("#1")
     await action.press("escape", "d")
     assert action.graph.forgotten_goals == [1]
-    await action.wait_for("no goal was sent yet")
+    await action.wait_for("no goal has been sent yet")
 
 
 async def test_a_goal_that_is_refused_says_why(action: Room) -> None:

@@ -46,19 +46,19 @@ def heard(*samples: tuple[Sample, float]) -> Joints:
             WheelsPanel,
             OTHER,
             "/wheel_commands: left_wheel, right_wheel have come",
-            "awaited: rear_left_wheel_joint, rear_right_wheel_joint",
+            "expected: rear_left_wheel_joint, rear_right_wheel_joint",
         ),
         (
             HeadPanel,
             joints("/head_state", yaw=(0.1, 0.0), pitch=(0.2, 0.0)),
             "/head_state: yaw, pitch have come",
-            "awaited: pan_joint, tilt_joint",
+            "expected: pan_joint, tilt_joint",
         ),
         (
             HeadPanel,
             joints("/head_state"),
             "/head_state: no joint names have come",
-            "awaited: pan_joint, tilt_joint",
+            "expected: pan_joint, tilt_joint",
         ),
     ],
 )
@@ -91,7 +91,7 @@ async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
         panel = app.screen.query_one("#front", Sonar)
         told = " ".join(" ".join(rows(panel)).split())
         assert "messages come, but of another type" in told
-        assert f"{topic}: std_msgs/String comes; awaited: std_msgs/Float32" in told
+        assert f"{topic}: std_msgs/String comes; expected: std_msgs/Float32" in told
         # A look at which nothing has come changes nothing.
         pad.graph.show(lesson_update(samples={}))
         await pilot.pause()
@@ -106,7 +106,7 @@ async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
 def test_a_joint_state_of_another_type_is_told() -> None:
     told = heard((sample(TOPIC, "std_msgs/msg/String", {"data": "x"}), 5.0)).instead
     assert told is not None
-    assert told.detail == f"{TOPIC}: std_msgs/String comes; awaited: sensor_msgs/JointState"
+    assert told.detail == f"{TOPIC}: std_msgs/String comes; expected: sensor_msgs/JointState"
 
 
 def test_values_give_way_once_nothing_but_other_joints_comes() -> None:

@@ -85,7 +85,7 @@ def test_deck_with_a_map_without_a_room_looks(look: Look, snap_compare: SnapComp
         (Trouble.NO_PUBLISHER, NOBODY, ("nobody publishes this topic", "/odom", "Start chassis")),
         (Trouble.QUIET, {"age_s": None}, ("nothing has come yet", "/odom", "Its log says")),
         (Trouble.UNKNOWN_TYPE, {"detail": "my/Odom"}, ("is not installed", "/odom: my/Odom")),
-        (Trouble.QOS_MISMATCH, {"detail": "best effort"}, ("QoS does not fit", "best effort")),
+        (Trouble.QOS_MISMATCH, {"detail": "best effort"}, ("QoS is incompatible", "best effort")),
     ],
 )
 async def test_without_odometry_it_says_why_and_what_to_do(

@@ -134,7 +134,7 @@ def test_a_parser_that_does_not_report_is_no_silence() -> None:
     story = begun()
     story.see({"/drive": [at(0.02, drive("/drive", 0.2, -0.3))]})
     assert told(story, 4.0)[-1] == (
-        "·", "/llm_result", "no word: this parser does not report",
+        "·", "/llm_result", "no reply: this parser does not report",
     )  # fmt: skip
 
 

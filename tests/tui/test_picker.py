@@ -144,7 +144,7 @@ async def test_a_broken_profile_says_what_is_wrong_and_is_not_started() -> None:
 async def test_what_runs_in_the_background_is_attached_to() -> None:
     pad = RecordedPad(sessions=[RUNNING])
     async with opened(pad, order=PICK) as (app, pilot):
-        assert "Runs already" in about(app.screen)
+        assert "Already running" in about(app.screen)
         assert "started by ann on pts/2 from 10.0.0.7 (pid 4000) at 0" in about(app.screen)
         await pilot.press("enter")
         await pilot.pause()

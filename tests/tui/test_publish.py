@@ -243,7 +243,7 @@ async def test_what_is_no_name_of_a_topic_is_refused(desk: Desk) -> None:
         desk.dialog.target.field.value = name
         desk.dialog.rate.tell(lambda: "", "")
         await desk.pilot.press("ctrl+s")
-        await desk.says("No name of a topic")
+        await desk.says("Not a topic name")
         assert desk.graph.published == []
 
 
@@ -276,7 +276,7 @@ async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Des
     await desk.pilot.pause()
     assert desk.graph.stopped_all == 1
     told = [notice.message for notice in desk.app._notifications]
-    assert told == ["Deck publishes no more to /ai_command: the emergency stop has ended it."]
+    assert told == ["Deck has stopped publishing to /ai_command: the emergency stop ended it."]
     # Nothing was left to be ended.
     await desk.pilot.press("space")
     assert len(desk.app._notifications) == 1

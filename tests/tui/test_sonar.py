@@ -111,9 +111,9 @@ async def test_silence_is_told_with_its_length_and_old_values_are_greyed() -> No
     [
         (None, "waiting for the first message"),
         (Trouble.NO_PUBLISHER, "nobody publishes this topic"),
-        (Trouble.QOS_MISMATCH, "QoS does not fit"),
+        (Trouble.QOS_MISMATCH, "QoS is incompatible"),
         (Trouble.UNKNOWN_TYPE, "message type is not installed"),
-        (Trouble.QUIET, "publisher is there, nothing has come yet"),
+        (Trouble.QUIET, "there is a publisher, but nothing has come yet"),
     ],
 )
 async def test_an_empty_gauge_says_why(trouble: Trouble | None, words: str) -> None:

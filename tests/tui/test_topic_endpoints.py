@@ -50,7 +50,7 @@ def test_every_policy_is_shown() -> None:
     assert "✓ every subscriber hears every publisher" in shown
     assert ("/lidar best_effort volatile keep_last 5 100 ms 500 ms manual_by_topic 2.0 s") in shown
     assert "/brain best_effort volatile – none none automatic" in shown
-    assert "“–” is not told" in shown
+    assert "“–” is unknown" in shown
 
 
 def test_what_has_no_column_stands_below() -> None:

@@ -257,7 +257,7 @@ async def test_a_qos_mismatch_names_who_and_what_to_change(room: Room) -> None:
         with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, facts=facts))
     )
     words = " ".join(room.echo().split())
-    assert words.startswith("QoS does not fit")
+    assert words.startswith("QoS is incompatible")
     assert "/brain does not hear /lidar: reliability reliable is asked for" in words
     assert "Let /lidar offer reliable, or let /brain ask for best_effort." in words
 

@@ -52,7 +52,7 @@ def test_a_folder_without_metadata_is_opened_by_its_file(tmp_path: Path) -> None
 
 def test_what_is_not_there_is_no_bag(tmp_path: Path) -> None:
     said = said_of(tmp_path / "nothing")
-    assert "nothing is no bag: there is no such file or folder" in said
+    assert "nothing is not a bag: there is no such file or folder" in said
     assert "metadata.yaml" in said
 
 
@@ -67,13 +67,13 @@ def test_what_is_neither_file_nor_folder_is_no_bag_and_is_not_waited_for(tmp_pat
     pipe = tmp_path / "pipe.mcap"
     os.mkfifo(pipe)
     for path in (pipe, Path("/dev/null"), Path("/dev/zero")):
-        assert f"{path} is no bag: it is neither a file nor a folder" in said_of(path)
+        assert f"{path} is not a bag: it is neither a file nor a folder" in said_of(path)
 
 
 def test_a_link_to_itself_and_an_endless_name_are_told(tmp_path: Path) -> None:
     link = tmp_path / "l.mcap"
     link.symlink_to(link)
-    assert "l.mcap is no bag: there is no such file or folder" in said_of(link)
+    assert "l.mcap is not a bag: there is no such file or folder" in said_of(link)
     assert "cannot be read: File name too long" in said_of(tmp_path / ("n" * 300))
 
 

@@ -49,19 +49,22 @@ def test_the_command_word_is_found(words: list[str], command: str, rest: list[st
     [
         (["--bogus"], "unrecognized arguments: --bogus"),
         (["run"], "the following arguments are required: PROFILE"),
-        (["run", "9", "--for", "soon"], "'soon' is no number of seconds"),
-        (["run", "9", "--for", "nan"], "'nan' is no number of seconds"),
-        (["run", "9", "--for", "-1"], "'-1' is no number of seconds"),
-        (["run", "9", "--domain", "233"], "'233' is no ROS domain; expected a whole number"),
-        (["run", "9", "--domain", "x"], "'x' is no ROS domain"),
+        (["run", "9", "--for", "soon"], "'soon' is not a number of seconds"),
+        (["run", "9", "--for", "nan"], "'nan' is not a number of seconds"),
+        (["run", "9", "--for", "-1"], "'-1' is not a number of seconds"),
+        (["run", "9", "--domain", "233"], "'233' is not a ROS domain; expected a whole number"),
+        (["run", "9", "--domain", "x"], "'x' is not a ROS domain"),
         (["9", "--hardware", "rael"], "invalid choice: 'rael'"),
         (["list", "--lang", "fr"], "invalid choice: 'fr'"),
-        (["logs", "x", "-n", "many"], "'many' is no number of lines"),
-        (["logs", "x", "-n", "-3"], "'-3' is no number of lines"),
-        (["--bandwidth", "fast"], "'fast' is no bandwidth; expected kB/s from 1 on, as 40, or off"),
-        (["replay", "x", "--bandwidth", "0.5"], "'0.5' is no bandwidth"),
-        (["attach", "--bandwidth", "nan"], "'nan' is no bandwidth"),
-        (["watch", "--bandwidth=-40"], "'-40' is no bandwidth"),
+        (["logs", "x", "-n", "many"], "'many' is not a number of lines"),
+        (["logs", "x", "-n", "-3"], "'-3' is not a number of lines"),
+        (
+            ["--bandwidth", "fast"],
+            "'fast' is not a bandwidth; expected kB/s from 1 on, as 40, or off",
+        ),
+        (["replay", "x", "--bandwidth", "0.5"], "'0.5' is not a bandwidth"),
+        (["attach", "--bandwidth", "nan"], "'nan' is not a bandwidth"),
+        (["watch", "--bandwidth=-40"], "'-40' is not a bandwidth"),
         (["run", "9", "--bandwidth", "40"], "unrecognized arguments: --bandwidth 40"),
         (["record", "-o", ""], "the name of a folder is missing"),
         (["down", "a", "b"], "unrecognized arguments: b"),
@@ -136,7 +139,7 @@ def test_a_mistyped_profile_is_still_told_with_profiles(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["09-brian"]) == 2
-    assert "near it: 09-brain" in capsys.readouterr().err
+    assert "did you mean 09-brain" in capsys.readouterr().err
 
 
 def test_without_a_terminal_a_profile_must_be_named(capsys: pytest.CaptureFixture[str]) -> None:

@@ -106,7 +106,7 @@ def test_a_profile_that_is_not_there_is_told(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([command, "09-brian"]) == 2
-    assert capsys.readouterr().err == "no profile '09-brian'; near it: 09-brain\n"
+    assert capsys.readouterr().err == "no profile '09-brian'; did you mean 09-brain?\n"
 
 
 def test_a_bad_profile_starts_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -129,7 +129,7 @@ def test_when_nothing_runs_that_is_told(
     assert main(words) == code
     output = capsys.readouterr()
     assert output.out == ""
-    assert "nothing runs" in output.err or "does not run" in output.err
+    assert "nothing runs" in output.err or "is not running" in output.err
 
 
 def test_ps_for_programs_when_nothing_runs(capsys: pytest.CaptureFixture[str]) -> None:

@@ -67,8 +67,8 @@ def test_an_expression_holds_or_does_not(text: str, fits: bool) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("", "column 1: it cannot be understood from here on"),
-        ("m.speed >", "column 10: it cannot be understood from here on"),
+        ("", "column 1: cannot be parsed from here on"),
+        ("m.speed >", "column 10: cannot be parsed from here on"),
         ("m.speed = 1", "write == to compare"),
         ("m.speed > 0 and speed < 2", "column 17: speed: the message is called m: write m.speed"),
         ("'д' in m.text or x", "column 18: x: the message is called m: write m.x"),
@@ -79,7 +79,7 @@ def test_an_expression_holds_or_does_not(text: str, fits: bool) -> None:
         ("1" * 501, "column 501: 500 characters at most"),
         ("(" * 300, "column"),
         ("-" * 400 + "1", "column"),
-        ("not " * 41 + "1", "too many brackets within brackets"),
+        ("not " * 41 + "1", "too many nested brackets"),
     ],
 )
 def test_what_is_no_expression_is_told_with_its_place(text: str, told: str) -> None:
@@ -142,14 +142,14 @@ def test_nothing_else_of_python_is_understood(text: str) -> None:
         ("m.text < 5", "a text and a number cannot be compared so"),
         ("m.ranges", "column 1: m.ranges: it is a list, which is neither true nor false"),
         ("m.header == 1", "compare one of the fields of a message"),
-        ("m.text + 1 > 2", "column 1: m.text: a text is no number"),
+        ("m.text + 1 > 2", "column 1: m.text: a text is not a number"),
         ("m.count / (m.count - 3)", "it divides by zero"),
         ("min(m.empty) > 0", "column 5: m.empty: it is empty"),
         ("max(m.names) > 0", "column 5: m.names: max takes a list of numbers"),
         ("len(m.speed) > 0", "column 5: m.speed: a number has no elements"),
         ("5 in m.speed", "a number cannot be in a number"),
         ("5 in m.text", "a number cannot be in a text"),
-        ("1.0 * " + "9" * 400 + " > 0", "the number is too great"),
+        ("1.0 * " + "9" * 400 + " > 0", "the number is too large"),
     ],
 )
 def test_what_a_message_cannot_answer_is_told_with_its_place(text: str, told: str) -> None:

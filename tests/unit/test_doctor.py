@@ -223,7 +223,7 @@ def test_shared_memory() -> None:
     assert "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -delete" in mend
     half = judge_shared_memory(SharedMemoryFacts(unfinished=("/dev/shm/fastrtps_port7001",)))
     assert bad(half) == [("shm.unfinished", "warn")]
-    assert "/dev/shm/fastrtps_port7001: half made" in text(half, "shm.unfinished")
+    assert "/dev/shm/fastrtps_port7001: incomplete" in text(half, "shm.unfinished")
     foreign = judge_shared_memory(SharedMemoryFacts(foreign=("/dev/shm/fastrtps_port7001",)))
     assert bad(foreign) == [("shm.foreign", "fail")]
     assert foreign[-1].mend == "sudo rm /dev/shm/fastrtps_port7001"

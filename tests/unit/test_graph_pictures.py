@@ -175,8 +175,8 @@ JPEG_BYTES = bytes(compressed(NOISE)["data"])  # type: ignore[arg-type]
         ({"format": "png", "data": bomb(0, 5)}, "0 x 5 is not decoded"),
         ({"format": "png", "data": bomb(8, 8)}, "PNG data are damaged"),
         ({"format": "png", "data": b"\x89PNG\r\n\x1a\n"}, "PNG data are cut short"),
-        ({"format": 5, "data": b""}, "no sensor_msgs/CompressedImage"),
-        ({"format": "jpeg"}, "no sensor_msgs/CompressedImage"),
+        ({"format": 5, "data": b""}, "not a sensor_msgs/CompressedImage"),
+        ({"format": "jpeg"}, "not a sensor_msgs/CompressedImage"),
     ],
 )
 def test_what_cannot_be_decoded_is_named(value: dict[str, Value], words: str) -> None:
@@ -192,7 +192,7 @@ def test_too_many_bytes_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_without_opencv_a_word_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cv2", None)
-    with pytest.raises(ImageError, match="OpenCV is missing"):
+    with pytest.raises(ImageError, match="OpenCV, which decodes them, is missing"):
         read_picture(COMPRESSED, {"format": "jpeg", "data": JPEG_BYTES}, whole)
 
 

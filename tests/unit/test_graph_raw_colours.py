@@ -116,5 +116,5 @@ def test_short_data_are_refused_in_words(value: dict[str, Value], words: str) ->
 @pytest.mark.parametrize("encoding", ["uyvy", "bayer_rggb8"])
 def test_without_opencv_a_word_says_so(encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cv2", None)
-    with pytest.raises(ImageError, match="OpenCV is missing"):
+    with pytest.raises(ImageError, match="OpenCV, which decodes them, is missing"):
         to_rgb(image(encoding, 2, 2, bytes(8), 4))

@@ -49,9 +49,9 @@ OTHER = SerialPort("/dev/ttyUSB3", "", "10c4:ea60", "CP2102")
     ("number", "words", "mend"),
     [
         (errno.EACCES, "no permission", "usermod -aG"),
-        (errno.EAGAIN, "another program has it", "fuser -v"),
-        (errno.EBUSY, "another program has it", "fuser -v"),
-        (errno.ENOTTY, "no serial port", "DECK_PICO_PORT="),
+        (errno.EAGAIN, "another program is using it", "fuser -v"),
+        (errno.EBUSY, "another program is using it", "fuser -v"),
+        (errno.ENOTTY, "not a serial port", "DECK_PICO_PORT="),
         (errno.ENXIO, "there is no such port", "plug it in"),
         (errno.EIO, "cannot be opened", "dmesg"),
     ],
@@ -88,7 +88,7 @@ def test_what_is_no_serial_port(tmp_path: Path) -> None:
     (tmp_path / "pico").write_text("no device")
     answer = opened("pico", str(tmp_path / "pico"), 115_200, [])
     assert isinstance(answer, Answer)
-    assert answer.text == "it is no serial port"
+    assert answer.text == "it is not a serial port"
 
 
 def test_a_port_that_this_program_holds_is_taken(port: str) -> None:
@@ -96,7 +96,7 @@ def test_a_port_that_this_program_holds_is_taken(port: str) -> None:
     assert isinstance(line, Line)
     taken = opened("pico", port, 115_200, [])
     assert isinstance(taken, Answer)
-    assert "another program has it" in taken.text
+    assert "another program is using it" in taken.text
     line.close()
     again = opened("pico", port, 115_200, [])
     assert isinstance(again, Line)

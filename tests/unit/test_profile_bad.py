@@ -22,11 +22,11 @@ BAD = {
     ),
     "unknown key near nothing": (
         "nodes: {a: {exec: [x], ready: {zzz: 1, node: b}}}",
-        "1:32: nodes.a.ready.zzz: unknown key (known are topic, type, rate, service, node, within)",
+        "1:32: nodes.a.ready.zzz: unknown key (known: topic, type, rate, service, node, within)",
     ),
     "number where text belongs": (
         "nodes: {a: {run: 12}}",
-        "1:18: nodes.a.run: expected text, found 12 (put it between quotes)",
+        "1:18: nodes.a.run: expected text, found 12 (put it in quotes)",
     ),
     "text where a number belongs": (
         "domain: many\nnodes: {a: {exec: [x]}}",
@@ -43,7 +43,7 @@ BAD = {
         "nodes:\n  a: {exec: [x]}\n  b: {exec: [x], needs: a}",
         "3:25: nodes.b.needs: expected a list, found the text 'a' (write [a])",
     ),
-    "a command that is no list": (
+    "a command that is not a list": (
         "nodes: {a: {exec: ros2 run pkg exe}}",
         "1:19: nodes.a.exec: expected a list, found one text; write [ros2, run, pkg, exe]",
     ),
@@ -92,7 +92,7 @@ BAD = {
     ),
     "an address that is none": (
         "discovery: [robot;rm]\nnodes: {a: {exec: [x]}}",
-        "1:12: discovery: 'robot;rm' is no address; write it as 192.168.1.7 or robot.local",
+        "1:12: discovery: 'robot;rm' is not an address; write it as 192.168.1.7 or robot.local",
     ),
     "a need of nobody": (
         "nodes:\n  sonar: {exec: [x]}\n  b: {exec: [x], needs: [sonr]}",
@@ -104,14 +104,13 @@ BAD = {
             "  c: {exec: [x], needs: [a]}"
         ),
         (
-            "2:25: nodes.a.needs: nodes need each other in a cycle: a -> b -> c -> a (take"
-            " one of the"
-            " needs out)"
+            "2:25: nodes.a.needs: nodes need each other in a cycle: a -> b -> c -> a"
+            " (remove one of the needs)"
         ),
     ),
     "a need of oneself": (
         "nodes: {a: {exec: [x], needs: [a]}}",
-        "1:31: nodes.a.needs: nodes need each other in a cycle: a -> a (take one of the needs out)",
+        "1:31: nodes.a.needs: nodes need each other in a cycle: a -> a (remove one of the needs)",
     ),
     "a need of an optional node": (
         "nodes:\n  a: {exec: [x], optional: true}\n  b: {exec: [x], needs: [a]}",
@@ -132,7 +131,7 @@ BAD = {
     "a file name where a module belongs": (
         "nodes: {a: {run: nodes/hello.py}}",
         (
-            "1:18: nodes.a.run: 'nodes/hello.py' is no Python module; write it as nodes.hello,"
+            "1:18: nodes.a.run: 'nodes/hello.py' is not a Python module; write it as nodes.hello,"
             " and a file of your own as ./my_node.py"
         ),
     ),
@@ -151,28 +150,22 @@ BAD = {
     "a node's name that ROS refuses": (
         "nodes: {front-sonar: {exec: [x]}}",
         (
-            "1:9: nodes.front-sonar: 'front-sonar' is no name of a ROS node (letters,"
+            "1:9: nodes.front-sonar: 'front-sonar' is not a valid name for a ROS node (letters,"
             " digits and _, not"
             " beginning with a digit)"
         ),
     ),
     "a duplicate node": (
         "nodes:\n  a: {exec: [x]}\n  b: {exec: [x]}\n  a: {exec: [y]}",
-        (
-            "4:3: nodes.a: the key stands here for the second time; first on line 2 (join them or"
-            " rename one)"
-        ),
+        ("4:3: nodes.a: this key appears a second time; first on line 2 (join them or rename one)"),
     ),
     "a duplicate key": (
         "lesson: 1\nlesson: 2\nnodes: {a: {exec: [x]}}",
-        (
-            "2:1: lesson: the key stands here for the second time; first on line 1 (join them or"
-            " rename one)"
-        ),
+        ("2:1: lesson: this key appears a second time; first on line 1 (join them or rename one)"),
     ),
     "a tab": (
         "nodes:\n\ta: {exec: [x]}",
-        "2:1: a tab indents this line (YAML wants blanks: replace the tab)",
+        "2:1: this line is indented with a tab (use spaces, not tabs)",
     ),
     "an unclosed bracket": ("nodes: {a: {exec: [x]}", "not YAML"),
     "an empty file": ("", "1:1: is empty (a profile has at least `nodes:`)"),
@@ -183,11 +176,11 @@ BAD = {
         "nodes: {a: {exec: [x]}}\n---\nnodes: {}",
         "2:1: a second document begins; one file, one profile",
     ),
-    "no nodes": ("lesson: 1", "1:1: nodes: there is no node to start"),
+    "no nodes": ("lesson: 1", "1:1: nodes: there are no nodes to start"),
     "an anchor in itself": ("nodes: &n {a: *n}", "1:15: *n contains itself"),
     "an alias of nothing": (
         "nodes: {a: *n}",
-        "1:12: *n stands for nothing: no &n before it",
+        "1:12: *n refers to nothing: there is no &n before it",
     ),
     "a tag that would run code": (
         "nodes: !!python/object/apply:os.system [ls]",
@@ -204,8 +197,8 @@ BAD = {
     "a condition that is none": (
         "nodes: {a: {exec: [x], when: hardware = mock}}",
         (
-            "1:30: nodes.a.when: 'hardware = mock' is no condition (write for example: hardware =="
-            ' "mock")'
+            "1:30: nodes.a.when: 'hardware = mock' is not a condition"
+            ' (write for example: hardware == "mock")'
         ),
     ),
     "a condition about something unknown": (
@@ -245,14 +238,17 @@ BAD = {
     "a parameter with a name that ROS refuses": (
         "nodes: {a: {exec: [x], params: {max-speed: 1}}}",
         (
-            "1:33: nodes.a.params.max-speed: 'max-speed' is no name of a ROS parameter"
+            "1:33: nodes.a.params.max-speed: 'max-speed' is not a valid name for a ROS parameter"
             " (letters, digits"
             " and _, joined by dots)"
         ),
     ),
     "a topic name that ROS refuses": (
         "nodes: {a: {exec: [x], remap: {/drive: drive safe}}}",
-        "1:40: nodes.a.remap./drive: 'drive safe' is no ROS name; write it as /sensor/sonar_front",
+        (
+            "1:40: nodes.a.remap./drive: 'drive safe' is not a ROS name;"
+            " write it as /sensor/sonar_front"
+        ),
     ),
     "two conditions of readiness": (
         "nodes: {a: {exec: [x], ready: {node: a, topic: b}}}",
@@ -265,14 +261,14 @@ BAD = {
     "a type that is none": (
         "nodes: {a: {exec: [x], ready: {topic: b, type: Float32}}}",
         (
-            "1:48: nodes.a.ready.type: 'Float32' is no message type; write it as"
+            "1:48: nodes.a.ready.type: 'Float32' is not a message type; write it as"
             " std_msgs/msg/Float32"
         ),
     ),
     "a rate without a topic": (
         "nodes: {a: {exec: [x], ready: {service: b, rate: 5}}}",
         (
-            "1:44: nodes.a.ready.rate: `rate` is of a topic, and there is none here (write"
+            "1:44: nodes.a.ready.rate: `rate` belongs to a topic, and none is given here (write"
             " ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1})"
         ),
     ),
@@ -341,7 +337,7 @@ def test_a_yaml_bomb_is_refused_before_it_grows(tmp_path: Path) -> None:
     lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 12)]
     messages = told(tmp_path, "\n".join(lines))
     assert len(messages) == 1
-    assert "more than 20000 values, aliases counted" in messages[0]
+    assert "more than 20000 values, counting aliases" in messages[0]
 
 
 def test_endless_nesting_is_refused(tmp_path: Path) -> None:

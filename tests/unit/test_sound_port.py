@@ -140,7 +140,10 @@ def test_a_device_of_another_rate_is_resampled(
         (OPENED + "os._exit(1)", "Lost the microphone stub: PortAudio has died"),
         (OPENED + "time.sleep(60)", "Lost the microphone stub: PortAudio does not answer"),
         ("time.sleep(60)", "No microphone: PortAudio does not answer"),
-        ("tell(problem='busy')", "another program has it; close that one (fuser -v /dev/snd/*)"),
+        (
+            "tell(problem='busy')",
+            "another program is using it; close that one (fuser",
+        ),
         ("tell(problem='missing', detail='')", "plug it in (arecord -l and aplay -l list them)"),
         ("tell(problem='package')", "pip install sounddevice"),
         ("tell(problem='other', detail='{odd} \\x1b[31m')", "{odd} ␛[31m"),

@@ -162,12 +162,12 @@ async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(
     awaited = Condition("topic", "/sonar", "std_msgs/msg/Float32", 5)
     node = await started(session, replace(PLAN, ready=awaited, within_s=7))
     session.tell(Seen(("std_msgs/msg/String",)))
-    wrong = "/sonar is published as std_msgs/msg/String, awaited is std_msgs/msg/Float32"
+    wrong = "/sonar is published as std_msgs/msg/String, expected std_msgs/msg/Float32"
     assert (node.state, node.detail) == (NodeState.STARTING, wrong)
     await session.clock.advance(7)
     assert (node.state, node.detail) == (NodeState.RUNNING, f"not ready within 7 s: {wrong}")
     session.tell(Seen(("std_msgs/msg/Float32",), 1.25))
-    assert node.detail == "not ready within 7 s: /sonar comes at 1.2 Hz, awaited are 5 Hz"
+    assert node.detail == "not ready within 7 s: /sonar comes at 1.2 Hz, expected 5 Hz"
     assert not node.serves
 
 
@@ -186,9 +186,9 @@ async def test_where_readiness_cannot_be_seen_nobody_waits_for_it(session: FakeS
 
 
 async def test_a_node_waits_for_those_it_needs(session: FakeSession) -> None:
-    session.absent = "waits for camera"
+    session.absent = "waiting for camera"
     node = await started(session)
-    assert (node.state, node.detail) == (NodeState.WAITING, "waits for camera")
+    assert (node.state, node.detail) == (NodeState.WAITING, "waiting for camera")
     session.absent = ""
     node.needs_changed()
     await settle()
@@ -196,7 +196,7 @@ async def test_a_node_waits_for_those_it_needs(session: FakeSession) -> None:
 
 
 async def test_a_node_that_waits_can_be_started_by_hand(session: FakeSession) -> None:
-    session.absent = "waits for camera"
+    session.absent = "waiting for camera"
     node = await started(session)
     node.start()
     await settle()
@@ -204,7 +204,7 @@ async def test_a_node_that_waits_can_be_started_by_hand(session: FakeSession) ->
 
 
 async def test_a_node_that_waits_can_be_stopped(session: FakeSession) -> None:
-    session.absent = "waits for camera"
+    session.absent = "waiting for camera"
     node = await started(session)
     await node.stop()
     session.absent = ""
@@ -242,7 +242,7 @@ async def test_a_crash_loop_ends_with_a_word_why(session: FakeSession) -> None:
         await session.clock.advance(delay)
     await crash(session)
     assert node.state is NodeState.FAILED
-    assert node.detail == "given up after 5 ends in 15 s: exit code 1: no such port"
+    assert node.detail == "given up: it ended 5 times in 15 s: exit code 1: no such port"
     await session.clock.advance(300)
     assert len(session.started) == 5
 
@@ -345,7 +345,7 @@ async def test_a_stop_has_three_stages_of_five_seconds(session: FakeSession) -> 
     stopping = asyncio.ensure_future(node.stop())
     await session.clock.advance(4.9)
     assert signals_of(session.process) == [signal.SIGINT]
-    assert node.detail == "SIGINT sent, waits for 100 (fake)"
+    assert node.detail == "SIGINT sent, waiting for 100 (fake)"
     await session.clock.advance(0.2)
     assert signals_of(session.process) == [signal.SIGINT, signal.SIGTERM]
     await session.clock.advance(5)
@@ -372,7 +372,7 @@ async def test_a_stop_is_not_over_when_only_the_leader_has_ended(session: FakeSe
     await session.clock.advance(3)
     assert (node.state, node.detail) == (
         NodeState.STOPPING,
-        "SIGINT sent, waits for 101 (fake)",
+        "SIGINT sent, waiting for 101 (fake)",
     )
     await session.clock.advance(2.3)
     await stopping
@@ -385,7 +385,7 @@ async def test_what_a_crashed_node_leaves_is_stopped_before_it_returns(
     session.grandchild_ends_by = {signal.SIGTERM}
     node = await started(session)
     await crash(session)
-    assert (node.state, node.detail) == (NodeState.STOPPING, "it ended, and left 101 (fake)")
+    assert (node.state, node.detail) == (NodeState.STOPPING, "it ended and left 101 (fake) running")
     await session.clock.advance(4.9)
     assert (node.state, len(session.started)) == (NodeState.STOPPING, 1)
     await session.clock.advance(0.3)

@@ -262,7 +262,7 @@ class Redraw(AppAction):
     id = "app.redraw"
     key = "ctrl+l"
     title = N_("Redraw")
-    tooltip = N_("Draw everything anew, if something else has written to the terminal.")
+    tooltip = N_("Redraw everything, if something else has written to the terminal.")
     priority = True
 
     @classmethod

@@ -69,7 +69,7 @@ class Templates(ComposerAction):
     key = "ctrl+t"
     title = N_("Templates")
     means = "begin with what is there"
-    tooltip = N_("Begin with an example: right ones and wrong ones.")
+    tooltip = N_("Start from an example, valid or invalid.")
     footer = True
     from_elsewhere = True
 
@@ -85,7 +85,7 @@ class Older(ComposerAction):
     id = "composer.older"
     key = "alt+up,ctrl+up"
     title = N_("Older")
-    tooltip = N_("Take out what was sent before.")
+    tooltip = N_("Bring back what was sent before.")
     footer = True
 
     @classmethod

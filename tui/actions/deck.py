@@ -72,7 +72,7 @@ class StopNode(_AskNode):
     key = "x,ч"
     title = N_("Stop")
     means = "stop"
-    tooltip = N_("Stop the chosen node; pressed again, at once.")
+    tooltip = N_("Stop the chosen node; press again to force it.")
     footer = True
     asked = "stop"
 
@@ -120,7 +120,7 @@ class StopAll(_AskAll):
     id = "nodes.stop"
     key = "X,Ч"
     title = N_("Stop all")
-    tooltip = N_("Stop every node, dependants first; pressed again, at once.")
+    tooltip = N_("Stop every node, dependants first; press again to force it.")
     asked = "stop"
 
 
@@ -173,7 +173,7 @@ class Severity(DeckAction):
     key = "u,г"
     title = N_("Severity")
     means = "how much of the log"
-    tooltip = N_("Leave out the least severe lines that are shown; after FATAL comes all.")
+    tooltip = N_("Hide the least severe lines that are shown; after FATAL all are shown again.")
     from_elsewhere = True
 
     @classmethod

@@ -26,7 +26,7 @@ class Pause(lines.Pause["DevicesScreen"], DevicesAction):
     """Stand still, or follow."""
 
     id = "devices.pause"
-    tooltip = N_("Stand still while frames come in, or follow the newest again.")
+    tooltip = N_("Pause while frames come in, or follow the newest again.")
 
 
 class OneWay(DevicesAction):
@@ -116,7 +116,7 @@ class Search(lines.Search["DevicesScreen"], DevicesAction):
 
     id = "devices.search"
     means = "find"
-    tooltip = N_("Find text in the frames while it is written; Escape ends it.")
+    tooltip = N_("Find text in the frames as you type; Escape ends it.")
 
 
 class FindNext(lines.FindNext["DevicesScreen"], DevicesAction):
@@ -124,7 +124,7 @@ class FindNext(lines.FindNext["DevicesScreen"], DevicesAction):
 
     id = "devices.next"
     means = "next"
-    tooltip = N_("Go to the next frame that was found.")
+    tooltip = N_("Go to the next frame found.")
 
 
 class FindPrevious(lines.FindPrevious["DevicesScreen"], DevicesAction):
@@ -132,7 +132,7 @@ class FindPrevious(lines.FindPrevious["DevicesScreen"], DevicesAction):
 
     id = "devices.previous"
     means = "previous"
-    tooltip = N_("Go to the previous frame that was found.")
+    tooltip = N_("Go to the previous frame found.")
 
 
 class Copy(lines.Copy["DevicesScreen"], DevicesAction):

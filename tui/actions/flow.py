@@ -75,7 +75,7 @@ class Pause(FlowAction):
     id = "flow.pause"
     key = "p,з"
     title = N_("Pause")
-    tooltip = N_("Hold the timeline still, or show what has come since.")
+    tooltip = N_("Freeze the timeline, or show what has come since.")
     footer = True
 
     @classmethod

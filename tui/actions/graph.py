@@ -185,7 +185,7 @@ class Cancel(GraphAction):
     key = "f12,x,ч"
     title = N_("Cancel")
     means = "stop"
-    tooltip = N_("Wait no longer for the call, or cancel the chosen goal; asks first for others'.")
+    tooltip = N_("Stop waiting for the call, or cancel the chosen goal; asks first for others'.")
     footer = True
     priority = True
 

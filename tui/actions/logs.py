@@ -23,7 +23,7 @@ class Pause(lines.Pause["LogsScreen"]):
     """Stand still, or follow."""
 
     id = "logs.follow"
-    tooltip = N_("Stand still while lines come in, or follow the newest again.")
+    tooltip = N_("Pause while lines come in, or follow the newest again.")
 
 
 class Search(lines.Search["LogsScreen"]):
@@ -31,7 +31,7 @@ class Search(lines.Search["LogsScreen"]):
 
     id = "logs.search"
     means = "find"
-    tooltip = N_("Find text in the lines while it is written; Escape ends it.")
+    tooltip = N_("Find text in the lines as you type; Escape ends it.")
     footer = True
 
 
@@ -40,7 +40,7 @@ class FindNext(lines.FindNext["LogsScreen"]):
 
     id = "logs.next"
     means = "next"
-    tooltip = N_("Go to the next line that was found.")
+    tooltip = N_("Go to the next line found.")
 
 
 class FindPrevious(lines.FindPrevious["LogsScreen"]):
@@ -48,7 +48,7 @@ class FindPrevious(lines.FindPrevious["LogsScreen"]):
 
     id = "logs.previous"
     means = "previous"
-    tooltip = N_("Go to the previous line that was found.")
+    tooltip = N_("Go to the previous line found.")
 
 
 class OnlyFound(LogsAction):
@@ -79,7 +79,7 @@ class RaiseSeverity(LogsAction):
     key = "u,г"
     title = N_("Severity")
     means = "how much of the log"
-    tooltip = N_("Leave out the least severe lines that are shown; after FATAL comes all.")
+    tooltip = N_("Hide the least severe lines that are shown; after FATAL all are shown again.")
     footer = True
 
     @classmethod

@@ -79,7 +79,7 @@ class StopPublication(PublishAction):
     key = "f12"
     title = N_("Stop it")
     means = "stop"
-    tooltip = N_("Publish the chosen one no more; Enter in the list does the same.")
+    tooltip = N_("Stop publishing the chosen one; Enter in the list does the same.")
 
     @classmethod
     def possible(cls, target: PublishDialog) -> bool | None:

@@ -41,7 +41,7 @@ class PlayPause(ReplayAction):
     id = "replay.toggle"
     key = "f7"
     title = N_("Pause")
-    tooltip = N_("Let the recording stand still, or go on; at its end begin anew.")
+    tooltip = N_("Pause the recording, or play it; at its end, start again.")
     footer = True
     priority = True
 
@@ -63,7 +63,7 @@ class Step(ReplayAction):
     id = "replay.step"
     key = "full_stop,ю"
     title = N_("Step")
-    tooltip = N_("Stand still and show the next message of the topics on the screen.")
+    tooltip = N_("Pause and show the next message of the topics on the screen.")
 
     @classmethod
     def do(cls, replay: Replay) -> None:
@@ -91,7 +91,7 @@ class Forward(ReplayAction):
     id = "replay.forward"
     key = "shift+right"
     title = N_("5 s on")
-    tooltip = N_("Jump five seconds on in the recording.")
+    tooltip = N_("Jump five seconds ahead in the recording.")
 
     @classmethod
     def do(cls, replay: Replay) -> None:
@@ -133,7 +133,7 @@ class Loop(ReplayAction):
     id = "replay.loop"
     key = "L,Д"
     title = N_("Loop")
-    tooltip = N_("Begin anew at the end of the recording, or stay there.")
+    tooltip = N_("At the end of the recording start again, or stay there.")
 
     @classmethod
     def do(cls, replay: Replay) -> None:

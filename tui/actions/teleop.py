@@ -49,7 +49,7 @@ class CloseTeleop(TeleopAction):
     key = "escape,t,е"
     title = N_("Close")
     means = "drive"
-    tooltip = N_("Stop, and drive no more.")
+    tooltip = N_("Stop, and leave driving.")
     footer = True
 
     @classmethod

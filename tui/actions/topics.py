@@ -50,7 +50,7 @@ class Pause(TopicsAction):
     id = "topics.pause"
     key = "p,з"
     title = N_("Pause")
-    tooltip = N_("Hold message and plot still, or go on with what is newest.")
+    tooltip = N_("Freeze message and plot, or follow the newest.")
     footer = True
 
     @classmethod
@@ -105,7 +105,7 @@ class PlotField(TopicsAction):
     id = "topics.plot_field"
     key = "V,М"
     title = N_("Plot field")
-    tooltip = N_("Plot the number at the cursor against time, or take it out of the plot.")
+    tooltip = N_("Plot the number at the cursor against time, or remove it from the plot.")
     footer = True
 
     @classmethod
@@ -146,7 +146,7 @@ class ClearPlot(TopicsAction):
     id = "topics.plot_clear"
     key = "D,В"
     title = N_("Clear plot")
-    tooltip = N_("Take all fields out of the plot.")
+    tooltip = N_("Remove all fields from the plot.")
 
     @classmethod
     def possible(cls, target: TopicsScreen) -> bool | None:
@@ -224,7 +224,9 @@ class Endpoints(TopicsAction):
     key = "e,у"
     title = N_("Endpoints")
     means = "nodes behind it"
-    tooltip = N_("Show every publisher and subscriber with its QoS, and which of them do not fit.")
+    tooltip = N_(
+        "Show every publisher and subscriber with its QoS, and which of them are incompatible."
+    )
     footer = True
 
     @classmethod
@@ -259,7 +261,7 @@ class Reverse(TopicsAction):
     id = "topics.reverse"
     key = "less_than_sign,Б"
     title = N_("Reverse")
-    tooltip = N_("Turn the order of the topics round.")
+    tooltip = N_("Reverse the order of the topics.")
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:

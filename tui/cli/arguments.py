@@ -153,7 +153,7 @@ def _add_check(parser: Parser) -> None:
     )
     _add_json(parser)
     _add_profile_options(parser)
-    parser.epilog = _("Exit code: 0 if all is well, 2 if not. Nothing moves by it.")
+    parser.epilog = _("Exit code: 0 if all is well, 2 if not. It moves nothing.")
 
 
 def _add_up(parser: Parser) -> None:
@@ -255,7 +255,7 @@ def _add_replay(parser: Parser) -> None:
     parser.add_argument(
         "--rate", metavar="R", type=rate, default=1.0, help=_("how fast, 0.1 to 10 times")
     )
-    parser.add_argument("--loop", action="store_true", help=_("begin anew at the end"))
+    parser.add_argument("--loop", action="store_true", help=_("start again at the end"))
     parser.add_argument(
         "--start",
         metavar="S",

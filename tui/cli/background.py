@@ -85,7 +85,7 @@ async def _up(options: Namespace) -> int:
         try:
             await asyncio.wait_for(_settle(link), UP_WITHIN_S)
         except asyncio.TimeoutError:
-            say_error(_("not all of it is up yet; `deck ps` tells how it goes on"))
+            say_error(_("not everything is up yet; `deck ps` shows the progress"))
         optional = {name for name, node in profile.nodes.items() if node.optional}
         show(link.session, tuple(link.nodes.values()), optional)
         healthy = all(well(node, optional) for node in link.nodes.values())
@@ -98,7 +98,7 @@ async def _up(options: Namespace) -> int:
     if healthy:
         write(_("`deck attach` shows it, `deck down` stops it"))
     else:
-        say_error(_("not all is well; `deck logs NODE` tells more, `deck down` stops it"))
+        say_error(_("something is wrong; `deck logs NODE` tells more, `deck down` stops it"))
     return 0 if healthy else 1
 
 

@@ -72,7 +72,7 @@ def _topic(name: str) -> str:
     full = f"/{name.lstrip('/')}"
     if not full.replace("/", "").replace("_", "").isalnum() or not full.isascii():
         raise UsageError(
-            say("{name!r} is no name of a topic; write it as /sensor/sonar_front", name=name)
+            say("{name!r} is not a valid topic name; write it as /sensor/sonar_front", name=name)
         )
     return full
 

@@ -30,7 +30,7 @@ def replay_command(options: Namespace) -> int:
         return publish_bag(bag, options)
     _check(bag, whole=not has_terminal())
     if not has_terminal():
-        say_error(_("replay needs a terminal; `deck replay --publish` does without"))
+        say_error(_("replay needs a terminal; `deck replay --publish` works without one"))
         return 2
     from tui.live import run_live
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 from launcher.status import NodeState, Severity
 from text.plain import plain
 from tui.cli.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
+from tui.hardware_words import hardware_words
 from tui.i18n import Prose, _, ngettext, said
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class TextReport:
         """Tell what was started, and how it is stopped."""
         self.note(
             _("{name}: domain {domain}, {hardware} hardware; Ctrl-C stops it").format(
-                name=session.name, domain=session.domain, hardware=session.hardware
+                name=session.name, domain=session.domain, hardware=hardware_words(session.hardware)
             )
         )
 

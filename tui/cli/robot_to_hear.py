@@ -22,7 +22,7 @@ def robot_to_hear(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
     if len(domains) > 1:
         named = ", ".join(map(str, domains))
         raise UsageError(
-            say("robots run in the domains {domains}: choose one by --domain", domains=named)
+            say("robots are running in domains {domains}: choose one with --domain", domains=named)
         )
     if sessions:
         return sessions[0].name, sessions[0].domain, sessions[0].discovery

@@ -66,7 +66,7 @@ def _profile_or_command(name: str) -> Path:
 def attach_command(options: Namespace) -> int:
     """Show the screen of a profile that runs in the background."""
     if not has_terminal():
-        say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` do without"))
+        say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
         return 2
     from launcher.running import find_running
 

@@ -9,6 +9,7 @@ from tui.cli.health import well
 from tui.cli.output import BOLD, DIM, RED, Paint, table, write
 from tui.cli.report import status_fields
 from tui.cli.stop_in_force import stop_is_kept
+from tui.hardware_words import hardware_words
 from tui.i18n import _, pick, said
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection
     """Write the session and a line for each of its nodes; none of `optional` is alarming."""
     paint = Paint(sys.stdout)
     where = _("domain {domain}, {hardware} hardware, supervisor {pid}").format(
-        domain=session.domain, hardware=session.hardware, pid=session.supervisor_pid
+        domain=session.domain, hardware=hardware_words(session.hardware), pid=session.supervisor_pid
     )
     write(f"{paint(session.name, BOLD)}  {pick(session.title)}  {paint(f'({where})', DIM)}")
     head = (_("NODE"), _("STATE"), "PID", _("UPTIME"), _("RESTARTS"), "CPU %", _("MB"), _("DETAIL"))

@@ -26,7 +26,7 @@ def seconds(text: str) -> float:
     except ValueError:
         seconds = math.nan
     if not 0 <= seconds < math.inf:
-        raise argparse.ArgumentTypeError(_("{text!r} is no number of seconds").format(text=text))
+        raise argparse.ArgumentTypeError(_("{text!r} is not a number of seconds").format(text=text))
     return seconds
 
 
@@ -38,7 +38,7 @@ def rate(text: str) -> float:
         rate = math.nan
     if not 0.1 <= rate <= 10:
         raise argparse.ArgumentTypeError(
-            _("{text!r} is no rate; expected 0.1 to 10").format(text=text)
+            _("{text!r} is not a rate; expected 0.1 to 10").format(text=text)
         )
     return rate
 
@@ -53,7 +53,7 @@ def bandwidth(text: str) -> int:
     except ValueError:
         kilobytes = math.nan
     if not 1 <= kilobytes < math.inf:
-        words = _("{text!r} is no bandwidth; expected kB/s from 1 on, as 40, or off")
+        words = _("{text!r} is not a bandwidth; expected kB/s from 1 on, as 40, or off")
         raise argparse.ArgumentTypeError(words.format(text=text))
     return round(1000 * kilobytes)
 
@@ -68,5 +68,5 @@ def folder(text: str) -> str:
 def count(text: str) -> int:
     """Return a number of lines."""
     if not (text.isascii() and text.isdigit()):
-        raise argparse.ArgumentTypeError(_("{text!r} is no number of lines").format(text=text))
+        raise argparse.ArgumentTypeError(_("{text!r} is not a number of lines").format(text=text))
     return int(text)

@@ -20,7 +20,7 @@ def watch_command(options: Namespace) -> int:
 
     domain = choose_domain(options.domain, None, os.environ)
     if not has_terminal():
-        say_error(_("watch needs a terminal; `deck record` does without"))
+        say_error(_("watch needs a terminal; `deck record` works without one"))
         return 2
     from launcher.process_shm_unfinished import discard_unfinished
     from tui.live import run_live

@@ -62,7 +62,7 @@ def judge(facts: GroupFacts) -> list[Finding]:
         return [] if not facts.pi else [ok("groups", _("you may use serial ports, camera, sound"))]
     text = _("you are not in: {groups}").format(groups=", ".join(missing))
     if set(missing) <= set(facts.written):
-        return [warn("groups", text, _("log out and in again: it is written down already"))]
+        return [warn("groups", text, _("log out and in again: it is already set"))]
     mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
     mend = mend.format(group=",".join(missing), user=facts.user or "$USER")
     return [warn("groups", text, mend)]

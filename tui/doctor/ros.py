@@ -122,7 +122,7 @@ def _origin(facts: RosFacts) -> Finding:
     text = f"ROS 2 {origin(facts)} ({facts.rclpy})"
     distro = facts.environ.get("ROS_DISTRO", "jazzy")
     if distro != "jazzy":
-        mend = _("Deck is tried with jazzy only; others may do")
+        mend = _("Deck is tested with jazzy only; others may work")
         return warn("ros.distro", text, mend)
     return ok("ros.distro", text)
 

@@ -82,7 +82,7 @@ def judge(facts: SharedMemoryFacts) -> list[Finding]:
 
 
 def _half_made(paths: tuple[str, ...]) -> str:
-    text = _("{paths}: half made by a process that was killed, holds up every node that meets it")
+    text = _("{paths}: incomplete, left by a process that was killed; any node that opens it hangs")
     return text.format(paths=", ".join(paths))
 
 

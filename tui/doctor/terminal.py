@@ -50,7 +50,7 @@ def judge(facts: TerminalFacts) -> list[Finding]:
     """Say what is well and what is not."""
     found = [_encoding(facts)]
     if not facts.is_terminal:
-        return [ok("terminal", _("no terminal here: `deck run` does without")), *found]
+        return [ok("terminal", _("no terminal here: `deck run` works without one")), *found]
     return [_kind(facts), *found, _colour(facts), _size(facts)]
 
 
@@ -94,5 +94,5 @@ def _size(facts: TerminalFacts) -> Finding:
     size = (facts.columns, facts.lines)
     text = _("{columns} columns, {lines} lines").format(columns=size[0], lines=size[1])
     if size[0] < LEAST[0] or size[1] < LEAST[1]:
-        return warn("terminal.size", text, _("80x24 at least, 120x40 is at home"))
+        return warn("terminal.size", text, _("at least 80x24; 120x40 is comfortable"))
     return ok("terminal.size", text)

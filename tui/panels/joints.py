@@ -52,5 +52,5 @@ class Joints:
             came = _("{topic}: no joint names have come").format(topic=self._topic)
         else:
             came = _("{topic}: {names} have come").format(topic=self._topic, names=names)
-        awaited = _("awaited: {names}").format(names=", ".join(self._awaited))
+        awaited = _("expected: {names}").format(names=", ".join(self._awaited))
         return Instead(_("messages come, but with other joint names"), f"{came}; {awaited}")

@@ -18,7 +18,7 @@ def other_type(sample: Sample | None, awaited: str) -> Instead | None:
     """Return which type comes and which is awaited; None if that is the same, or nothing comes."""
     if sample is None or sample.type_name == awaited:
         return None
-    words = _("{topic}: {type} comes; awaited: {awaited}").format(
+    words = _("{topic}: {type} comes; expected: {awaited}").format(
         topic=sample.topic, type=_short(sample.type_name), awaited=_short(awaited)
     )
     return Instead(_("messages come, but of another type"), plain(words, LONGEST))

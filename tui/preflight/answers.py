@@ -82,12 +82,10 @@ def _pico(line: Line) -> Answer:
     # One may have been cut by the opening of the port.
     garbled = decoder.errors > 1
     if welcome is None and garbled:
-        return Answer(Level.FAIL, _("some lines come garbled"), _better_cable())
+        return Answer(Level.FAIL, _("some lines arrive garbled"), _better_cable())
     if welcome is None:
-        text = _("telemetry comes, but no answer: nothing that is said gets there")
-        return Answer(
-            Level.FAIL, text, _("look at the cable; unplug the Pico and plug it in again")
-        )
+        text = _("telemetry comes, but no answer: what is sent does not arrive")
+        return Answer(Level.FAIL, text, _("check the cable; unplug the Pico and plug it in again"))
     if welcome.protocol != PROTOCOL:
         text = _("the firmware speaks protocol {theirs}, this program {ours}")
         text = text.format(theirs=welcome.protocol, ours=PROTOCOL)
@@ -115,14 +113,14 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) 
             _("the emergency stop is held"),
             _("start the robot and press Ctrl+R"),
         ),
-        "L": (_("the left motor driver reports a fault"), _("look at its wires and its supply")),
-        "R": (_("the right motor driver reports a fault"), _("look at its wires and its supply")),
-        "U": (_("the battery is low"), _("charge it, and switch the motors' supply on")),
+        "L": (_("the left motor driver reports a fault"), _("check its wiring and its supply")),
+        "R": (_("the right motor driver reports a fault"), _("check its wiring and its supply")),
+        "U": (_("the battery is low"), _("charge it, and switch on the motors' supply")),
     }
     flags = telemetry.flags if telemetry is not None else frozenset()
     found = [trouble for flag, trouble in troubles.items() if flag in flags]
     if garbled:
-        found.append((_("some lines come garbled"), _better_cable()))
+        found.append((_("some lines arrive garbled"), _better_cable()))
     if not found:
         return Answer(Level.OK, text)
     text = ", ".join([text, *(words for words, _mend in found)])
@@ -170,7 +168,7 @@ def _far(metres: float) -> str:
 
 
 def _better_cable() -> str:
-    return _("look at the cable: keep it short, away from the motors', with a common ground")
+    return _("check the cable: keep it short, away from the motors', with a common ground")
 
 
 def _servos(line: Line) -> Answer:
@@ -194,7 +192,7 @@ def _servos(line: Line) -> Answer:
 
 
 def _another(kind: str, heard: bytes) -> Answer:
-    text = _("{found} talks here, not the {wanted}")
+    text = _("{found} is talking here, not the {wanted}")
     return Answer(
         Level.FAIL,
         text.format(found=recognised(heard), wanted=NAMES[kind]),
@@ -206,7 +204,7 @@ def _nothing(kind: str, heard: bytes, baud: int) -> Answer:
     """Say that nothing of use came: garbage, or not a byte."""
     name = NAMES[kind]
     if heard:
-        text = _("{count} bytes came, none of which a {name} says").format(
+        text = _("{count} bytes came, none of which a {name} sends").format(
             count=len(heard), name=name
         )
         mend = _("wrong baud (this is {baud}), another device, or a bad cable")
@@ -215,7 +213,7 @@ def _nothing(kind: str, heard: bytes, baud: int) -> Answer:
         "pico": _("flash firmware/pico2 (docs/pico-firmware.md), or try another cable"),
         "lsc16": _("switch the board on; cross TX and RX, join the grounds; baud 9600"),
     }
-    sonar = _("look at its supply (5 V), its wires and its mode: serial, not I2C; baud 115200")
+    sonar = _("check its supply (5 V), its wiring and its mode: serial, not I2C; baud 115200")
     return Answer(
         Level.FAIL, _("the port is silent: no {name}").format(name=name), mends.get(kind, sonar)
     )

@@ -66,7 +66,7 @@ def _picture(name: str) -> Answer:
     others = holders(name)
     if others:
         text = _("{names} has it open").format(names=", ".join(map(str, others)))
-        return Answer(Level.FAIL, text, _("close it; if it is a robot that runs: deck down"))
+        return Answer(Level.FAIL, text, _("close it; if it is a running robot: deck down"))
     mend = _("is it a video, and does it answer?")
     if name.startswith("/dev/"):
         mend = _("it may be another device of the same camera: v4l2-ctl --list-devices")

@@ -64,7 +64,7 @@ def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPor
     if number in GONE:
         return _missing(device, path, ports)
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
-        return Answer(Level.FAIL, _("it is no serial port"), str(said(how_to_choose(device))))
+        return Answer(Level.FAIL, _("it is not a serial port"), str(said(how_to_choose(device))))
     words = str(error).splitlines()[0] if str(error) else type(error).__name__
     mend = _("unplug the device, plug it in again, and look at: dmesg | tail")
     return Answer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), mend)
@@ -82,9 +82,9 @@ def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> Answer:
 def _taken(path: str, others: Sequence[Holder]) -> Answer:
     if not others:
         mend = _("close that program; sudo fuser -v {path} tells which it is").format(path=path)
-        return Answer(Level.FAIL, _("another program has it"), mend)
+        return Answer(Level.FAIL, _("another program is using it"), mend)
     names = ", ".join(map(str, others))
-    mend = _("close it; if it is a robot that runs: deck down")
+    mend = _("close it; if it is a running robot: deck down")
     return Answer(Level.FAIL, _("{names} has it open").format(names=names), mend)
 
 

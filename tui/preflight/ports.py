@@ -78,11 +78,13 @@ def _one(
         try:
             answer = ask(str(settings.get("kind", "")), line)
         except OSError as error:
-            mend = _("look at the cable and at the supply")
-            return Answer(Level.FAIL, _("it went while asked: {error}").format(error=error), mend)
+            mend = _("check the cable and the supply")
+            return Answer(
+                Level.FAIL, _("it disappeared while being asked: {error}").format(error=error), mend
+            )
     lasting = advice(path)
     if answer.level is Level.OK and lasting:
-        text = _("{text}; its name may be another device's after the next plugging")
+        text = _("{text}; its name may belong to another device after it is plugged in again")
         mend = _("write {path}").format(path=lasting)
         return Answer(Level.WARN, text.format(text=answer.text), mend)
     return answer

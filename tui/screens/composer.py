@@ -210,7 +210,7 @@ class ComposerScreen(DeckScreen):
         try:
             await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
         except asyncio.TimeoutError:
-            story.failure = _("ROS did not take it within {n} s").format(
+            story.failure = _("ROS did not accept it within {n} s").format(
                 n=decimal(f"{SENT_WITHIN_S:g}")
             )
             self._say()
@@ -256,11 +256,11 @@ class ComposerScreen(DeckScreen):
             return
         listening = ", ".join(self._listeners()) or _("nobody listens")
         self._title("#composer-to", f"{SENT_TO} → {listening}")
-        self._title("#composer-came", _("What came of it"))
+        self._title("#composer-came", _("What happened"))
         story, now_s = self._story, clock.now()
         if story is None:
             hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
-            self.outcome.show(f"{_('Nothing was sent yet.')} {hint}", ())
+            self.outcome.show(f"{_('Nothing has been sent yet.')} {hint}", ())
             return
         at = clock.time_of_day(story.sent_s)
         self.outcome.show(_("Sent at {time}").format(time=at), story.entries(now_s))

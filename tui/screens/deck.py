@@ -52,9 +52,9 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
 
     tab: ClassVar[str] = "deck"
     about: ClassVar[str] = N_(
-        "The lesson at work. The table has the lesson's nodes: choose one by the arrow keys to "
-        "start, stop or restart it, or to hear it alone in the log. The panels show what the "
-        "nodes say on their topics."
+        "The lesson at work. The table has the lesson's nodes: choose one with the arrow keys "
+        "to start, stop or restart it, or to show only its lines in the log. The panels show "
+        "what the nodes publish on their topics."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bindings(*DECK_ACTIONS, OpenTeleop),

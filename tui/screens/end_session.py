@@ -70,7 +70,8 @@ class EndSessionScreen(Dialog[bool]):
         session, count = self._session, len(self.deck.feed.nodes)
         ends = ngettext(
             "Its {n} node is stopped. Every screen that shows it is told that you ended it.",
-            "Its {n} nodes are stopped. Every screen that shows it is told that you ended it.",
+            "Its {n} nodes will be stopped. Every screen that shows it will be told that you "
+            "ended it.",
             count,
         )
         lines = [

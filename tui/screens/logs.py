@@ -33,9 +33,9 @@ class LogsScreen(DeckScreen):
 
     tab: ClassVar[str] = "logs"
     about: ClassVar[str] = N_(
-        "What all nodes say. The arrow keys choose lines, with Shift several; that pauses the log, "
-        "End follows it again. The list has the nodes with their lines, warnings (W) and errors "
-        "(E): ● is heard, ○ is mute, ★ is heard alone."
+        "What all nodes say. The arrow keys choose lines, with Shift several; that pauses the "
+        "log, End follows it again. The list has the nodes with their lines, warnings (W) and "
+        "errors (E): ● is shown, ○ is muted, ★ is shown alone."
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         *bindings(*LOGS_ACTIONS),

@@ -14,6 +14,7 @@ from textual.widgets import Static
 from launcher.errors import LauncherError
 from text.plain import plain
 from tui.actions import Acting, Action, bindings
+from tui.hardware_words import hardware_words
 from tui.i18n import N_, _, ngettext, pick, said
 from tui.orders import WatchOrder
 from tui.screens.base import BREAKPOINTS, HEIGHTS
@@ -160,7 +161,7 @@ class PickerScreen(Screen[None], Acting, Working):
         self.query_one(TitleBar).show((), (title,))
         rows: list[Row] = []
         if self._sessions:
-            rows.append(_heading(_("Running already")))
+            rows.append(_heading(_("Already running")))
             rows += [self._running_row(session) for session in self._sessions]
             rows.append(_heading(""))
         if self._domain is not None:
@@ -262,11 +263,11 @@ def _about_session(session: SessionInfo) -> Content:
         [
             Content.styled(_title(session.name, session.title), "bold $accent"),
             Content(""),
-            Content(_("Runs already: Enter shows it and leaves it running.")),
+            Content(_("Already running: Enter shows it and leaves it running.")),
             Content(started(session)),
             Content(""),
             _field(_("Domain"), str(session.domain)),
-            _field(_("Hardware"), plain(session.hardware)),
+            _field(_("Hardware"), hardware_words(session.hardware)),
             _field(_("File"), plain(session.profile)),
         ]
     )
@@ -275,7 +276,7 @@ def _about_session(session: SessionInfo) -> Content:
 def _about_watching(domain: int | None) -> Content:
     return Content("\n").join(
         [
-            Content.styled(_("A robot that runs already"), "bold $accent"),
+            Content.styled(_("A robot that is already running"), "bold $accent"),
             Content(""),
             Content(
                 _(

@@ -254,7 +254,7 @@ class PublishDialog(Dialog[None]):
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), DONE_WITHIN_S)
         except asyncio.TimeoutError:
-            words = _("ROS did not take it within {n} s").format(n=decimal(f"{DONE_WITHIN_S:g}"))
+            words = _("ROS did not accept it within {n} s").format(n=decimal(f"{DONE_WITHIN_S:g}"))
             self.rate.tell(lambda: words, "bad")
         except Exception as error:  # noqa: BLE001 - whatever it was, it is told
             reason = reason_words(error)
@@ -268,7 +268,7 @@ class PublishDialog(Dialog[None]):
         if graph is None:
             self.rate.tell(lambda: _("Not sent: no lesson is running."), "bad")
         elif not self.target.is_name:
-            self.rate.tell(lambda: _("No name of a topic: letters, digits and _ between /."), "bad")
+            self.rate.tell(lambda: _("Not a topic name: letters, digits and _ between /."), "bad")
             self.target.field.focus()
         elif not self.form.type_name or self.target.type.value != self.form.type_name:
             self.rate.tell(lambda: _("Choose the type of {topic}.").format(topic=topic), "bad")
@@ -277,7 +277,7 @@ class PublishDialog(Dialog[None]):
             value = self.form.value
             if value is not None:
                 return graph, topic, value
-            self.rate.tell(lambda: _("Not sent: see below the form what is wrong."), "bad")
+            self.rate.tell(lambda: _("Not sent: what is wrong stands below the form."), "bad")
             self.form.go_to_problem()
         return None
 

@@ -62,6 +62,6 @@ def safe_lines(deck: DeckApp) -> list[str]:
         "",
         *keys,
         "",
-        _("Another screen, or the same anew: {tabs}").format(tabs=tabs),
-        _("What has failed is told in the log."),
+        _("Another screen, or the same one again: {tabs}").format(tabs=tabs),
+        _("The log says what failed."),
     ]

@@ -39,7 +39,7 @@ class LeaveStrays(Action["StraysScreen"]):
     id = "strays.leave"
     key = "escape"
     title = N_("Leave them")
-    tooltip = N_("Let them run on; they may disturb this session.")
+    tooltip = N_("Leave them running; they may disturb this session.")
     footer = True
     palette = False
 

@@ -86,7 +86,7 @@ class TopicsPlotting(DeckScreen):
         if field is None:
             self._warn(_("Put the cursor on a number first: Tab goes to the message."))
         elif self.plot.is_full and field not in self.plot.fields:
-            self._warn(_("There is no room for more fields: take one out first."))
+            self._warn(_("There is no room for more fields: remove one first."))
         elif self.plot.toggle(field, self.detail.sample) and self.plot_place is PlotPlace.NONE:
             self.show_plot(PlotPlace.BESIDE)
 

@@ -47,7 +47,7 @@ def _figures(device: Device) -> list[str]:
         ("bytes_out_per_s", _("out {count} B/s")),
         ("frames_in_per_s", _("{count} frames/s")),
         ("errors_per_s", _("{count} errors/s")),
-        ("errors", _("{count} errors in all")),
+        ("errors", _("{count} errors in total")),
         ("reconnects", _("reconnects: {count}")),
     ):
         value = device.number(key)
@@ -67,8 +67,8 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
         return words.format(name=name, seconds=elapsed(age_s))
     if topic is None:
         words = _(
-            "{name} tells how it is, but publishes no {topic}: it has no serial port, or it is a "
-            "driver of another make."
+            "{name} tells how it is, but publishes no {topic}: it has no serial port, or it is "
+            "another kind of driver."
         )
         return words.format(name=name, topic=f"…/{name}/frames")
     if device.connected is False:
@@ -87,7 +87,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
     if row is not None and row.publishers:
         said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
         return [
-            _("{topic} is published by {nodes}; waiting for a first word.").format(
+            _("{topic} is published by {nodes}; waiting for the first message.").format(
                 topic=TOPIC, nodes=said_by or "?"
             )
         ]
@@ -99,7 +99,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
     if feed.replay is not None:
         return [*lines, _("This recording has none of its messages.")]
     if not feed.watching:
-        lines.append(_("This lesson has no drivers: its nodes make up what they tell."))
+        lines.append(_("This lesson has no drivers: its nodes invent their readings."))
     if lessons:
         lines.append(_("Drivers run in: {lessons}.").format(lessons=", ".join(lessons)))
     return lines

@@ -46,7 +46,7 @@ def _once(step: Step) -> str:
         return _("begins to turn")
     if step.kind is Kind.HEAD_THERE:
         looks = [0.0 if math.isnan(angle) else angle for angle in step.figures]
-        return _("has come to rest: {pose}").format(pose=outcome_words.head_words(*looks))
+        return _("has stopped: {pose}").format(pose=outcome_words.head_words(*looks))
     return _("sound") if step.text == SOUND else step.text
 
 

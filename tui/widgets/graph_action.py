@@ -116,7 +116,7 @@ class ActionPane(AskPane):
                 _("Feedback and result"),
                 self.name_shown,
                 (
-                    _("no goal was sent yet"),
+                    _("no goal has been sent yet"),
                     _("{key} sends what is filled in.").format(key=self.submit_key),
                 ),
             )

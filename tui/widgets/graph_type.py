@@ -79,7 +79,7 @@ class TypePane(GraphPane):
         words.display = bool(self._failure)
         self.fields.display = not self._failure
         if self._failure:
-            words.show(_("this type cannot be looked into"), said(self._failure))
+            words.show(_("this type cannot be inspected"), said(self._failure))
 
     def relabel(self) -> None:
         """Say everything anew."""

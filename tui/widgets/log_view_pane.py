@@ -101,7 +101,7 @@ class LogPane(Vertical, Working):
         words = ngettext("{count} line copied", "{count} lines copied", len(lines))
         words = words.format(count=grouped(len(lines)))
         if len(text.encode("utf-8", "replace")) > CLIPBOARD_LIMIT:
-            words += "\n" + _("That is much for a terminal: if nothing arrives, write a file.")
+            words += "\n" + _("That is a lot for a terminal: if nothing arrives, write a file.")
         self.notify(words)
 
     def save(self) -> None:
@@ -157,5 +157,5 @@ class LogPane(Vertical, Working):
             self.prompt.remark(plain(reason(error)))
         else:
             self._close_prompt()
-            words = _("{size} bytes written to {path}")
+            words = ngettext("{size} byte saved to {path}", "{size} bytes saved to {path}", size)
             self.notify(words.format(size=grouped(size), path=plain(str(path))), markup=False)

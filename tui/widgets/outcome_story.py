@@ -113,7 +113,7 @@ class Story:
             return
         elif DRIVE in self._came:
             if late:
-                yield Entry("·", RESULT, _("no word: this parser does not report"))
+                yield Entry("·", RESULT, _("no reply: this parser does not report"))
         elif not self.listeners:
             silence = _("nobody listens to {topic}: is llm_parser running?")
             yield Entry("✗", RESULT, silence.format(topic=SENT_TO))

@@ -146,7 +146,7 @@ class ReplayBar(Widget):
             parts.append((" ↻ ", words + loop))
         warning = self.get_visual_style("replay-bar--warn")
         if state.error:
-            parts.append((" " + _("⚠ cannot be played on") + " ", warning))
+            parts.append((" " + _("⚠ cannot be played any further") + " ", warning))
         elif state.damage:
             parts.append((" " + _("⚠ damaged") + " ", warning))
         elif state.cut:

@@ -144,7 +144,7 @@ def _cells(texts: Sequence[str], columns: Sequence[Column], looks: Sequence[str]
 def _notes(row: TopicRow, width: int) -> Iterator[Line]:
     ends = (*row.published_by, *row.subscribed_by)
     if any(not end.history or not end.liveliness for end in ends):
-        words = _("“–” is not told: the middleware does not send it to others.")
+        words = _("“–” is unknown: the middleware does not send it.")
         yield from _wrapped("", words, width, "muted")
 
 

@@ -8,9 +8,9 @@ from tui.i18n import N_, _
 
 _HEADLINES = {
     Trouble.NO_PUBLISHER: N_("nobody publishes this topic"),
-    Trouble.QOS_MISMATCH: N_("QoS does not fit: not everybody is heard"),
+    Trouble.QOS_MISMATCH: N_("QoS is incompatible: not everybody is heard"),
     Trouble.UNKNOWN_TYPE: N_("message type is not installed"),
-    Trouble.QUIET: N_("publisher is there, nothing has come yet"),
+    Trouble.QUIET: N_("there is a publisher, but nothing has come yet"),
 }
 
 
