@@ -11,6 +11,7 @@ from babel.messages.pofile import read_po
 ROOT = Path(__file__).parents[2]
 CATALOGUE = ROOT / "tui" / "locale" / "ru" / "LC_MESSAGES" / "deck.po"
 DOCS = (ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.ru.md")))
+PROFILES = sorted((ROOT / "profiles").glob("*.yaml"))
 CODE = re.compile(r"```.*?```|`[^`]*`", re.DOTALL)
 INSTEAD = {
     r"\bлог(и|а|ов|у|е|ах|ом|ами)?\b": "журнал",
@@ -39,7 +40,7 @@ def russian() -> list[str]:
     with CATALOGUE.open("rb") as file:
         found = [message.string for message in read_po(file) if message.id]
     sentences = [text for one in found for text in ([one] if isinstance(one, str) else one)]
-    return sentences + [CODE.sub("", path.read_text()) for path in DOCS]
+    return sentences + [CODE.sub("", path.read_text()) for path in (*DOCS, *PROFILES)]
 
 
 def english() -> list[str]:
