@@ -104,19 +104,19 @@ class SoundPort:
     def _live(self) -> None:
         wait_s = _FIRST_WAIT_S
         while not self._ending.is_set():
-            connections = self.connections
+            connections, cards = self.connections, _cards()
             problem, detail = self._serve()
             if self._ending.is_set():
                 return
             lost = self.connections > connections
             self._tell(problem, detail, lost=lost)
             wait_s = _FIRST_WAIT_S if lost else wait_s
-            self._rest(wait_s)
+            self._rest(wait_s, cards)
             wait_s = min(2 * wait_s, _LONGEST_WAIT_S)
 
-    def _rest(self, wait_s: float) -> None:
-        """Wait for the next try, which comes at once when a card comes or goes."""
-        cards, until_s = _cards(), time.monotonic() + wait_s
+    def _rest(self, wait_s: float, cards: bytes) -> None:
+        """Wait for the next try, at once if there are other cards than when this one began."""
+        until_s = time.monotonic() + wait_s
         while time.monotonic() < until_s and _cards() == cards:
             if self._ending.wait(min(_LOOK_S, wait_s)):
                 return

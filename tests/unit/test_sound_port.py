@@ -193,6 +193,19 @@ def test_a_card_that_comes_is_seen_at_once(
     has(log, "Microphone: stub")
 
 
+def test_a_card_that_comes_while_one_is_looked_for_is_seen_at_once(
+    begin: Callable[..., tuple[SoundPort, Log]], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    cards, tries = tmp_path / "cards", tmp_path / "tries"
+    monkeypatch.setattr(_sound_port, "CARDS", cards)
+    monkeypatch.setattr(_sound_port, "_FIRST_WAIT_S", 600.0)
+    begin(
+        f"open({str(tries)!r}, 'a').write('.'); open({str(cards)!r}, 'w').write('0 [Device]')\n"
+        "tell(problem='missing')"
+    )
+    wait_until(lambda: tries.exists() and len(tries.read_text()) == 2, "the second try")
+
+
 def test_faults_are_counted_over_every_connection(
     begin: Callable[..., tuple[SoundPort, Log]],
 ) -> None:
