@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING, Any
 
-from graph.images import ImageError
+from graph.images import ImageError, opencv
 from graph.pictures import Picture, numbers_picture, thinned
 from graph.words import say
 
@@ -117,11 +117,7 @@ def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uin
     """Return pixels of shape (height, width, 3), or (height, width, 1) numbers as they are."""
     import numpy as np
 
-    try:
-        import cv2
-    except ImportError as error:
-        words = say("OpenCV, which decodes them, is missing: {error}", error=error)
-        raise ImageError(words) from error
+    cv2 = opencv()
     modes: dict[int, int] = {
         1: cv2.IMREAD_COLOR,
         2: cv2.IMREAD_REDUCED_COLOR_2,

@@ -11,6 +11,7 @@ from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from types import ModuleType
 
     import numpy as np
     from numpy.typing import NDArray
@@ -75,10 +76,7 @@ def to_rgb(value: Mapping[str, Value]) -> Rgb:
 
     Raises ImageError.
     """
-    width, height, step = (whole(value, name) for name in ("width", "height", "step"))
-    encoding, data = value.get("encoding"), value.get("data")
-    if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError(say("this is not a {type}", type="sensor_msgs/Image"))
+    (width, height, step), encoding, data = image_fields(value)
     if encoding in COLOURS:
         pixel_bytes, order = COLOURS[encoding]
         pixels = pixel_rows(data, width, height, step, pixel_bytes)
@@ -110,8 +108,21 @@ def shrink(rgb: Rgb, width: int, height: int) -> Rgb:
     return mean
 
 
-def whole(value: Mapping[str, Value], name: str) -> int:
-    """Return a field that is a whole number; raises ImageError."""
+def image_fields(
+    value: Mapping[str, Value],
+) -> tuple[tuple[int, int, int], str, bytes | bytearray | memoryview]:
+    """Return (width, height, step), encoding and data of a `sensor_msgs/Image`.
+
+    Raises ImageError.
+    """
+    size = (_whole(value, "width"), _whole(value, "height"), _whole(value, "step"))
+    encoding, data = value.get("encoding"), value.get("data")
+    if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
+        raise ImageError(say("this is not a {type}", type="sensor_msgs/Image"))
+    return size, encoding, data
+
+
+def _whole(value: Mapping[str, Value], name: str) -> int:
     number = value.get(name)
     if not isinstance(number, int):
         words = say("this is not a {type}: {name} is missing", type="sensor_msgs/Image", name=name)
@@ -174,3 +185,13 @@ def grey(numbers: NDArray[np.generic]) -> Rgb:
     span = (greatest - least) or 1.0
     grey = np.where(finite, (values - least) * (255.0 / span), 0.0).astype(np.uint8)
     return np.repeat(grey[:, :, None], 3, axis=2)
+
+
+def opencv() -> ModuleType:
+    """Return OpenCV, imported when the first picture needs it; raises ImageError."""
+    try:
+        import cv2
+    except ImportError as error:
+        words = say("OpenCV, which decodes them, is missing: {error}", error=error)
+        raise ImageError(words) from error
+    return cv2

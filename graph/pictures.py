@@ -15,15 +15,13 @@ from graph.images import (
     COLOURS,
     DEPTHS,
     YUV,
-    ImageError,
     UnknownEncodingError,
     grey,
+    image_fields,
     in_order,
     pixel_rows,
     to_rgb,
-    whole,
 )
-from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -67,10 +65,7 @@ def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Pictur
         from graph.compressed import read_compressed
 
         return read_compressed(value, fit)
-    width, height, step = (whole(value, name) for name in ("width", "height", "step"))
-    encoding, data = value.get("encoding"), value.get("data")
-    if not isinstance(encoding, str) or not isinstance(data, (bytes, bytearray, memoryview)):
-        raise ImageError(say("this is not a {type}", type="sensor_msgs/Image"))
+    (width, height, step), encoding, data = image_fields(value)
     if encoding in COLOURS:
         pixel_bytes, order = COLOURS[encoding]
         rows = pixel_rows(data, width, height, step, pixel_bytes)

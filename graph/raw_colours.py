@@ -8,12 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from graph.images import BAYER, YUV, ImageError, pixel_rows
-from graph.words import say
+from graph.images import BAYER, YUV, opencv, pixel_rows
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     import numpy as np
     from numpy.typing import NDArray
 
@@ -61,7 +58,7 @@ def _pairs(
 
 
 def _yuv(order: str, pairs: NDArray[np.uint8]) -> Rgb:
-    cv2 = _opencv()
+    cv2 = opencv()
     rgb: Rgb = cv2.cvtColor(pairs, getattr(cv2, f"COLOR_YUV2RGB_{order}"))
     return rgb
 
@@ -70,7 +67,7 @@ def _bayer(pattern: str, numbers: NDArray[Any]) -> NDArray[Any]:
     """Return numbers of shape (height, width) in three colours, each the mean of its neighbours."""
     import numpy as np
 
-    cv2 = _opencv()
+    cv2 = opencv()
     # By an even number and mirrored, so that the pattern goes on.
     wider = np.pad(numbers.astype(numbers.dtype.newbyteorder("=")), BORDER, "reflect")
     colours: NDArray[Any] = cv2.cvtColor(wider, getattr(cv2, f"COLOR_Bayer{pattern}2RGB"))
@@ -84,12 +81,3 @@ def _stretched(numbers: NDArray[Any]) -> Rgb:
     greatest = max(1, int(numbers.max()))
     rgb: Rgb = (numbers.astype(np.uint32) * 255 // greatest).astype(np.uint8)
     return rgb
-
-
-def _opencv() -> ModuleType:
-    try:
-        import cv2
-    except ImportError as error:
-        words = say("OpenCV, which decodes them, is missing: {error}", error=error)
-        raise ImageError(words) from error
-    return cv2
