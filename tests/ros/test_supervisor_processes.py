@@ -351,7 +351,7 @@ async def test_a_suspended_node_can_be_stopped(start: Launch) -> None:
 
 
 async def test_what_a_node_costs_is_that_of_its_whole_group(start: Launch) -> None:
-    """And not that of a wrapper which only waiting for the work to be done."""
+    """And not that of a wrapper which only waits for the work to be done."""
     work = "x = bytearray(30_000_000)\nwhile True: pass"
     wrapper = (
         f"import subprocess, sys; subprocess.run([sys.executable, '-I', '-S', '-c', {work!r}])"

@@ -69,7 +69,8 @@ class EndSessionScreen(Dialog[bool]):
         """Say whose it is, since when it runs, and what ending it does."""
         session, count = self._session, len(self.deck.feed.nodes)
         ends = ngettext(
-            "Its {n} node is stopped. Every screen that shows it is told that you ended it.",
+            "Its {n} node will be stopped. Every screen that shows it will be told that you "
+            "ended it.",
             "Its {n} nodes will be stopped. Every screen that shows it will be told that you "
             "ended it.",
             count,
