@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
-from babel.messages.pofile import read_po
+
+from tui.catalogue import read_po
 
 ROOT = Path(__file__).parents[2]
-CATALOGUE = ROOT / "tui" / "locale" / "ru" / "LC_MESSAGES" / "deck.po"
 DOCS = (ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.ru.md")))
+ENGLISH_DOCS = sorted({ROOT / "README.md", *(ROOT / "docs").glob("*.md")} - set(DOCS))
 PROFILES = sorted((ROOT / "profiles").glob("*.yaml"))
 CODE = re.compile(r"```.*?```|`[^`]*`", re.DOTALL)
 INSTEAD = {
@@ -36,19 +38,24 @@ IN_ENGLISH = (
 """What no native speaker would write."""
 
 
+@cache
+def catalogue() -> tuple[list[str], list[str]]:
+    """What the program says in English and in Russian, plural forms one by one."""
+    said: list[str] = []
+    translated: list[str] = []
+    for message in read_po("ru"):
+        if message.id:
+            said += [message.id] if isinstance(message.id, str) else message.id
+            translated += [message.string] if isinstance(message.string, str) else message.string
+    return said, translated
+
+
 def russian() -> list[str]:
-    with CATALOGUE.open("rb") as file:
-        found = [message.string for message in read_po(file) if message.id]
-    sentences = [text for one in found for text in ([one] if isinstance(one, str) else one)]
-    return sentences + [CODE.sub("", path.read_text()) for path in (*DOCS, *PROFILES)]
+    return catalogue()[1] + [CODE.sub("", path.read_text()) for path in (*DOCS, *PROFILES)]
 
 
 def english() -> list[str]:
-    with CATALOGUE.open("rb") as file:
-        found = [message.id for message in read_po(file) if message.id]
-    sentences = [text for one in found for text in ([one] if isinstance(one, str) else one)]
-    paths = (ROOT / "README.md", *(ROOT / "docs").glob("*[!u].md"))
-    return sentences + [path.read_text() for path in paths if not path.name.endswith(".ru.md")]
+    return catalogue()[0] + [path.read_text() for path in ENGLISH_DOCS]
 
 
 @pytest.mark.parametrize("pattern", INSTEAD)

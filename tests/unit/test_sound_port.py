@@ -142,7 +142,7 @@ def test_a_device_of_another_rate_is_resampled(
         ("time.sleep(60)", "No microphone: PortAudio does not answer"),
         (
             "tell(problem='busy')",
-            "another program is using it; close that one (fuser",
+            "another program is using it; close that one (fuser -v /dev/snd/*)",
         ),
         ("tell(problem='missing', detail='')", "plug it in (arecord -l and aplay -l list them)"),
         ("tell(problem='package')", "pip install sounddevice"),
