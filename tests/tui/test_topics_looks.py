@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 from graph.data import EndpointInfo, GraphUpdate, Trouble
 from tests.tui.recorded import NOW_S, TOPICS, RecordedPad, lesson_update, sample
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
-from tests.tui.test_topics_screen import CAMERA, depth_message, jpeg_message, with_camera
+from tests.tui.topics_room import CAMERA, depth_message, jpeg_message, with_camera
 from tui.app import DeckApp
 from tui.screens.topics import TopicsScreen
 from tui.widgets.image_view import ImageView

@@ -1,0 +1,117 @@
+"""The screen of topics over a recorded graph, under a pilot."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import cv2
+import numpy as np
+import pytest
+from textual.widgets import Static
+
+from graph.data import GraphUpdate, TopicRow
+from tests.tui.recorded import TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from tests.tui.recorded_image import colour_bars
+from tests.tui.snapshots import Look, settle
+from tui.screens.topics import TopicsScreen
+from tui.widgets.topic_detail import TopicHead
+
+if TYPE_CHECKING:
+    from textual.pilot import Pilot
+
+    from tui.app import DeckApp
+
+HOME = Look((120, 40), "en")
+SONAR, CAMERA = "/sensor/sonar_front", "/camera/color/image_raw"
+
+
+class Room:
+    """The screen of topics over a recorded graph, under a pilot."""
+
+    def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
+        self.app, self.pilot, self.graph = app, pilot, graph
+
+    @property
+    def screen(self) -> TopicsScreen:
+        """The screen."""
+        screen = self.app.screen
+        assert isinstance(screen, TopicsScreen)
+        return screen
+
+    async def choose(self, topic: str) -> None:
+        """Choose a topic and wait until it is asked for."""
+        self.screen.table.choose(topic)
+        for _round in range(100):
+            await self.pilot.pause(0.02)
+            if self.graph.watched == {topic}:
+                return
+        pytest.fail(f"{topic} is not watched: {self.graph.watched}")
+
+    async def show(self, update: GraphUpdate) -> None:
+        """Let the graph be this, and wait until it is drawn."""
+        self.graph.show(update)
+        await self.pilot.pause()
+        await self.pilot.pause()
+
+    async def decoded(self) -> None:
+        """Wait until no picture is being decoded."""
+        under_way = [worker for worker in self.app.workers if worker.group == "pictures"]
+        if under_way:
+            await self.app.workers.wait_for_complete(under_way)
+        await self.pilot.pause()
+
+    def head(self) -> str:
+        """The lines above the message."""
+        return self.screen.query_one(TopicHead).render().plain
+
+    def count(self) -> str:
+        """How many topics are said to be there."""
+        return str(self.screen.query_one("#topics-count", Static).content)
+
+    def echo(self) -> str:
+        """The message, or the words in its place."""
+        tree = self.screen.detail.echo
+        return "\n".join(tree.render_line(y).text.rstrip() for y in range(tree.size.height)).strip()
+
+
+@asynccontextmanager
+async def opened(look: Look = HOME) -> AsyncIterator[Room]:
+    """Open the screen of topics of lesson 9."""
+    graph = RecordedGraph()
+    app = look.app("topics", RecordedPad(graph=graph))
+    async with app.run_test(size=look.size) as pilot:
+        await settle(pilot)
+        yield Room(app, pilot, graph)
+
+
+def row(name: str, **more: Any) -> TopicRow:
+    return replace(next(row for row in TOPICS if row.name == name), **more)
+
+
+def with_row(changed: TopicRow, **samples: Any) -> GraphUpdate:
+    others = [row for row in TOPICS if row.name != changed.name]
+    return lesson_update(topics=(*others, changed), samples=samples)
+
+
+def depth_message() -> dict[str, Any]:
+    """A slope from half a metre to four, without a reading at the left."""
+    numbers = np.repeat(np.linspace(520, 3970, 64)[None, :], 48, axis=0).astype("<u2")
+    numbers[:, :6] = 0
+    size = {"width": 64, "height": 48, "step": 128, "encoding": "16UC1", "is_bigendian": 0}
+    return {**size, "data": numbers.tobytes()}
+
+
+def jpeg_message(cut_to: int | None = None) -> dict[str, Any]:
+    """The recorded camera's picture as JPEG, or its beginning only."""
+    pixels = np.frombuffer(colour_bars(), np.uint8).reshape(480, 640, 3)
+    return {"format": "jpeg", "data": cv2.imencode(".jpg", pixels)[1].tobytes()[:cut_to]}
+
+
+def with_camera(type_name: str, value: dict[str, Any]) -> GraphUpdate:
+    """The lesson with a camera that says this."""
+    return with_row(
+        row(CAMERA, type_names=(type_name,)), **{CAMERA: (sample(CAMERA, type_name, value),)}
+    )
