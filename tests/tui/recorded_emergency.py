@@ -1,0 +1,54 @@
+"""What the graph, the gate and the nodes say of the emergency stop."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from graph.data import GraphUpdate, NodeRow, Sample
+from tests.tui.recorded import lesson_update, sample
+from tui.emergency import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
+from tui.emergency_nodes import STATE_TOPIC
+
+GATE, CHASSIS = "/safety_stop", "/chassis"
+
+
+def said(engaged: bool, at_s: float) -> GraphUpdate:
+    """The graph with one message on the topic of the stop."""
+    one = Sample(TOPIC, TOPIC_TYPE, at_s, 0.0, 4, {"data": engaged})
+    return lesson_update(samples={TOPIC: (one,)})
+
+
+def held(level: bytes, words: str) -> GraphUpdate:
+    """The graph with one word of the safety node."""
+    status = [{"level": level, "name": "safety_stop", "message": words, "values": []}]
+    one = sample(SAFETY_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+    return lesson_update(samples={SAFETY_TOPIC: (one,)})
+
+
+def gate_says(verdict: str, at_s: float) -> GraphUpdate:
+    """The graph with one verdict of the gate, as the safety node words it."""
+    values = [{"key": "verdict", "value": verdict}]
+    status = [{"level": b"\x02", "name": "safety_stop", "message": "held", "values": values}]
+    kind = "diagnostic_msgs/msg/DiagnosticArray"
+    one = Sample(SAFETY_TOPIC, kind, at_s, 0.0, 120, {"status": status})
+    return lesson_update(samples={SAFETY_TOPIC: (one,)})
+
+
+def word(
+    node: str, engaged: bool, at_s: float, *, since_s: float | None = None, **more: str
+) -> Sample:
+    """What one node says of the stop that it obeys."""
+    values = {"engaged": str(engaged).lower(), **more}
+    values["since"] = str(at_s if since_s is None else since_s)
+    pairs = [{"key": key, "value": value} for key, value in values.items()]
+    status = [{"level": b"\x02" if engaged else b"\x00", "name": node, "values": pairs}]
+    return Sample(
+        STATE_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", at_s, 0.0, 120, {"status": status}
+    )
+
+
+def obeyed(*words: Sample, at_s: float, **more: Any) -> GraphUpdate:
+    """The graph with what nodes say."""
+    nodes = (NodeRow(GATE), NodeRow(CHASSIS))
+    samples = {STATE_TOPIC: words, **more.pop("samples", {})}
+    return lesson_update(samples=samples, nodes=nodes, time_s=at_s, **more)

@@ -1,0 +1,238 @@
+"""The emergency stop at work: at once, shown until released, and never without effect."""
+
+from __future__ import annotations
+
+import pytest
+from textual.color import Color
+from textual.widgets import Input
+
+from launcher.status import NodeState
+from tests.tui.app_runs import opened
+from tests.tui.recorded import (
+    NOW_S,
+    TOPICS,
+    RecordedGraph,
+    RecordedPad,
+    RecordedSession,
+    lesson_update,
+    sample,
+)
+from tests.tui.recorded_emergency import GATE, gate_says, held, obeyed, said, word
+from tests.tui.snapshots import settle
+from tui import title
+from tui.emergency import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
+from tui.widgets.command_line import CommandLine
+from tui.widgets.key_bar import KeyBar
+from tui.widgets.title_bar import TitleBar
+
+STOP = (TOPIC, TOPIC_TYPE, {"data": True}, True)
+GO = (TOPIC, TOPIC_TYPE, {"data": False}, True)
+
+
+@pytest.mark.parametrize("screen", ["deck", "topics", "logs"])
+async def test_space_stops_at_once_on_every_screen(screen: str) -> None:
+    pad = RecordedPad()
+    async with opened(pad, screen) as (app, pilot):
+        await pilot.press("space")
+        assert pad.graph.published == [STOP]
+        title = app.screen.query_one(TitleBar)
+        assert "■ EMERGENCY STOP · ^r releases" in title.text
+        assert title.styles.background == Color.parse("#b00020")
+
+
+async def test_the_publisher_is_made_before_it_is_needed() -> None:
+    pad = RecordedPad()
+    async with opened(pad):
+        assert pad.graph.prepared == [(TOPIC, TOPIC_TYPE, True)]
+
+
+async def test_the_stop_stays_until_it_is_released() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("space", "space", "escape", "2", "1")
+        assert app.brake.state.engaged
+        assert GO not in pad.graph.published
+        await pilot.press("ctrl+r")
+        assert pad.graph.published[-1] == GO
+        await pilot.pause()
+        assert "EMERGENCY" not in app.screen.query_one(TitleBar).text
+
+
+async def test_the_release_key_does_nothing_while_nothing_is_stopped() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (_app, pilot):
+        await pilot.press("ctrl+r")
+        assert pad.graph.published == []
+
+
+async def test_in_a_text_field_space_is_a_blank_and_ctrl_x_stops() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        await pilot.press("c", "a", "space", "b")
+        assert app.screen.query_one(CommandLine).query_one(Input).value == "a b"
+        assert pad.graph.published == []
+        await pilot.press("ctrl+x")
+        assert pad.graph.published == [STOP]
+
+
+@pytest.mark.parametrize("key", ["f1", "ctrl+p"])
+async def test_a_dialog_does_not_come_before_the_stop(key: str) -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (_app, pilot):
+        await pilot.press(key)
+        await pilot.pause()
+        await pilot.press("ctrl+x")
+        assert pad.graph.published == [STOP]
+
+
+async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
+    deaf = tuple(row for row in TOPICS if row.name != TOPIC)
+    pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=deaf)))
+    async with opened(pad) as (app, pilot):
+        await pilot.press("space")
+        await pilot.pause()
+        assert ("stop",) in pad.link.asked
+        assert STOP in pad.graph.published
+        assert "nobody listens" in app.screen.query_one(TitleBar).text
+        assert ["nobody listens" in told.message for told in app._notifications] == [True]
+
+
+async def test_the_release_starts_again_what_the_stop_has_ended_and_nothing_else() -> None:
+    deaf = tuple(row for row in TOPICS if row.name != TOPIC)
+    pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=deaf)))
+    link = pad.link
+    assert isinstance(link, RecordedSession)
+    first, *others = link.nodes
+    async with opened(pad) as (app, pilot):
+        link.set_state(first, NodeState.EXITED)
+        await settle(pilot)
+        await pilot.press("space")
+        await settle(pilot)
+        assert "^r starts them again" in app.screen.query_one(TitleBar).text
+        for name in others:
+            link.set_state(name, NodeState.EXITED)
+        # A second press has nothing to end, and forgets nothing.
+        await pilot.press("space")
+        await settle(pilot)
+        assert not [asked for asked in link.asked if asked[0] == "start"], "not by itself"
+        await pilot.press("ctrl+r")
+        await settle(pilot)
+        assert link.asked[-1] == ("start", *others)
+        assert not app.brake.state.engaged
+        await pilot.press("ctrl+r")
+        await settle(pilot)
+        assert [asked[0] for asked in link.asked].count("start") == 1
+
+
+async def test_the_release_is_said_again_to_a_node_that_has_not_heard(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pad, now = RecordedPad(), [NOW_S]
+    monkeypatch.setattr("tui.clock.now", lambda: now[0])
+    async with opened(pad) as (_app, pilot):
+        for now[0] in (NOW_S, NOW_S + 1):
+            pad.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
+            await settle(pilot)
+        await pilot.press("ctrl+r")
+        for seconds in (2.5, 4, 9, 13, 15):
+            now[0] = NOW_S + seconds
+            pad.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
+            await settle(pilot)
+        assert pad.graph.published == 4 * [GO]
+
+
+async def test_the_release_of_another_is_told() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(obeyed(word(GATE, True, NOW_S), at_s=NOW_S))
+        await settle(pilot)
+        assert "EMERGENCY STOP" in app.screen.query_one(TitleBar).text
+        pad.graph.show(obeyed(word(GATE, False, NOW_S + 5), at_s=NOW_S + 5))
+        await settle(pilot)
+        assert "EMERGENCY STOP" not in app.screen.query_one(TitleBar).text
+        assert ["Another has released" in told.message for told in app._notifications] == [True]
+
+
+async def test_where_ros_cannot_be_reached_the_nodes_are_stopped_instead() -> None:
+    pad = RecordedPad()
+    pad.graph.publish_error = RuntimeError("no rclpy")
+    async with opened(pad) as (app, pilot):
+        await pilot.press("space")
+        await pilot.pause()
+        assert ("stop",) in pad.link.asked
+        assert "ROS cannot be reached" in app.screen.query_one(TitleBar).text
+
+
+async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(said(True, NOW_S + 1))
+        await pilot.pause()
+        await pilot.pause()
+        assert "by another" in app.screen.query_one(TitleBar).text
+        await pilot.press("ctrl+r")
+        assert pad.graph.published == [GO]
+
+
+async def test_a_stop_whose_publisher_has_gone_can_be_released() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(gate_says("emergency_stop", NOW_S))
+        await settle(pilot)
+        assert "■ EMERGENCY STOP · ^r releases" in app.screen.query_one(TitleBar).text
+        assert "^r Release" in str(app.screen.query_one(KeyBar).render())
+        await pilot.press("ctrl+r")
+        assert pad.graph.published == [GO]
+
+
+async def test_the_safety_nodes_words_stand_in_the_title() -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(held(b"\x01", "front 0.38 m"))
+        await pilot.pause()
+        await pilot.pause()
+        assert "⚠ Front 0.38 m" in title.states(app)[0]
+
+
+async def test_long_words_of_the_safety_node_leave_the_tabs_their_names() -> None:
+    pad = RecordedPad()
+    async with opened(pad, size=(80, 24)) as (app, pilot):
+        pad.graph.show(held(b"\x01", "front 0.38 m, and the left wheel has told nothing for 2 s"))
+        await settle(pilot)
+        line = app.screen.query_one(TitleBar).text
+        for name in ("1 Deck", "2 Top.", "3 Com.", "4 Logs", "5 Gra.", "6 Flow", "7 Dev."):
+            assert name in line
+        assert "⚠ Front 0.38 m" in line
+        assert line.rstrip().endswith("…")
+
+
+@pytest.mark.parametrize(
+    ("refused", "words"),
+    [
+        ("0.8 m/s, limit 0.5 m/s", "⚠ Refused: 0.8 m/s, limit 0.5 m/s"),
+        ("stamp 10.0 s old", "⚠ Refused: stamp 10.0 s old"),
+        ("some\x1b[31mthing", "⚠ Refused: some␛[31mthing"),
+    ],
+)
+async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
+    refused: str, words: str
+) -> None:
+    values = [{"key": "verdict", "value": "free"}, {"key": "refused", "value": refused}]
+    status = [{"level": b"\x01", "name": "safety_stop", "message": "-", "values": values}]
+    one = sample(SAFETY_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.graph.show(lesson_update(samples={SAFETY_TOPIC: (one,)}))
+        await settle(pilot)
+        assert words in app.screen.query_one(TitleBar).text
+
+
+async def test_another_session_begins_without_the_stop_of_the_one_before() -> None:
+    pad = RecordedPad(sessions=[])
+    async with opened(pad) as (app, pilot):
+        await pilot.press("space", "f8")
+        await pilot.pause()
+        app.sessions.open(app.sessions.order)
+        await pilot.pause()
+        await pilot.pause()
+        assert not app.brake.state.engaged
