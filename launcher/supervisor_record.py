@@ -20,13 +20,12 @@ from launcher.private_files import make_folder, open_file, open_own_folder, remo
 from launcher.supervisor_id import supervisor_runs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from launcher.status import SessionInfo
 
 RECORD_NAME = "session.json"
 _DRAFT_NAME = f"{RECORD_NAME}.new"
-_LOCK_NAME = "lock"
 _LOCKED_WITHIN_S = 20.0
 """Whoever holds the lock for longer has been stopped in the middle of it."""
 
@@ -101,32 +100,47 @@ def read_record(folder: Path) -> RunRecord | None:
 @contextlib.contextmanager
 def exclusively(run_dir: Path, domain: int) -> Iterator[None]:
     """Keep this user's other supervisors out of the domain, while one looks and settles there."""
-    descriptor = _lock_file(run_dir)
+    descriptor, lock = _lock(run_dir, domain)
     try:
         deadline = time.monotonic() + _LOCKED_WITHIN_S
-        while not _locked(descriptor, domain) and time.monotonic() < deadline:
+        while not _taken(lock) and time.monotonic() < deadline:
             time.sleep(0.005)
         yield
     finally:
         os.close(descriptor)
 
 
-def _lock_file(run_dir: Path) -> int:
-    """Open what all of this user's supervisors lock, whatever their run directory."""
-    flags = os.O_RDWR | os.O_CREAT
+def lock_path() -> Path:
+    """Return the file that all of this user's supervisors lock, whatever their run directory.
+
+    In a user namespace, where anybody can be root, it is named by the user outside of it.
+    """
+    user = os.getuid()
+    for line in Path("/proc/self/uid_map").read_text(encoding="ascii").splitlines():
+        inside, outside, count = map(int, line.split())
+        if inside <= user < inside + count:
+            user += outside - inside
+            break
+    return Path(f"/tmp/deck-{user}.lock")
+
+
+def _lock(run_dir: Path, domain: int) -> tuple[int, Callable[[], None]]:
+    """Return a descriptor to be closed, and what locks it or raises."""
     with contextlib.suppress(OSError):
-        descriptor = open_file(f"/tmp/deck-{os.getuid()}.lock", flags)
+        descriptor = open_file(lock_path(), os.O_RDWR | os.O_CREAT)
         if os.fstat(descriptor).st_uid == os.getuid():
-            return descriptor
+            # One byte for each domain: a start in another need not wait.
+            exclusive = fcntl.LOCK_EX | fcntl.LOCK_NB
+            return descriptor, lambda: fcntl.lockf(descriptor, exclusive, 1, domain)
         os.close(descriptor)
     # Somebody else has planted it there: those of one run directory at least.
-    return open_file(run_dir / _LOCK_NAME, flags)
+    folder = open_own_folder(run_dir)
+    return folder, lambda: fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-def _locked(descriptor: int, domain: int) -> bool:
-    """Lock the byte of the file that stands for this domain."""
+def _taken(lock: Callable[[], None]) -> bool:
     try:
-        fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, domain)
+        lock()
     except (BlockingIOError, PermissionError):
         return False
     return True
