@@ -77,6 +77,17 @@ async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
         assert room.screen.is_in_list
 
 
+async def test_tab_goes_on_from_the_form_to_the_time_out_and_from_a_list_to_its_detail() -> None:
+    async with opened() as room:
+        await room.press("tab")
+        assert room.screen.focused not in {None, room.screen.names}
+        await room.press("escape")
+        await room.screen.go(Place(Kind.SERVICE, SERVICE))
+        await room.wait_for("✓ fits ")
+        await room.press("tab", "tab", "backspace", "9")
+        assert timeout_field(room).value == "9"
+
+
 def footer(room: Room) -> str:
     """Return the keys that are shown."""
     return str(room.screen.query_one(KeyBar).render())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
+from textual.binding import Binding
 from textual.widgets import Input
 
 from graph.housekeeping import is_housekeeping
@@ -38,7 +39,11 @@ class GraphScreen(GraphFrame):
         "be sent goals, types down to their fields. Enter on a name goes there. The map draws a "
         "node with those that it talks to: () marks a service, ⚑ an action."
     )
-    BINDINGS: ClassVar = bindings(*GRAPH_ACTIONS)
+    BINDINGS: ClassVar = [
+        *bindings(*GRAPH_ACTIONS),
+        # An action on Tab takes away what every screen does with it where the action cannot be.
+        Binding("tab", "app.focus_next", show=False),
+    ]
 
     def on_mount(self) -> None:
         """Begin in the list."""
