@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from graph.qos import Qos, profile
@@ -11,8 +12,11 @@ from graph.tap import LARGE_TYPES
 from graph.types import load_message
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from rclpy.node import Node
     from rclpy.subscription import Subscription
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
 
     from graph.bag_metadata import BagTopic
 
@@ -32,14 +36,18 @@ class Sequences:
     def __init__(self) -> None:
         self._last: list[int] = []
 
-    def missing(self, number: int, publishers: int) -> int:
-        """Take the next number; return how many were left out before it."""
+    def missing(self, number: int, publishers: Callable[[], int]) -> int:
+        """Take the next number; return how many were left out before it.
+
+        `publishers` tells how many there have ever been: those who are gone are kept in mind,
+        for nobody can say which they were.
+        """
         if number - 1 in self._last:
             self._last[self._last.index(number - 1)] = number
             return 0
         below = [last for last in self._last if last < number]
-        if len(self._last) < publishers or not below:
-            self._last = [*self._last, number][-max(1, publishers) :]
+        if len(self._last) < publishers() or not below:
+            self._last.append(number)
             return 0
         nearest = max(below)
         self._last[self._last.index(nearest)] = number
@@ -53,10 +61,11 @@ class RecordingTap:
         """Subscribe. Raises UnknownTypeError, and what rclpy raises."""
         self.topic = topic
         self.qos = qos
-        self.publishers = 1
         self.lost = 0
         """Messages that were published and never came."""
         self._sequences = Sequences()
+        self._ever: set[tuple[int, ...]] = set()
+        """Every publisher so far, by its number in the middleware."""
         self._node = node
         self._cls = load_message(topic.type_name)
         self._depth = DEEP_OF_LARGE if topic.type_name in LARGE_TYPES else DEEP
@@ -83,6 +92,7 @@ class RecordingTap:
     def drain(self) -> list[Message]:
         """Take all that lies in the queue."""
         taken: list[Message] = []
+        numbers: list[int] = []
         handle = self._subscription.handle
         with handle:
             # A publisher faster than this loop must not hold it for ever.
@@ -94,10 +104,21 @@ class RecordingTap:
                 stamp_ns = info["received_timestamp"] or int(time.time() * NANOSECONDS)
                 number = info["publication_sequence_number"]
                 if number is not None:
-                    self.lost += self._sequences.missing(number, self.publishers)
+                    numbers.append(number)
                 sent_ns = info["source_timestamp"] or stamp_ns
                 taken.append(Message(stamp_ns, self.topic, raw, sent_ns))
+        # Asked after the messages were taken: by then whoever has sent them is known.
+        publishers = lru_cache(self._publishers_so_far)
+        self.lost += sum(self._sequences.missing(number, publishers) for number in numbers)
         return taken
+
+    def know(self, publishers: Sequence[TopicEndpointInfo]) -> None:
+        """Take note of who publishes now."""
+        self._ever.update(tuple(info.endpoint_gid) for info in publishers)
+
+    def _publishers_so_far(self) -> int:
+        self.know(self._node.get_publishers_info_by_topic(self.topic.name))
+        return len(self._ever)
 
     def close(self) -> None:
         """End the subscription."""

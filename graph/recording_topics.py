@@ -98,7 +98,7 @@ class RecordingTopics:
             self._writer.put(tap.drain())
             tap.reopen(qos)
         if tap is not None:
-            tap.publishers = len(found)
+            tap.know(found)
 
     def _open(
         self, name: str, types: Sequence[str], found: Sequence[TopicEndpointInfo]

@@ -306,6 +306,20 @@ def test_a_recorder_does_not_pass_for_somebody_who_obeys(ros_domain: int, tmp_pa
     watcher.close()
 
 
+def test_one_who_begins_anew_makes_no_loss_of_anothers(ros_domain: int, tmp_path: Path) -> None:
+    recorder = Recorder(ros_domain, "localhost", tmp_path / "bag")
+    with Peer(ros_domain) as peer:
+        recorder.start()
+        for name, count in (("first", 3), ("second", 5), ("third", 2)):
+            with Peer(ros_domain, name) as other:
+                for number in range(count):
+                    peer.say("/word", String(data=f"peer {number}"))
+                    other.say("/word", String(data=f"{name} {number}"))
+        recorded(recorder, "/word", 20)
+        status = recorder.stop()
+    assert status.lost == 0
+
+
 def test_lost_messages_are_counted(
     ros_domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

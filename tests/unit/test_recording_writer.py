@@ -112,13 +112,15 @@ def test_a_disk_that_fills_up_leaves_a_whole_bag(tmp_path: Path, room: int) -> N
         ([1, 100, 2, 101, 103, 4], 2, 2),
         ([7, 8, 1, 2, 3], 1, 0),
         ([10, 12, 14], 0, 2),
+        # The first one begins anew, and the second goes on.
+        ([50, 90, 1, 91, 2], 3, 0),
     ],
 )
 def test_what_is_missing_is_found_in_the_numbers(
     numbers: list[int], publishers: int, missing: int
 ) -> None:
     sequences = Sequences()
-    assert sum(sequences.missing(number, publishers) for number in numbers) == missing
+    assert sum(sequences.missing(number, lambda: publishers) for number in numbers) == missing
 
 
 def test_other_readers_find_both_times_and_check_the_sums(tmp_path: Path) -> None:
