@@ -130,7 +130,7 @@ class _Reader:
     def _node(self, name: str, node: NodeDocument, running: Mapping[str, Any]) -> NodeSpec:
         where = ("nodes", name, "params")
         params = find(self.tree, where)
-        cwd = None if node.cwd is None else self.path.parent / node.cwd
+        cwd = None if node.cwd is None else Path(node.cwd)
         # Unlike Path.is_dir, this takes a name that no directory can have for what it is.
         if cwd is not None and not os.path.isdir(cwd):  # noqa: PTH112
             here = ("nodes", name, "cwd")

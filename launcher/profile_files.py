@@ -1,4 +1,4 @@
-"""Nodes of the user's own: `run: ./my_sonar.py`, a path relative to the profile that says so."""
+"""A user's own nodes, `run: ./my_sonar.py`, and folders: relative to the profile that says so."""
 
 from __future__ import annotations
 
@@ -20,28 +20,33 @@ def is_file(run: str) -> bool:
 
 
 def with_own_files(profile: Branch, folder: Path) -> Branch:
-    """Return a profile, of this folder, with the files of its nodes by their full paths."""
+    """Return a profile, of this folder, with files and folders of its nodes by full paths."""
     nodes = profile.entries.get("nodes")
     if nodes is None or not isinstance(nodes.value, Branch):
         return profile
     found = {
-        name: Entry(node.key_place, _with_own_file(node.value, folder))
+        name: Entry(node.key_place, _with_full_paths(node.value, folder))
         for name, node in nodes.value.entries.items()
     }
     every = Entry(nodes.key_place, Branch(found, nodes.value.place, nodes.value.size))
     return Branch({**profile.entries, "nodes": every}, profile.place, profile.size)
 
 
-def _with_own_file(node: Tree, folder: Path) -> Tree:
-    run = node.entries.get("run") if isinstance(node, Branch) else None
-    if not isinstance(node, Branch) or run is None or not isinstance(run.value, Scalar):
+def _with_full_paths(node: Tree, folder: Path) -> Tree:
+    if not isinstance(node, Branch):
         return node
-    written = run.value
-    if not isinstance(written.value, str) or not is_file(written.value):
-        return node
+    parts = {key: _with_full_path(key, part, folder) for key, part in node.entries.items()}
+    return Branch(parts, node.place, node.size)
+
+
+def _with_full_path(key: str, part: Entry, folder: Path) -> Entry:
+    written = part.value
+    if not isinstance(written, Scalar) or not isinstance(written.value, str):
+        return part
+    if not (key == "cwd" or (key == "run" and is_file(written.value))):
+        return part
     path = os.path.normpath(folder.absolute() / written.value)
-    value = Scalar(path, written.text, written.place, written.size)
-    return Branch({**node.entries, "run": Entry(run.key_place, value)}, node.place, node.size)
+    return Entry(part.key_place, Scalar(path, written.text, written.place, written.size))
 
 
 def files_beside(folder: Path) -> list[str]:

@@ -10,6 +10,7 @@ import pytest
 from launcher.catalog import list_profiles
 from launcher.profile import load_profile
 from launcher.profile_schema import render
+from tests.unit.profile_files import written
 
 PROFILES = Path(__file__).parents[2] / "profiles"
 LESSONS = sorted(PROFILES.glob("*.yaml"))
@@ -37,6 +38,12 @@ def test_a_lesson_is_valid_and_titled_in_both_languages(path: Path, hardware: st
     assert set(profile.title) == set(profile.about) == {"en", "ru"}
     assert profile.warnings == ()
     assert profile.path.read_text().startswith("# yaml-language-server: $schema=schema.json")
+
+
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_a_lesson_can_be_extended_from_any_folder(path: Path, tmp_path: Path) -> None:
+    profile = load_profile(written(tmp_path, f"extends: {path.stem}"))
+    assert profile.nodes == load_profile(path).nodes
 
 
 def test_the_schema_is_true() -> None:

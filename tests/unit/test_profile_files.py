@@ -31,6 +31,17 @@ def test_a_file_stands_relative_to_the_profile_that_names_it(
     ]
 
 
+def test_a_folder_stands_relative_to_the_profile_that_names_it(tmp_path: Path) -> None:
+    """And not to one that extends it: lesson 6 has its RViz settings in a folder beside it."""
+    (tmp_path / "mine").mkdir()
+    written(tmp_path, "nodes: {a: {exec: [a], cwd: mine}, b: {exec: [b], cwd: mine}}", "robot.yaml")
+    other = tmp_path / "other"
+    (other / "here").mkdir(parents=True)
+    nodes = loaded(other, "extends: ../robot.yaml\nnodes: {b: {cwd: here}}").nodes
+    assert nodes["a"].cwd == tmp_path / "mine"
+    assert nodes["b"].cwd == other / "here"
+
+
 def test_a_file_that_is_missing_is_told_with_one_that_may_be_meant(tmp_path: Path) -> None:
     (tmp_path / "my_sonar.py").write_text(NEVER)
     found = told(tmp_path, "nodes:\n  a: {run: ./my_sonr.py}\n  b: {run: ./}\n")
