@@ -107,6 +107,15 @@ async def test_that_the_disk_will_be_full_is_told_once() -> None:
         assert not any("1:20" in words for words in told(app))
 
 
+async def test_beside_an_alarm_too_the_title_tells_how_much_is_recorded() -> None:
+    async with opened(size=(160, 45)) as (app, pilot):
+        await pilot.press("space")
+        await until(pilot, lambda: app.brake.state.engaged)
+        await pilot.press("f6")
+        await until(pilot, lambda: "3.4 MB" in title(app))
+        assert "STOP" in title(app).upper()
+
+
 async def test_the_key_records_from_a_text_field_too() -> None:
     async with opened(screen="composer") as (app, pilot):
         assert isinstance(app.focused, TextArea)
