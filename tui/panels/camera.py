@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from graph.images import ImageError, to_rgb
 from tui.figures import whole
 from tui.i18n import N_, _, said
+from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.image_view import ImageView
 from tui.widgets.trouble import trouble_words
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
 
 TOPIC = "/camera/color/image_raw"
+TYPE = "sensor_msgs/msg/Image"
 PERIOD_S = 0.3
 """Three pictures a second: a terminal is no cinema, and SSH no cable."""
 
@@ -32,6 +34,8 @@ class CameraFeed(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._shown_s = float("-inf")
+        self._refused = False
+        """Whether words stand there of what came last, which is no picture."""
 
     def compose(self) -> ComposeResult:
         """The picture."""
@@ -47,11 +51,15 @@ class CameraFeed(Panel):
         sample = newest(update, TOPIC)
         trouble, detail, age_s = trouble_of(update, TOPIC)
         if trouble is not None:
+            self._refused = False
             view.show_words(trouble_words(trouble, age_s), detail)
             return
         if sample is None:
-            if not view.has_picture:
+            if not view.has_picture and not self._refused:
                 view.show_words(_("waiting for the first picture"), TOPIC)
+            return
+        if (wrong := other_type(sample, TYPE)) is not None:
+            self._refuse(view, *wrong)
             return
         now_s = monotonic()
         if view.has_picture and now_s - self._shown_s < PERIOD_S:
@@ -60,8 +68,13 @@ class CameraFeed(Panel):
         try:
             picture = to_rgb(sample.value)
         except ImageError as error:
-            view.show_words(_("this picture cannot be shown"), said(error.words))
+            self._refuse(view, _("this picture cannot be shown"), said(error.words))
             return
+        self._refused = False
         row = row_of(update, TOPIC)
         hz = "" if row is None or row.hz is None else whole(row.hz)
         view.show(picture, f"{picture.shape[1]}×{picture.shape[0]}", hz=hz)
+
+    def _refuse(self, view: ImageView, headline: str, detail: str) -> None:
+        self._refused = True
+        view.show_words(headline, detail)

@@ -9,6 +9,7 @@ from graph.data import Trouble
 from tui.emergency import SAFETY_TOPIC
 from tui.i18n import N_, _
 from tui.panels.bounds import bounds_of
+from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.map_panel import RoomMap
 from tui.widgets.map_reading import goal_in, ground_in, pose_in
@@ -19,8 +20,10 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
+    from tui.widgets.drawing import Instead
 
 ODOMETRY, TRUTH, GROUND, GOAL = "/odom", "/mock/pose", "/map", "/goal_pose"
+TYPES = {ODOMETRY: "nav_msgs/msg/Odometry", TRUTH: "geometry_msgs/msg/PoseStamped"}
 SONARS = {FRONT: "/sensor/sonar_front", REAR: "/sensor/sonar_rear"}
 
 
@@ -37,6 +40,7 @@ class MapFeed(Panel):
         self._pose_topic = ""
         """Where the pose comes from; empty until there is one."""
         self._heard_s = -math.inf
+        self._instead: Instead | None = None
         self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
@@ -73,6 +77,7 @@ class MapFeed(Panel):
         self._show_pose(update, drawing)
         self._show_truth(update, drawing)
         drawing.settle()
+        drawing.show_instead(self._instead)
         drawing.show_trouble(*self._trouble(update))
 
     def _choose_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
@@ -83,13 +88,16 @@ class MapFeed(Panel):
         if self._pose_topic:
             drawing.forget_path()
         self._pose_topic = topic
+        self._instead = None
         self.name_source("" if topic == ODOMETRY else topic)
 
     def _show_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
         for sample in update.samples.get(self._pose_topic, ()):
             found = pose_in(sample.value)
             if found is None:
+                self._instead = other_type(sample, TYPES[self._pose_topic])
                 continue
+            self._instead = None
             if sample.received_s < self._heard_s:
                 # A recording was turned back.
                 drawing.forget_path()

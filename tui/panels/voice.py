@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from tui.i18n import N_
+from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.voice import Speaker, VoicePanel
 
@@ -13,7 +14,9 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
+    from tui.widgets.drawing import Instead
 
+TYPE = "std_msgs/msg/ByteMultiArray"
 TOPICS: dict[str, Speaker] = {"/audio/mic_raw": "human", "/audio/speaker_raw": "robot"}
 HEARD_FIRST = "/audio/mic_raw"
 LEVEL = "/audio/level"
@@ -28,6 +31,10 @@ class VoiceFeed(Panel):
     least = 2
     weight = 2
     across_below = 80
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._instead: dict[str, Instead | None] = {}
 
     def compose(self) -> ComposeResult:
         """The transcript."""
@@ -50,7 +57,19 @@ class VoiceFeed(Panel):
             if isinstance(data, bytes):
                 talk.hear(TOPICS[sample.topic], data, sample.received_s)
         self._show_level(talk, update)
-        talk.show_trouble(*trouble_of(update, HEARD_FIRST))
+        instead = self._of_another_type(update)
+        talk.show_instead(instead)
+        talk.show_trouble(*((None,) if instead else trouble_of(update, HEARD_FIRST)))
+
+    def _of_another_type(self, update: GraphUpdate) -> Instead | None:
+        """Return what to say of the first topic that carries another type."""
+        for topic in TOPICS:
+            if topic in update.samples:
+                self._instead[topic] = other_type(newest(update, topic), TYPE)
+            row, words = row_of(update, topic), self._instead.get(topic)
+            if row is not None and row.publishers and words is not None:
+                return words
+        return None
 
     def _show_level(self, talk: VoicePanel, update: GraphUpdate) -> None:
         sample = newest(update, LEVEL)

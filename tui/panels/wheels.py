@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from robot.kinematics import wheel_speeds
 from tui.i18n import N_
 from tui.panels.joints import Joints
+from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, first_published, newest, trouble_of
 from tui.widgets.wheels import WheelsPanel
 from tui.widgets.wheels_reading import LEFT, RIGHT, Wheels, wheels_in
@@ -18,8 +19,10 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
+    from tui.widgets.drawing import Instead
 
 WHEELS, DRIVE = "/wheel_commands", "/drive"
+DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
 
 
 class WheelsFeed(Panel):
@@ -33,6 +36,8 @@ class WheelsFeed(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._joints = Joints(WHEELS, (LEFT, RIGHT))
+        self._instead: Instead | None = None
+        """Of the drive commands."""
 
     def compose(self) -> ComposeResult:
         """The drawing."""
@@ -54,7 +59,9 @@ class WheelsFeed(Panel):
                 drawing.show(wheels)
             if topic == WHEELS:
                 self._joints.hear(sample, read=wheels is not None)
-        drawing.show_instead(self._joints.instead if topic == WHEELS else None)
+            else:
+                self._instead = other_type(sample, DRIVE_TYPE)
+        drawing.show_instead(self._joints.instead if topic == WHEELS else self._instead)
         drawing.show_trouble(*trouble_of(update, topic))
 
     def words_changed(self) -> None:

@@ -82,13 +82,20 @@ class VoicePanel(Drawing):
         """Whether anything was said."""
         return bool(self._sayings)
 
+    @property
+    def draws(self) -> bool:
+        """What was said is not hidden by words about what cannot be read."""
+        return self.has_talk or super().draws
+
     def draw(self, width: int, height: int) -> list[Line]:
         """As many of the newest as there is room for, and the level."""
-        level = [level_line(self._dbfs, width)] if self._tells_level else []
+        below = [level_line(self._dbfs, width)] if self._tells_level else []
         if not self._sayings:
-            return [[Ink(_("nobody has said anything yet"), "muted")], *level][-height:]
-        talk = self._talk(width, max(1, height - len(level)))
-        return [*talk, *level][:height]
+            return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
+        if self._instead is not None:
+            below[:0] = [[Ink(text, "alert")] for text in folded(self._instead.detail, width)]
+        talk = self._talk(width, max(1, height - len(below)))
+        return [*talk, *below][:height]
 
     @property
     def _tells_level(self) -> bool:
