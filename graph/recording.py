@@ -197,7 +197,8 @@ class Recorder:
 
     def _take_turns(self, topics: RecordingTopics, writer: RecordingWriter) -> None:
         look_at_s = 0.0
-        while not writer.error:
+        # Where the disk takes no more, what comes until somebody stops it is counted as dropped.
+        while True:
             ending = self._stopping.is_set() or bool(self._error)
             if time.monotonic() >= look_at_s:
                 topics.look()

@@ -14,6 +14,7 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from geometry_msgs.msg import TransformStamped
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import Image
@@ -202,15 +203,18 @@ def test_a_folder_that_is_there_is_refused(tmp_path: Path) -> None:
 
 RECORD = """
 import resource, sys, time
+from graph import recording_writer
 from graph.recording import Recorder
 from pathlib import Path
 if sys.argv[3] != "0":
+    recording_writer.FLUSH_S = 3600.0  # Else the time, too, decides how much is in a chunk.
     resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]),) * 2)
 recorder = Recorder(int(sys.argv[1]), "localhost", Path(sys.argv[2]))
 recorder.start()
 while not recorder.status.error:
     print(recorder.status.messages, flush=True)
     time.sleep(0.1)
+sys.stdin.readline()  # It goes on hearing until it is told that all was said.
 print("error", recorder.status.error, recorder.stop().dropped, flush=True)
 """
 
@@ -220,6 +224,7 @@ def recording(domain: int, folder: Path, limit: int = 0) -> subprocess.Popen[str
     return subprocess.Popen(
         [sys.executable, "-c", RECORD, str(domain), str(folder), str(limit)],
         cwd=ROOT,
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -227,6 +232,7 @@ def recording(domain: int, folder: Path, limit: int = 0) -> subprocess.Popen[str
 
 def test_after_a_kill_all_but_the_last_moments_can_be_read(ros_domain: int, tmp_path: Path) -> None:
     process = recording(ros_domain, tmp_path / "bag")
+    assert process.stdin is not None
     assert process.stdout is not None
     with Peer(ros_domain) as peer:
         for number in range(40):
@@ -236,6 +242,7 @@ def test_after_a_kill_all_but_the_last_moments_can_be_read(ros_domain: int, tmp_
         peer.say("/text", String(data="one more"))
         process.send_signal(signal.SIGKILL)
         process.wait()
+        process.stdin.close()
         process.stdout.close()
     with open_bag(tmp_path / "bag") as bag:
         found = [raw for _topic, _stamp, raw in bag.messages()]
@@ -246,6 +253,7 @@ def test_after_a_kill_all_but_the_last_moments_can_be_read(ros_domain: int, tmp_
 
 def test_a_full_disk_leaves_a_whole_bag_and_a_word(ros_domain: int, tmp_path: Path) -> None:
     process = recording(ros_domain, tmp_path / "bag", limit=3_000_000)
+    assert process.stdin is not None
     assert process.stdout is not None
     big = String(data="x" * 100_000)
     with Peer(ros_domain) as peer:
@@ -253,6 +261,8 @@ def test_a_full_disk_leaves_a_whole_bag_and_a_word(ros_domain: int, tmp_path: Pa
         wait_until(publisher.get_subscription_count, "the recorder")
         for _ in range(50):
             publisher.publish(big)
+        assert publisher.wait_for_all_acked(Duration(seconds=30))
+        process.stdin.close()
         lines = list(process.stdout)
     process.stdout.close()
     assert process.wait() == 0
