@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 
 from tests.e2e import marked
 from tests.e2e.conftest import Deck
-from tests.e2e.terminal import Terminal
+from tests.e2e.listening import wait_for_the_gate
 from tests.waiting import wait_until
 
 SCREENS = {
@@ -59,17 +58,6 @@ def test_a_stop_that_outlives_its_screen_is_released_from_the_next(deck: Deck) -
     second.press("q")
     assert second.wait_exit() == 0
     assert deck.open("down").wait_exit() == 0
-
-
-def wait_for_the_gate(terminal: Terminal) -> None:
-    """Wait in Topics until somebody is known to listen: before that a stop ends the nodes, too.
-
-    The cursor is on whichever of the topics of that name was there first.
-    """
-    terminal.press("f3", "/")
-    terminal.type("/emergency_stop\r")
-    row = re.compile(r" /emergency_stop +std_msgs/Bool +\d+ +[1-9]")
-    terminal.wait_until(lambda text: row.search(text) is not None, "a subscriber of the stop")
 
 
 def title(screen: str) -> str:

@@ -11,6 +11,7 @@ import pytest
 
 from tests import ports
 from tests.e2e import marked
+from tests.e2e.listening import wait_for_the_gate
 from tests.ros.peer import Peer
 from tests.ros.wheels import Wheels
 from tests.waiting import wait_until
@@ -107,6 +108,7 @@ def test_it_outlives_the_screen_the_gate_and_the_supervisor(
     terminal = attached(deck)
     wheels.drive()
     wheels.wait_moving()
+    wait_for_the_gate(terminal)
     terminal.press("space")
     terminal.wait_for(STOP)
     wheels.assert_stands()
