@@ -9,6 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+NOT_READY = "not ready"
+"""How the supervisor begins its words about a node whose time to become ready is up."""
+
 
 class NodeState(str, Enum):
     """Where a node is in its life."""
@@ -78,6 +81,11 @@ class NodeStatus:
     memory_bytes: int | None = None
     """Proportional set size of the node's whole process group."""
     needs: tuple[str, ...] = ()
+
+    @property
+    def late(self) -> bool:
+        """Whether it runs, but its time to become ready is up."""
+        return self.state is NodeState.RUNNING and self.detail.startswith(NOT_READY)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from textual.widgets import Input
 
 from launcher.events import LogEvent
 from launcher.status import NodeState, Severity
+from launcher.words import say
 from tests.tui.app_runs import opened
 from tests.tui.deck_days import llm
 from tests.tui.recorded import (
@@ -102,6 +103,24 @@ async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
         assert "↻ restarts" in row
         assert "ended by SIGKILL" in row
         assert "◔ 7/8" in title.states(app)[0]
+
+
+async def test_a_node_that_runs_but_is_not_ready_looks_like_none_that_is_well() -> None:
+    pad = RecordedPad()
+    late = say("not ready within {seconds:g} s: {why}", seconds=10.0, why="nobody publishes /x")
+    async with opened(pad, size=(200, 60)) as (app, pilot):
+        pad.link.set_state("camera", NodeState.RUNNING, detail=late)
+        await pilot.pause()
+        await pilot.pause()
+        row = app.screen.query_one(NodesTable).render_line(2).text
+        assert "◔ running" in row
+        assert "not ready within 10 s" in row
+        assert "○ 7/8" in title.states(app)[0]
+        pad.link.set_state("camera", NodeState.RUNNING, detail="")
+        await pilot.pause()
+        await pilot.pause()
+        assert "● running" in app.screen.query_one(NodesTable).render_line(2).text
+        assert "● 8/8" in title.states(app)[0]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from launcher.readiness import Condition, Seen
 from launcher.status import NodeState, NodeStatus
+from launcher.supervisor_words import instead, what
 from tui.cli.health import over, settled, well
 
 
@@ -17,6 +19,7 @@ def node(name: str, state: NodeState, **more: object) -> NodeStatus:
 
 READY, RUNNING, FAILED = NodeState.READY, NodeState.RUNNING, NodeState.FAILED
 STARTING, WAITING, EXITED = NodeState.STARTING, NodeState.WAITING, NodeState.EXITED
+TOPIC = Condition("topic", "/scan", "std_msgs/msg/Float32", 5.0)
 LATE = "not ready within 10 s: nobody publishes /scan"
 
 
@@ -74,3 +77,12 @@ def test_a_node_on_its_way_up_is_none_the_worse_if_nobody_waited() -> None:
     assert well(node("a", WAITING), on_the_way=True)
     assert not well(node("a", STARTING, restarts=2), on_the_way=True)
     assert not well(node("a", FAILED), on_the_way=True)
+
+
+def test_a_node_that_publishes_another_type_is_not_on_its_way_up() -> None:
+    waits = str(what(TOPIC))
+    slow = str(instead(TOPIC, Seen((TOPIC.type,), 0.5)))
+    other = str(instead(TOPIC, Seen(("std_msgs/msg/String",))))
+    assert well(node("a", STARTING, detail=waits), on_the_way=True)
+    assert well(node("a", STARTING, detail=slow), on_the_way=True)
+    assert not well(node("a", STARTING, detail=other), on_the_way=True)

@@ -11,15 +11,13 @@ if TYPE_CHECKING:
 
     from launcher.status import NodeStatus
 
-NOT_READY = "not ready"
-"""How the supervisor begins its words about a node whose time to become ready is up."""
+OTHER_TYPE = " is published as "
+"""In the supervisor's words about a topic of another type, which waiting does not change."""
 
 
 def serves(node: NodeStatus) -> bool:
     """Whether those that need the node may start."""
-    if node.state is NodeState.RUNNING:
-        return not node.detail.startswith(NOT_READY)
-    return node.state is NodeState.READY
+    return node.state in (NodeState.READY, NodeState.RUNNING) and not node.late
 
 
 def settled(nodes: Mapping[str, NodeStatus]) -> bool:
@@ -52,7 +50,7 @@ def well(node: NodeStatus, optional: Collection[str] = (), *, on_the_way: bool =
     if node.name in optional:
         return True
     if on_the_way and node.state in (NodeState.STARTING, NodeState.WAITING):
-        return not node.restarts
+        return not node.restarts and OTHER_TYPE not in node.detail
     if node.state is NodeState.EXITED:
         return not node.restarts and not node.exit_code and node.signal is None
     return serves(node) and not node.restarts

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from tui.i18n import _
 from tui.widgets.graph_links import heading, link, short
 from tui.widgets.graph_neighbours import neighbours
-from tui.widgets.nodes_table import STATES, memory, percent, why
+from tui.widgets.nodes_table import looks, memory, percent, why
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -52,7 +52,7 @@ def process_words(status: NodeStatus | None) -> str:
     """Return which process of ours a node is, and what it costs."""
     if status is None:
         return _("not started by Deck")
-    sign, word, _meaning = STATES[status.state]
+    sign, word, _meaning = looks(status)
     if not status.state.alive:
         return f"{sign} {_(word)} · {why(status)}"
     parts = [f"{sign} {_(word)}"]

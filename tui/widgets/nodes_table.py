@@ -29,6 +29,8 @@ STATES = {
 }
 """State to sign, word and meaning: never the colour alone."""
 
+LATE = ("◔", N_("running"), "warn")
+"""One that runs, but is not ready though its time is up."""
 OUTSIDE = ("◇", N_("outside"))
 UNKNOWN = "—"
 
@@ -115,7 +117,7 @@ class NodesTable(Rows):
         if node is None:
             sign, word = OUTSIDE
             return (self.chosen, f"{sign} {_(word)} · {_('not started by Deck')}")
-        sign, word, _meaning = STATES[node.state]
+        sign, word, _meaning = looks(node)
         return (node.name, f"{sign} {_(word)} · {why(node)}")
 
     def _named(self, name: str) -> str:
@@ -131,7 +133,7 @@ class NodesTable(Rows):
         return tuple(cells)
 
     def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
-        sign, word, meaning = STATES[node.state]
+        sign, word, meaning = looks(node)
         state = f"{sign} {_(word)}"
         if not node.state.alive:
             # One cell to the edge: a long word of a state would widen the column for all.
@@ -148,6 +150,11 @@ class NodesTable(Rows):
         if self._full:
             cells.append(Cell(why(node) if self._told else "", "dim"))
         return tuple(cells)
+
+
+def looks(node: NodeStatus) -> tuple[str, str, str]:
+    """Return sign, word and meaning of a node's state."""
+    return LATE if node.late else STATES[node.state]
 
 
 def why(node: NodeStatus) -> str:
