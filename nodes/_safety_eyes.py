@@ -41,7 +41,11 @@ class Eye:
         """What it shows now."""
         reading = self.reading
         sight = look(reading, zone.critical_m, zone.stale_after_s)
-        return View(self._place, sight, reading, share(reading, zone))
+        part = share(reading, zone)
+        if sight == Sight.FREE and not part:
+            # At the critical distance itself, where it slows before that: nothing is let through.
+            sight = Sight.CLOSE
+        return View(self._place, sight, reading, part)
 
 
 class Eyes:

@@ -15,7 +15,7 @@ from nodes._safety_eyes import Eye
 from nodes._safety_gate import Moment
 from nodes._safety_words import diagnosis, tell_front
 from nodes._speech import Speech
-from robot.safety import Verdict, Zone
+from robot.safety import Sight, Verdict, Zone
 from tests.ros.gate import FRONT, REAR, Gate, drive, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
@@ -214,7 +214,7 @@ def test_what_is_out_of_range_is_told_in_words(
         ("ru", 0.52, "Ехать можно, но медленнее: 4 % скорости (0,52 м)."),
         ("en", 0.501, "Free to move, slowed to 1 % (0.50 m)."),
         ("en", 0.999, "Free to move, slowed to 99 % (1.00 m)."),
-        ("en", 0.5, "Free to move, slowed to 0 % (0.50 m)."),
+        ("en", 0.5, "EMERGENCY BRAKE! Obstacle at 0.50 m."),
         ("en", 1.0, "The way is free (1.00 m)."),
     ],
 )
@@ -226,6 +226,13 @@ def test_a_way_on_which_it_is_slowed_is_not_called_free(
     eye.see(metres)
     tell_front(Speech(log, lang), eye.view(Zone(0.5, 1.0, 60.0)))  # type: ignore[arg-type]
     assert log.lines[-1].endswith(logged)
+
+
+@pytest.mark.parametrize(("slow_m", "sight"), [(1.0, Sight.CLOSE), (0.0, Sight.FREE)])
+def test_where_slowing_has_come_to_nothing_the_way_is_not_free(slow_m: float, sight: Sight) -> None:
+    eye = Eye("front")
+    eye.see(0.5)
+    assert eye.view(Zone(0.5, slow_m, 60.0)).sight == sight
 
 
 # ---------------------------------------------------------------- the sonar

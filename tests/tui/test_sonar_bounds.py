@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,8 @@ from tests.tui.recorded import (
 )
 from tui.panels.bounds import bounds_of
 from tui.widgets.sonar import Sonar
-from tui.widgets.sonar_words import COURSE, Bounds
+from tui.widgets.sonar_bar import scale
+from tui.widgets.sonar_words import COURSE, Bounds, Zone, zone_of
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
@@ -63,7 +65,7 @@ async def test_the_gauge_stops_where_the_safety_node_does() -> None:
 @pytest.mark.parametrize(
     ("values", "bounds"),
     [
-        ({"critical_m": "0.8", "slow_m": "1.5"}, Bounds(0.8, 1.5)),
+        ({"critical_m": "0.8", "slow_m": "1.5"}, Bounds(math.nextafter(0.8, 1.0), 1.5)),
         ({"critical_m": "0.3", "slow_m": "0"}, Bounds(0.3, 1.0)),
         ({"critical_m": "1.3", "slow_m": "0.5"}, Bounds(1.3, 1.3)),
         ({"critical_m": "0.8"}, Bounds(0.8, 1.0)),
@@ -75,6 +77,17 @@ async def test_the_gauge_stops_where_the_safety_node_does() -> None:
 )
 def test_bounds_are_those_that_the_node_tells(values: dict[str, str], bounds: Bounds) -> None:
     assert bounds_of(told(**values), COURSE) == bounds
+
+
+@pytest.mark.parametrize(
+    ("slow_m", "zone"), [("1.5", Zone.STOP), ("0", Zone.CLOSE), ("0.7", Zone.CLOSE)]
+)
+def test_at_the_critical_distance_itself_it_says_what_the_gate_does(
+    slow_m: str, zone: Zone
+) -> None:
+    bounds = bounds_of(told(critical_m="0.8", slow_m=slow_m), COURSE)
+    assert zone_of(0.8, bounds) is zone
+    assert "↑0.8" in "".join(ink.text for ink in scale(40, bounds))
 
 
 def test_they_stay_between_its_words_and_go_with_it() -> None:

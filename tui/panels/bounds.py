@@ -32,5 +32,6 @@ def _told(gate: Gate) -> Bounds:
     if stop_below_m is None or not 0.0 < stop_below_m < math.inf:
         return COURSE
     if slow_m is not None and stop_below_m < slow_m < math.inf:
-        return Bounds(stop_below_m, slow_m)
+        # Who is slowed ever more towards that distance stands when it is reached.
+        return Bounds(math.nextafter(stop_below_m, math.inf), slow_m)
     return Bounds(stop_below_m, max(stop_below_m, FREE_FROM_M))
