@@ -62,6 +62,21 @@ def test_the_screen_has_every_description_in_russian(module: str) -> None:
         assert re.search("[а-яё]|JPEG", str(entry.string), re.IGNORECASE), setting.about
 
 
+def test_the_screen_has_the_descriptions_of_rclpys_own_parameters_in_russian(
+    ros_domain: int,
+) -> None:
+    """They stand in the list of every node."""
+    with Peer(ros_domain) as peer:
+        names = list(peer.node.get_parameters_by_prefix(""))
+        told = [one.description for one in peer.node.describe_parameters(names) if one.description]
+    assert told
+    catalogue = read_po("ru")
+    for description in told:
+        entry = catalogue.get(description)
+        assert entry is not None, description
+        assert re.search("[а-яё]", str(entry.string), re.IGNORECASE), description
+
+
 @given(st.floats() | st.integers() | st.booleans() | st.text() | st.none())
 def test_a_number_is_inside_its_range_or_refused(value: object) -> None:
     try:
