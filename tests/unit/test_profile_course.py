@@ -72,6 +72,23 @@ def test_the_brain_lesson_has_its_eight_nodes() -> None:
     assert not any(node.needs for node in profile.nodes.values()), "all start at once"
 
 
+@pytest.mark.parametrize(
+    ("lesson", "node", "topic", "kind"),
+    [
+        ("09-brain", "ai_brain", "/ai_command", "std_msgs/msg/String"),
+        ("robot", "ai_brain", "/ai_command", "std_msgs/msg/String"),
+        ("05-tf2", "camera_tf", "/tf_static", "tf2_msgs/msg/TFMessage"),
+        ("robot", "camera_tf", "/tf_static", "tf2_msgs/msg/TFMessage"),
+    ],
+)
+def test_who_is_to_publish_a_topic_is_ready_by_it_and_its_type(
+    lesson: str, node: str, topic: str, kind: str
+) -> None:
+    ready = load_profile(PROFILES / f"{lesson}.yaml").nodes[node].ready
+    assert ready is not None
+    assert (ready.kind, ready.name, ready.type) == ("topic", topic, kind)
+
+
 def test_the_robot_has_the_same_drivers_on_mock_and_on_real_hardware() -> None:
     mock = load_profile(PROFILES / "robot.yaml").nodes
     real = load_profile(PROFILES / "robot.yaml", hardware="real").nodes
