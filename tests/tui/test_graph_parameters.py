@@ -12,6 +12,7 @@ from textual.widgets import Input
 
 from graph.data import GraphUpdate, ParametersResult, Sample
 from tests.tui.graph_room import Room, opened
+from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import settle
 from tui.screens.graph_parameter import ParameterDialog
 from tui.widgets.graph_parameters import PARAMETER_EVENTS
@@ -84,6 +85,27 @@ async def test_a_change_from_outside_is_read_at_once(room: Room) -> None:
     await room.press("E")
     await room.show(changed(room, NODE))
     assert room.graph.asked_parameters == [NODE, NODE], "they are not shown"
+
+
+def started(room: Room, *processes: int) -> GraphUpdate:
+    """The graph in which the node lives in these processes, in none if there are none."""
+    others = [row for row in room.graph.update.nodes if row.name != NODE]
+    (node,) = (row for row in graph_update().nodes if row.name == NODE)
+    nodes = (*others, replace(node, processes=processes)) if processes else tuple(others)
+    return replace(room.graph.update, nodes=nodes)
+
+
+async def test_a_node_that_was_started_again_is_read_anew(room: Room) -> None:
+    """It has its first values again, and who listens now may not have heard it tell so."""
+    await room.show(started(room, 7))
+    await room.press("E")
+    await room.wait_for("5 parameters")
+    await room.show(started(room))
+    await room.show(started(room, 7))
+    assert room.graph.asked_parameters == [NODE]
+    await room.show(started(room))
+    await room.show(started(room, 8))
+    await room.wait(lambda: room.graph.asked_parameters == [NODE, NODE])
 
 
 async def test_changes_faster_than_the_answers_are_read_once_more(

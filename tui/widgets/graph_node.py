@@ -60,17 +60,21 @@ class NodePane(GraphPane):
         if another:
             self.parameters.forget()
             if self.shows_parameters:
-                self.parameters.read(name)
+                self._read()
 
     def toggle_parameters(self) -> None:
         """Show the parameters, read anew, or hide them."""
         self.toggle_class("-parameters")
         if self.shows_parameters:
-            self.parameters.read(self.name_shown)
+            self._read()
             self.parameters.table.focus()
         else:
             self.links.focus()
         self.screen.refresh_bindings()
+
+    def _read(self) -> None:
+        self.parameters.read(self.name_shown)
+        self.redraw()
 
     def redraw(self) -> None:
         """Show the node as it is now."""
@@ -83,6 +87,8 @@ class NodePane(GraphPane):
             # What runs is somebody's own in its place.
             status = None
         self.query_one(GraphHead).show(self.name_shown, process_words(status))
+        if self.shows_parameters:
+            self.parameters.see(() if node is None else node.processes)
         words = self.query_one(Words)
         if update is None or node is None:
             words.show(_("this node has left the graph"), _gone_words(status is not None))

@@ -50,7 +50,9 @@ class GraphParameters(Vertical, Working):
         self._asked_s: float | None = None
         self._question = 0
         self._changed = False
-        """Whether somebody has changed one since the node was asked."""
+        """Whether one may have changed since the node was asked."""
+        self._processes: tuple[int, ...] | None = None
+        """Of the node that was asked; None until it is known whom it was."""
 
     def compose(self) -> ComposeResult:
         """Title, words, table."""
@@ -85,7 +87,7 @@ class GraphParameters(Vertical, Working):
     def forget(self) -> None:
         """Show nothing of the node before."""
         self._question += 1
-        self._node, self._result, self._asked_s = "", None, None
+        self._node, self._result, self._asked_s, self._processes = "", None, None, None
         self.redraw()
 
     def read(self, node: str) -> None:
@@ -105,6 +107,20 @@ class GraphParameters(Vertical, Working):
         """Read them anew if these messages of /parameter_events tell of this node."""
         if not any(event.value.get("node") == self._node for event in events):
             return
+        self._read_anew()
+
+    def see(self, processes: tuple[int, ...]) -> None:
+        """Read them anew if the node lives in others: who starts again has its first values.
+
+        Empty: it is not in the graph, or the middleware does not tell.
+        """
+        if self._processes is None:
+            self._processes = processes
+        elif processes and processes != self._processes:
+            self._processes = processes
+            self._read_anew()
+
+    def _read_anew(self) -> None:
         if self._asked_s is None:
             self.read(self._node)
         else:
