@@ -33,16 +33,31 @@ class Trouble:
     fine: str | float
     told: str
     """Sentence with {device}, marked by `N_`."""
+    over: str
+    """Another, for when it is mended: of this trouble only, for there may be others."""
     parameter: str = ""
     """Empty: the one that is called like the device."""
     devices: frozenset[str] = LINES
     """Which may have it."""
 
 
-UNPLUGGED = Trouble("unplugged", "fine", N_("{device}: the cable is pulled."))
-NOISE = Trouble("noise", "fine", N_("{device}: there is noise on the line."))
-SILENCE = Trouble("silent", "fine", N_("{device}: it says nothing any more."))
-BATTERY = Trouble(5.8, 7.4, N_("The battery has 5.8 V."), "battery", POWERED)
+UNPLUGGED = Trouble(
+    *("unplugged", "fine"),
+    *(N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again.")),
+)
+NOISE = Trouble(
+    *("noise", "fine"),
+    *(N_("{device}: there is noise on the line."), N_("{device}: the noise is gone.")),
+)
+SILENCE = Trouble(
+    *("silent", "fine"),
+    *(N_("{device}: it says nothing any more."), N_("{device}: it speaks again.")),
+)
+BATTERY = Trouble(
+    *(5.8, 7.4),
+    *(N_("The battery has 5.8 V."), N_("The battery has 7.4 V.")),
+    *("battery", POWERED),
+)
 
 
 def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:

@@ -200,8 +200,7 @@ class DevicesScreen(DeckScreen):
         if found is None or graph is None:
             return
         made, error = await device_trouble.switch(graph, *found, trouble)
-        mended = N_("{device}: all is well again.")
-        told = _(trouble.told if made else mended).format(device=found[1])
+        told = _(trouble.told if made else trouble.over).format(device=found[1])
         self.notify(error or told, severity="error" if error else "information", markup=False)
 
     # What is shown
