@@ -123,7 +123,9 @@ def test_help_may_be_asked_for_as_a_command(
     assert capsys.readouterr().out == asked
 
 
-@pytest.mark.parametrize(("typed", "meant"), [("lst", "list"), ("doktor", "doctor")])
+@pytest.mark.parametrize(
+    ("typed", "meant"), [("lst", "list"), ("doktor", "doctor"), ("hlep", "help")]
+)
 def test_a_mistyped_command_is_told_with_the_one_that_was_meant(
     typed: str, meant: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -133,6 +135,25 @@ def test_a_mistyped_command_is_told_with_the_one_that_was_meant(
     )
     assert main([typed, "--lang", "ru"]) == 2
     assert f"возможно, `deck {meant}`" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("recrod", "/drive", "/odom"), ("recrod", "-o", "x"), ("--domain", "7", "recrod", "--for=5")],
+)
+def test_a_mistyped_command_is_told_also_if_more_follows(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And not what follows it, which the command that was meant would take."""
+    assert main(words) == 2
+    assert capsys.readouterr().err == (
+        "no profile and no command 'recrod'; did you mean `deck record`?\n"
+    )
+
+
+def test_what_a_profile_does_not_take_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["01-hello", "--for", "5"]) == 2
+    assert "deck: unrecognized arguments: --for 5\n" in capsys.readouterr().err
 
 
 def test_a_mistyped_profile_is_still_told_with_profiles(

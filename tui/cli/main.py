@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from launcher.errors import LauncherError
-from tui.cli.arguments import parser_of, speak, split, wanted_language
+from tui.cli.arguments import OPEN, parser_of, speak, split, wanted_language
 from tui.cli.output import drop_output, make_streams_safe, say_error
 from tui.i18n import LANGUAGES, detect, said, set_language
 
@@ -58,11 +58,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     speak()
     command, rest = split(words)
     try:
-        options = parser_of(command).parse_args(rest)
-    except SystemExit as end:
-        return end.code if isinstance(end.code, int) else 2
-    try:
-        return _run(command, options)
+        options = _parsed(command, rest)
+        return options if isinstance(options, int) else _run(command, options)
     except LauncherError as error:
         return complain(error)
     except KeyboardInterrupt:
@@ -74,6 +71,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         drop_output()
         say_error(f"deck: {error}")
         return 1
+
+
+def _parsed(command: str, words: Sequence[str]) -> Namespace | int:
+    """Return what is asked for, or what to exit with: it was help, or something wrong, and is told.
+
+    Raises:
+        LauncherError: if a word that is no command stands before what only commands take.
+    """
+    parser = parser_of(command)
+    try:
+        options, more = parser.parse_known_args(words)
+        if more and command == OPEN and options.profile is not None:
+            from tui.cli.screen import profile_or_command
+
+            profile_or_command(options.profile)
+        return parser.parse_args(words) if more else options
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 2
 
 
 def complain(error: LauncherError) -> int:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from launcher.catalog import find_profile
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.words import say
-from tui.cli.arguments import COMMANDS
+from tui.cli.arguments import COMMANDS, HELP
 from tui.cli.output import say_error, write
 from tui.i18n import _
 
@@ -25,7 +25,7 @@ def open_command(options: Namespace) -> int:
 
         write(f"deck {metadata.version('deck-robot')}")
         return 0
-    profile = None if options.profile is None else _profile_or_command(options.profile)
+    profile = None if options.profile is None else profile_or_command(options.profile)
     if not has_terminal():
         return _without_screen(options)
     from tui.app import run_screen
@@ -41,7 +41,7 @@ def open_command(options: Namespace) -> int:
     )
 
 
-def _profile_or_command(name: str) -> Path:
+def profile_or_command(name: str) -> Path:
     """Return the file of the profile; what is none may be a mistyped command word.
 
     Raises:
@@ -52,7 +52,7 @@ def _profile_or_command(name: str) -> Path:
     except ProfileNotFoundError as error:
         from difflib import get_close_matches  # Rarely needed, and slow to import.
 
-        command = get_close_matches(name, COMMANDS, n=1)
+        command = get_close_matches(name, (*COMMANDS, HELP), n=1)
         if not command or error.near:
             raise
         words = say(
