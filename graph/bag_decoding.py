@@ -86,7 +86,12 @@ def _store(kind: TypeText) -> Typestore:
         if kind.is_idl:
             store.register(get_types_from_idl(kind.text))
         else:
-            store.register(get_types_from_msg(kind.text, kind.name))
+            found = get_types_from_msg(kind.text, kind.name)
+            # The library takes the name of a service's for that of a package.
+            for name in found.keys() - {kind.name}:
+                if name.replace("/srv/msg/", "/srv/") == kind.name:
+                    found[kind.name] = found.pop(name)
+            store.register(found)
     except (TypesysError, ValueError, KeyError) as error:
         words = say(
             "the definition of type {type} in the bag cannot be read: {reason}",

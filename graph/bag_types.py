@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from graph.fields import FieldType, parse
-from graph.types import load_action, load_message
+from graph.types import load_action, load_message, load_service
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -84,11 +84,13 @@ def _installed(type_name: str) -> str:
 
 
 def _class(type_name: str) -> Any:  # noqa: ANN401 - generated, without a base class
-    """Return the class of a message, be it the inner part of an action's feedback."""
+    """Return the class of a message, be it the inner part of an action's or a service's."""
     package, _kind, name = type_name.split("/")
-    action, _, part = name.rpartition("_")
-    if action and part == "Feedback":
-        return load_action(f"{package}/action/{action}").Feedback
+    whole, _, part = name.rpartition("_")
+    if whole and part == "Feedback":
+        return load_action(f"{package}/action/{whole}").Feedback
+    if whole and part in {"Request", "Response"}:
+        return getattr(load_service(f"{package}/srv/{whole}"), part)
     return load_message(type_name)
 
 

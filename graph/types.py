@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 FEEDBACK = "_FeedbackMessage"
 """How the type of the messages on an action's feedback topic ends."""
+EVENT = "_Event"
+"""How the type of the messages ends that tell of a service's calls, where it tells of them."""
 NAME_PARTS = 3
 """`std_msgs/msg/Float32`."""
 
@@ -40,14 +42,19 @@ class UnknownTypeError(Exception):
 def load_message(type_name: str) -> type[Any]:
     """Return the class of a message such as `std_msgs/msg/Float32`.
 
-    So it does for the feedback of an action, `package/action/Name_FeedbackMessage`. Raises
-    UnknownTypeError, also when the package is there and its import fails.
+    So it does for the feedback of an action, `package/action/Name_FeedbackMessage`, and for what
+    a service tells of its calls, `package/srv/Name_Event`. Raises UnknownTypeError, also when the
+    package is there and its import fails.
     """
+    found: type[Any]
     if "/action/" in type_name and type_name.endswith(FEEDBACK):
-        found: type[Any] = load_action(type_name.removesuffix(FEEDBACK)).Impl.FeedbackMessage
-        _import_type_support(found)
-        return found
-    return _load(type_name, "msg")
+        found = load_action(type_name.removesuffix(FEEDBACK)).Impl.FeedbackMessage
+    elif "/srv/" in type_name and type_name.endswith(EVENT):
+        found = load_service(type_name.removesuffix(EVENT)).Event
+    else:
+        return _load(type_name, "msg")
+    _import_type_support(found)
+    return found
 
 
 @lru_cache(maxsize=128)

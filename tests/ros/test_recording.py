@@ -17,8 +17,10 @@ from mcap_ros2.decoder import DecoderFactory
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.service_introspection import ServiceIntrospectionState
 from sensor_msgs.msg import Image
 from std_msgs.msg import Bool, Float32, String
+from std_srvs.srv import SetBool
 from tf2_msgs.msg import TFMessage
 
 from graph import recording_room, recording_tap
@@ -162,6 +164,29 @@ def test_all_is_ros_own_topics_too_and_no_hidden_ones(ros_domain: int, tmp_path:
             for topic, _stamp, raw in bag.messages(names=["/go/_action/feedback"])
         ]
     assert [message["feedback"] for message in found] == [{"distance": 1.5}]
+
+
+def test_the_calls_of_a_service_that_tells_of_them_are_recorded_with_the_hidden(
+    ros_domain: int, tmp_path: Path
+) -> None:
+    recorder = Recorder(ros_domain, "localhost", tmp_path / "bag", hidden=True)
+    with Peer(ros_domain) as peer:
+        service = peer.node.create_service(SetBool, "/lamp", lambda _asked, answer: answer)
+        service.configure_introspection(
+            peer.node.get_clock(), LATCHED, ServiceIntrospectionState.CONTENTS
+        )
+        recorder.start()
+        wait_for_topic(recorder, "/lamp/_service_event")
+        peer.ask("/lamp", SetBool, SetBool.Request(data=True))
+        # Asked and answered.
+        recorded(recorder, "/lamp/_service_event", 2)
+        recorder.stop()
+    with open_bag(tmp_path / "bag") as bag:
+        found = [
+            bag_decoder(topic.kind)(raw)
+            for topic, _stamp, raw in bag.messages(names=["/lamp/_service_event"])
+        ]
+    assert found[0]["request"] == [{"data": True}]
 
 
 def test_a_message_has_the_time_it_was_sent_beside_that_of_its_arrival(
