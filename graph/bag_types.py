@@ -28,6 +28,8 @@ PLAIN = frozenset(
         *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)),
     }
 )
+PARTS = {"Feedback": "action", "Request": "srv", "Response": "srv"}
+"""Of what a generated message is a part, by how its name ends."""
 _TYPE = re.compile(r"^\s*(?P<name>[A-Za-z][\w/]*)")
 _CONSTANT = re.compile(r"^\s*\S+\s+\w+\s*=")
 
@@ -85,18 +87,19 @@ def _installed(type_name: str) -> str:
 
 def _class(type_name: str) -> Any:  # noqa: ANN401 - generated, without a base class
     """Return the class of a message, be it the inner part of an action's or a service's."""
-    package, _kind, name = type_name.split("/")
-    whole, _, part = name.rpartition("_")
-    if whole and part == "Feedback":
-        return load_action(f"{package}/action/{whole}").Feedback
-    if whole and part in {"Request", "Response"}:
-        return getattr(load_service(f"{package}/srv/{whole}"), part)
+    whole, _, part = type_name.rpartition("_")
+    if whole and part in PARTS:
+        owner = load_action(whole) if PARTS[part] == "action" else load_service(whole)
+        return getattr(owner, part)
     return load_message(type_name)
 
 
 def _written(kind: FieldType) -> str:
     """Return how a `.msg` file writes the type of a field."""
     element = MSG_NAMES.get(kind.element, kind.element)
+    if (of := PARTS.get(element.rpartition("_")[2])) is not None:
+        # In full: readers take a shorter name for that of a message, and its hash is another.
+        element = element.replace("/", f"/{of}/", 1)
     if kind.text_limit is not None:
         element += f"<={kind.text_limit}"
     if not kind.is_many:
@@ -116,6 +119,7 @@ def _needed(type_name: str, text: str) -> list[str]:
         parts = match["name"].split("/")
         if parts == ["Header"]:
             parts = ["std_msgs", "Header"]
-        package = parts[0] if len(parts) > 1 else type_name.split("/", maxsplit=1)[0]
-        found.append(f"{package}/msg/{parts[-1]}")
+        if len(parts) == 1:
+            parts = [type_name.split("/", maxsplit=1)[0], *parts]
+        found.append("/".join(parts) if len(parts) > 2 else "/msg/".join(parts))
     return found

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -18,6 +19,7 @@ from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
+from rosbags.highlevel import AnyReader
 from sensor_msgs.msg import Image
 from std_msgs.msg import Bool, Float32, String
 from std_srvs.srv import SetBool
@@ -164,6 +166,12 @@ def test_all_is_ros_own_topics_too_and_no_hidden_ones(ros_domain: int, tmp_path:
             for topic, _stamp, raw in bag.messages(names=["/go/_action/feedback"])
         ]
     assert [message["feedback"] for message in found] == [{"distance": 1.5}]
+    with AnyReader([tmp_path / "whole"]) as reader:
+        ((of, _stamp, raw),) = reader.messages(
+            [one for one in reader.connections if one.topic == "/go/_action/feedback"]
+        )
+        other: Any = reader.deserialize(raw, of.msgtype)
+    assert other.feedback.distance == 1.5
 
 
 def test_the_calls_of_a_service_that_tells_of_them_are_recorded_with_the_hidden(
@@ -187,6 +195,8 @@ def test_the_calls_of_a_service_that_tells_of_them_are_recorded_with_the_hidden(
             for topic, _stamp, raw in bag.messages(names=["/lamp/_service_event"])
         ]
     assert found[0]["request"] == [{"data": True}]
+    with AnyReader([tmp_path / "bag"]) as reader:
+        assert "/lamp/_service_event" in reader.topics
 
 
 def test_a_message_has_the_time_it_was_sent_beside_that_of_its_arrival(
