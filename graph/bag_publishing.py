@@ -32,6 +32,8 @@ LOOK_S = 0.25
 """How often others on the topics are looked for."""
 TELL_S = 1.0
 ACKED_WITHIN_S = 2.0
+SHARED = frozenset({"/rosout"})
+"""What every node publishes: nobody's alone."""
 
 
 @dataclass
@@ -161,7 +163,7 @@ class BagPublisher:
     def _give_way(self) -> None:
         """Leave topics to others who publish them."""
         node = self._ros.node
-        for name in list(self._publishers):
+        for name in self._publishers.keys() - SHARED:
             if node.handle.get_count_publishers(name) < 2:
                 continue
             found = node.get_publishers_info_by_topic(name)

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pytest
 from geometry_msgs.msg import Twist
+from rcl_interfaces.msg import Log
 from rosbags.rosbag2 import StoragePlugin, Writer
 from std_msgs.msg import Bool, Float32, String
 
 from tests.deck_process import DeckProcess
 from tests.middleware_words import own_words
 from tests.ros.peer import Peer
-from tests.unit.bags import BEGIN_NS, SECOND_NS, store, write_bag
+from tests.unit.bags import BEGIN_NS, SECOND_NS, store, write_bag, write_robot_bag
 from tests.waiting import wait_until
 
 
@@ -116,6 +117,15 @@ def test_a_topic_is_left_to_whoever_publishes_it(ros_domain: int, tmp_path: Path
         run.said("not published: /ai_command: /late publishes it")
         run.signal(signal.SIGINT)
         assert run.finish() == 0
+
+
+def test_logs_are_published_beside_those_of_others(ros_domain: int, tmp_path: Path) -> None:
+    bag = write_robot_bag(tmp_path / "drive")
+    with Peer(ros_domain) as peer:
+        logs = peer.hear("/rosout", Log)
+        run = DeckProcess("replay", str(bag), "--publish", "--rate", "10")
+        assert run.finish() == 0
+        wait_until(lambda: "too near" in {log.msg for log in logs}, "the recorded log")
 
 
 def test_with_nothing_left_to_publish_it_fails(tmp_path: Path, ros_domain: int) -> None:
