@@ -69,11 +69,11 @@ class Bag:
         first_ns = min(each.at_ns for each in lost)
         return say(
             "{path} is damaged: messages lost: {messages}, damaged places: {places}, the first "
-            "{seconds} s after the beginning. All others are played",
+            "{seconds:.1f} s after the beginning. All others are played",
             path=self.path,
             messages=sum(each.messages for each in lost),
             places=len(lost),
-            seconds=f"{max(0, first_ns - self.start_ns) / 1e9:.1f}",
+            seconds=max(0, first_ns - self.start_ns) / 1e9,
         )
 
     @property

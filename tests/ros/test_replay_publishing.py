@@ -128,6 +128,17 @@ def test_logs_are_published_beside_those_of_others(ros_domain: int, tmp_path: Pa
         wait_until(lambda: "too near" in {log.msg for log in logs}, "the recorded log")
 
 
+def test_what_is_damaged_is_told_at_the_end(tmp_path: Path) -> None:
+    file = write_bag(tmp_path / "walk", seconds=1.0) / "walk.mcap"
+    wrong = bytearray(file.read_bytes())
+    place = wrong.index(b"kitchen")
+    wrong[place : place + 200] = b"\xff" * 200
+    file.write_bytes(wrong)
+    run = DeckProcess("replay", str(tmp_path / "walk"), "--publish")
+    assert run.finish() == 0
+    assert any("walk is damaged: messages lost: 13, " in line for line in run.lines)
+
+
 def test_with_nothing_left_to_publish_it_fails(tmp_path: Path, ros_domain: int) -> None:
     bag = write_drive(tmp_path / "drive", seconds=1)
     with Peer(ros_domain) as peer:

@@ -81,6 +81,8 @@ def _publish(
 
         publisher.play(stop, tell, rate=options.rate, start_s=options.start, loop=options.loop)
         _tell_left_out(publisher.progress, told)
+        # Only who has read it all knows.
+        _tell(bag.damage)
         write(_("published: {words}").format(words=_words(publisher.progress, bag)))
         return 0
     finally:
@@ -100,9 +102,12 @@ def _begin(bag: Bag, publisher: BagPublisher, domain: int) -> None:
     words = _("publishing {name} in domain {domain}: {topics}, {length}; Ctrl-C ends it")
     length = length_words(bag.length_s)
     write(words.format(name=plain(bag.name), domain=domain, topics=topics, length=length))
-    for sentence in (bag.cut, bag.damage):
-        if sentence:
-            write(plain(said(sentence), 400))
+    _tell(bag.cut)
+
+
+def _tell(sentence: str | None) -> None:
+    if sentence:
+        write(plain(said(sentence), 400))
 
 
 def _tell_left_out(progress: Progress, told: set[str]) -> set[str]:
