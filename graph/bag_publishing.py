@@ -149,14 +149,21 @@ class BagPublisher:
             self.progress.messages += 1
 
     def _open(self, topic: TopicInBag) -> None:
+        from rclpy.exceptions import InvalidTopicNameException
+        from rclpy.validate_full_topic_name import validate_full_topic_name
+
         if topic.name in self._publishers:
             return
         qos = Qos(topic.reliability or "reliable", topic.durability or "volatile")
         try:
+            validate_full_topic_name(topic.name)
             kind = load_message(topic.kind.name)
             publisher = self._ros.node.create_publisher(kind, topic.name, profile(qos, DEPTH))
         except UnknownTypeError as error:
             self.progress.left_out[topic.name] = error.reason
+        except InvalidTopicNameException:
+            # Programs that are not of ROS write MCAP files, too.
+            self.progress.left_out[topic.name] = say("not a valid name of a ROS topic")
         else:
             self._publishers[topic.name] = (topic, publisher)
 

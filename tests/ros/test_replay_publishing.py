@@ -128,6 +128,21 @@ def test_logs_are_published_beside_those_of_others(ros_domain: int, tmp_path: Pa
         wait_until(lambda: "too near" in {log.msg for log in logs}, "the recorded log")
 
 
+def test_a_name_that_is_none_of_a_topic_is_left_out_and_told(tmp_path: Path) -> None:
+    types, kind = store(), "std_msgs/msg/Float32"
+    with Writer(tmp_path / "odd", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        for topic in ("/number", "camera", "/two words"):
+            raw = types.serialize_cdr(types.types[kind](data=1.0), kind)
+            writer.write(writer.add_connection(topic, kind, typestore=types), BEGIN_NS, bytes(raw))
+    run = DeckProcess("replay", str(tmp_path / "odd"), "--publish")
+    assert run.finish() == 0
+    assert [line for line in run.lines if line.startswith("not published")] == [
+        "not published: /two words: not a valid name of a ROS topic",
+        "not published: camera: not a valid name of a ROS topic",
+    ]
+    assert run.lines[-1] == "published: 0 s of 0 s · 1 message"
+
+
 def test_what_is_damaged_is_told_at_the_end(tmp_path: Path) -> None:
     file = write_bag(tmp_path / "walk", seconds=1.0) / "walk.mcap"
     wrong = bytearray(file.read_bytes())
