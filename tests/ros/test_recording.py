@@ -16,7 +16,7 @@ from geometry_msgs.msg import TransformStamped
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rclpy.duration import Duration
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
 from rosbags.highlevel import AnyReader
@@ -44,6 +44,7 @@ from tests.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
 DEEP = QoSProfile(depth=1000)
+KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def recorded(recorder: Recorder, topic: str, count: int) -> None:
@@ -181,7 +182,7 @@ def test_the_calls_of_a_service_that_tells_of_them_are_recorded_with_the_hidden(
     with Peer(ros_domain) as peer:
         service = peer.node.create_service(SetBool, "/lamp", lambda _asked, answer: answer)
         service.configure_introspection(
-            peer.node.get_clock(), LATCHED, ServiceIntrospectionState.CONTENTS
+            peer.node.get_clock(), KEPT, ServiceIntrospectionState.CONTENTS
         )
         recorder.start()
         wait_for_topic(recorder, "/lamp/_service_event")
