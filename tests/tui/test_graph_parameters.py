@@ -141,6 +141,16 @@ async def test_a_refusal_keeps_the_dialog_open_and_says_why(room: Room) -> None:
     assert room.app.screen is room.screen
 
 
+async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(room: Room) -> None:
+    await room.press("E", "down", "enter")
+    dialog = room.app.screen
+    assert isinstance(dialog, ParameterDialog)
+    assert NODE not in dialog.words().plain
+    row = replace(dialog._row, name="a_namespace_of_parameters." * 3 + "END")
+    long = ParameterDialog(NODE, row, dialog._apply)
+    assert long.words().plain.startswith(f"{NODE} · {row.name}\n")
+
+
 async def test_what_can_only_be_read_is_not_offered_for_change(room: Room) -> None:
     await room.press("E", "enter")
     assert isinstance(room.app.screen, ParameterDialog)

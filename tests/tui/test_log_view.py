@@ -101,6 +101,20 @@ async def test_scrolling_up_pauses_counts_what_is_new_and_end_follows() -> None:
         assert "following" in pilot.app.query_one(LogBar).words
 
 
+async def test_a_name_of_a_node_that_its_column_cuts_is_told_whole_of_the_line_pointed_at() -> None:
+    long = "left_arm.electronic_differential_of_the_rear"
+    async with LogApp().run_test(size=(80, 12)) as pilot:
+        view = await shown(pilot, [line(1), line(2, node=long)])
+        bar = pilot.app.query_one(LogBar)
+        assert long not in "\n".join(rows(view)) + bar.words
+        await pilot.press("up")
+        assert long in bar.render().plain
+        await pilot.press("up")
+        assert "sonar_front" not in bar.words
+        await pilot.press("down", "end")
+        assert long not in bar.words
+
+
 async def test_scrolling_back_down_to_the_end_follows_again() -> None:
     async with LogApp().run_test(size=(80, 12)) as pilot:
         view = await shown(pilot, lines(1, 100))

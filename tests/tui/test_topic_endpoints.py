@@ -53,6 +53,14 @@ def test_every_policy_is_shown() -> None:
     assert "“–” is unknown" in shown
 
 
+def test_a_name_that_its_column_cuts_stands_whole_below() -> None:
+    long = replace(LIDAR, node="/robot_with_a_long_name/lidar_that_looks_ahead_and_to_the_side")
+    at_60 = text(a_row([long], [replace(BRAIN, reliability="best_effort")]), 60)
+    assert f"\n{long.node[:56]}\n{long.node[56:]} · history keep_last 5" in at_60
+    assert f"\n{long.node}" in text(a_row([long], []), 160)
+    assert at_60.count("/brain") == 1
+
+
 def test_what_has_no_column_stands_below() -> None:
     shown = text(a_row([LIDAR], []), 60)
     assert "/lidar best_effort volatile" in shown

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, ClassVar
 
+from rich.cells import cell_len
 from textual import on
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from graph.data import ParameterRow, Value
 
 LONGEST = 400
+LONGEST_TITLE = 64
+"""Cells that the frame has room for on a terminal of 80 columns; a longer one is told below it."""
 TEXTS = frozenset({"string", "not_set"})
 """Types whose value is the text that is typed."""
 
@@ -53,10 +56,12 @@ class ParameterDialog(Dialog[bool]):
 
     def words(self) -> Content:
         """Tell what it is and what it may be."""
-        row = self._row
+        row, title = self._row, self.title_words()
         lines = [Content.styled(plain(row.type_name), "$text-muted")]
         if row.description:
             lines.insert(0, Content(plain(_(row.description), LONGEST)))
+        if cell_len(title) > LONGEST_TITLE:
+            lines.insert(0, Content.styled(title, "bold"))
         allowed = allowed_words(row)
         if allowed:
             lines.append(Content(_("Allowed: {words}").format(words=allowed)))

@@ -69,7 +69,7 @@ class LogBar(Widget):
 
 
 def state_parts(view: LogView) -> list[tuple[str, str]]:
-    """(text, style) of each part: following, search, chosen lines, nodes, severity, counts."""
+    """(text, style) of each part: following, long name, search, lines, nodes, severity, counts."""
     return [*_tail_parts(view), *_search_parts(view), *_filter_parts(view), *_count_parts(view)]
 
 
@@ -77,7 +77,14 @@ def _tail_parts(view: LogView) -> list[tuple[str, str]]:
     if view.following:
         return [(_("▶ following"), "")]
     words = ngettext("‖ paused, {count} new", "‖ paused, {count} new", view.fresh)
-    return [(words.format(count=grouped(view.fresh)), "paused"), (_("End follows"), "")]
+    paused = (words.format(count=grouped(view.fresh)), "paused")
+    return [paused, *_node_parts(view), (_("End follows"), "")]
+
+
+def _node_parts(view: LogView) -> list[tuple[str, str]]:
+    """The node of the line pointed at, where its column has no room for the name."""
+    node = view.chosen_node
+    return [(plain(node), "chosen")] if node is not None and view.cuts(node) else []
 
 
 def _search_parts(view: LogView) -> list[tuple[str, str]]:

@@ -8,11 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+from rich.cells import cell_len
 from rich.segment import Segment
 from textual.cache import LRUCache
 from textual.strip import Strip
 
 from launcher.status import LogLine
+from text.plain import plain
 from tui.i18n import _
 from tui.widgets.log_filter import LogFilter
 from tui.widgets.log_view_choice import Choice
@@ -147,6 +149,10 @@ class LogLines(TailView):
         self._columns = self.columns_for(self._row_width, self._longest_node)
         self.index.fold(self._text_width if self.fold else None)
         self._settle(top)
+
+    def cuts(self, node: str) -> bool:
+        """Whether its column has no room for the name of this node."""
+        return cell_len(plain(node)) > self._columns.node
 
     def columns_for(self, width: int, longest_node: int) -> Columns:
         """Which columns stand in front of the text, for rows of so many cells."""

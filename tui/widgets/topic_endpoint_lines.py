@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
+
 from graph.qos_fit import LEASE, LIVELINESS, mismatches
 from text.plain import plain
 from tui.i18n import _, ngettext
@@ -126,8 +128,10 @@ def _end_lines(
 ) -> Iterator[Line]:
     mark = Ink(f"{MISFIT} ", "bad") if bad else Ink(" " * MARK)
     looks = ["bad" if column.id in bad else "" for column in columns]
-    yield [mark, *_cells([column.text(end) for column in columns], columns, looks)]
-    below = [plain(end.type_name, LONGEST)] if with_type else []
+    texts = [column.text(end) for column in columns]
+    yield [mark, *_cells(texts, columns, looks)]
+    below = [texts[0]] if cell_len(texts[0]) > columns[0].width else []
+    below += [plain(end.type_name, LONGEST)] if with_type else []
     below += [f"{column.title} {column.text(end)}" for column in left_over(columns)]
     if below:
         yield from _wrapped("", " · ".join(below), width, "muted", indent=2 * MARK)
