@@ -204,3 +204,10 @@ def test_a_node_s_name_is_harmless() -> None:
 
     words = watched_words(lesson_update(nodes=(NodeRow("/a\x1b[31m"),)), 42)
     assert "a␛[31m" in words
+
+
+def test_a_name_that_is_too_long_for_the_line_is_seen_to_be_cut() -> None:
+    from tui.widgets.watched import watched_words
+
+    words = watched_words(lesson_update(nodes=(NodeRow("/" + "a" * 80), NodeRow("/b"))), 42)
+    assert words.endswith(f" {'a' * 59}…, b")

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
 
 MOST_NAMES = 12
+LONGEST_NAME = 60
+"""The list of the Graph screen has longer ones whole."""
 
 
 def robot_nodes(update: GraphUpdate) -> list[str]:
@@ -21,7 +23,7 @@ def robot_nodes(update: GraphUpdate) -> list[str]:
 
 def watched_words(update: GraphUpdate, domain: int) -> str:
     """The nodes that are there, and that they are not Deck's to start or stop."""
-    names = [plain(name.lstrip("/"), 60) for name in robot_nodes(update)]
+    names = [_shown(name.lstrip("/")) for name in robot_nodes(update)]
     if not names:
         words = _(
             "Nobody is here yet. Start a node with ROS_DOMAIN_ID={domain}, or look elsewhere:"
@@ -32,3 +34,7 @@ def watched_words(update: GraphUpdate, domain: int) -> str:
     count = ngettext("{n} node runs here", "{n} nodes run here", len(names)).format(n=len(names))
     ours = _("Deck has started nothing here and stops nothing when it leaves.")
     return f"{ours} {count}: {', '.join(names[:MOST_NAMES])}{more}"
+
+
+def _shown(name: str) -> str:
+    return plain(name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…")
