@@ -227,8 +227,8 @@ class SeenGoal:
     """32 hexadecimal digits."""
     status: GoalStatus
     age_s: float | None = None
-    """Since its server has accepted it, or until it was seen to have ended; None where the clocks
-    do not agree."""
+    """Since its server has accepted it, or until it was seen to end; None where nobody saw that,
+    or where the clocks do not agree."""
     feedback: Mapping[str, Value] | None = None
     """The newest."""
     feedbacks: int = 0

@@ -7,6 +7,7 @@ and whoever looks on hear the same. So Deck needs no client until it is told to 
 from __future__ import annotations
 
 import logging
+import math
 import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -42,10 +43,12 @@ class _Seen:
     accepted_s: float
     """Unix time by its server's clock."""
     ended_s: float | None = None
+    """When it was seen to end; None too if it had ended before anybody looked."""
 
     def snapshot(self, error: str) -> SeenGoal:
         """Return it as it is now."""
-        age_s = (self.ended_s or time.time()) - self.accepted_s
+        now_s = None if self.told.ended else time.time()
+        age_s = (self.ended_s or now_s or math.inf) - self.accepted_s
         sane_s = age_s if 0 <= age_s <= LONGEST_S else None
         return replace(self.told, age_s=sane_s, error=error or self.told.error)
 
@@ -62,6 +65,7 @@ class SeenAction:
         self.type_name = type_name
         self._node = node
         self._servers = Servers(node, action)
+        self._since_s = time.time()
         self._before: frozenset[bytes] = frozenset()
         self._goals: dict[bytes, _Seen] = {}
         self._status = _subscribe(
@@ -136,8 +140,10 @@ class SeenAction:
                 seen.told = replace(seen.told, error=say(LOST))
 
     def _end(self, seen: _Seen, status: GoalStatus) -> None:
+        # A goal of a moment may be heard of only when it has ended.
+        goes_on = not seen.told.ended or seen.accepted_s >= self._since_s
         seen.told = replace(seen.told, status=status)
-        if seen.told.ended and seen.ended_s is None:
+        if seen.told.ended and seen.ended_s is None and goes_on:
             seen.ended_s = time.time()
 
 

@@ -90,6 +90,22 @@ def test_goals_of_others_are_told_with_status_age_and_feedback_also_those_of_bef
     wait_until(lambda: not watcher.update.seen_goals, "nobody looks any more")
 
 
+def test_how_long_a_goal_took_is_not_told_where_nobody_has_seen_its_end(
+    watcher: Watcher, server: Peer, stranger: Peer
+) -> None:
+    at_work(server, stranger, 1.0)
+    watcher.observer.watch_goals([server.action])
+    seen(watcher, GoalStatus.EXECUTING)
+    server.finish(server.action, goal=0, how="succeed")
+    (goal,) = seen(watcher, GoalStatus.SUCCEEDED)
+    assert goal.age_s is not None
+    watcher.observer.watch_goals([])
+    wait_until(lambda: not watcher.update.seen_goals, "nobody looks any more")
+    watcher.observer.watch_goals([server.action])
+    (goal,) = seen(watcher, GoalStatus.SUCCEEDED)
+    assert goal.age_s is None
+
+
 def test_a_goal_of_decks_own_is_not_one_of_others(
     watcher: Watcher, server: Peer, stranger: Peer
 ) -> None:
