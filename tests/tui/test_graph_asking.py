@@ -14,6 +14,7 @@ from graph.data import CallResult, GoalStatus, SeenGoal
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import SERVICES, graph_update
+from tests.tui.snapshots import Look
 from tui.widgets.graph_place import Kind, Place
 from tui.widgets.key_bar import KeyBar
 
@@ -86,6 +87,16 @@ async def test_tab_goes_on_from_the_form_to_the_time_out_and_from_a_list_to_its_
         await room.wait_for("✓ fits ")
         await room.press("tab", "tab", "backspace", "9")
         assert timeout_field(room).value == "9"
+
+
+@pytest.mark.parametrize(("language", "words"), [("en", "tab Fill in"), ("ru", "tab Заполнить")])
+@pytest.mark.parametrize("place", [Place(Kind.SERVICE, SERVICE), Place(Kind.ACTION, ACTION)])
+async def test_the_footer_of_a_small_terminal_says_where_tab_leads(
+    language: str, words: str, place: Place
+) -> None:
+    async with opened(look=Look((80, 24), language)) as room:
+        await room.screen.go(place)
+        await room.wait(lambda: room.screen.ask_pane is not None and words in footer(room))
 
 
 def footer(room: Room) -> str:

@@ -15,6 +15,36 @@ class GraphAction(Action["GraphScreen"]):
     """Something that the screen of the graph does."""
 
 
+class FillIn(GraphAction):
+    """Into the form, past the names above it that lead elsewhere.
+
+    First, so that the footer of a small terminal has room for it.
+    """
+
+    id = "graph.fill_in"
+    key = "tab"
+    title = N_("Fill in")
+    tooltip = N_("Go into the form of the service or action; Escape comes back to the list.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def possible(cls, target: GraphScreen) -> bool | None:
+        """Only in the list, beside a form."""
+        return target.ask_pane is not None and target.shows_pane and target.is_in_list
+
+    @classmethod
+    def shown(cls, target: GraphScreen) -> bool:
+        """Not in the room of what cancels, while something is under way."""
+        return target.ask_pane is not None and not target.ask_pane.can_cancel
+
+    @classmethod
+    async def run(cls, target: GraphScreen) -> None:
+        """Go to its first line."""
+        if target.ask_pane is not None:
+            target.ask_pane.first().focus()
+
+
 class Filter(GraphAction):
     """Narrow the list down."""
 
@@ -254,31 +284,9 @@ class Back(GraphAction):
         target.go_back()
 
 
-class FillIn(GraphAction):
-    """Into the form, past the names above it that lead elsewhere."""
-
-    id = "graph.fill_in"
-    key = "tab"
-    title = N_("Fill in")
-    tooltip = N_("Go into the form of the service or action; Escape comes back to the list.")
-    footer = True
-    priority = True
-
-    @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
-        """Only in the list, beside a form."""
-        return target.ask_pane is not None and target.shows_pane and target.is_in_list
-
-    @classmethod
-    async def run(cls, target: GraphScreen) -> None:
-        """Go to its first line."""
-        if target.ask_pane is not None:
-            target.ask_pane.first().focus()
-
-
 GRAPH_ACTIONS = (
-    Filter,
     FillIn,
+    Filter,
     Map,
     Parameters,
     SaveParameters,
