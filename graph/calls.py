@@ -144,7 +144,7 @@ class Calls:
         future = call.future
         if call.sequence is None:
             self._calls.remove(call)
-            words = say("{name}: nobody serves it within {seconds} s", **_facts(call))
+            words = say("{name}: nobody serves it within {seconds:g} s", **_facts(call))
             future.set_result(_failed(call.service, words, call.started_s))
             return
         late = [other for other in self._calls if other.is_late]
@@ -155,7 +155,7 @@ class Calls:
         call.is_late, call.future = True, Future()
         # Whoever stops waiting for it must not leave one that cannot be set.
         call.future.set_running_or_notify_cancel()
-        words = say("{name}: no answer within {seconds} s", **_facts(call))
+        words = say("{name}: no answer within {seconds:g} s", **_facts(call))
         told = _failed(call.service, words, call.started_s)
         future.set_result(replace(told, late=call.future))
 
@@ -193,8 +193,8 @@ def _has_gone(call: _Call) -> bool:
     return now_s - call.served_s >= GONE_AFTER_S
 
 
-def _facts(call: _Call) -> dict[str, str]:
-    return {"name": call.service, "seconds": f"{call.timeout_s:g}"}
+def _facts(call: _Call) -> dict[str, str | float]:
+    return {"name": call.service, "seconds": call.timeout_s}
 
 
 def _failed(service: str, error: str, started_s: float) -> CallResult:

@@ -96,10 +96,10 @@ class Publications:
         if isinstance(hz, bool) or not LEAST_HZ <= hz <= MOST_HZ:
             raise PublishError(
                 say(
-                    "a rate is between {least} and {most} Hz, not {hz}",
-                    least=f"{LEAST_HZ:g}",
-                    most=f"{MOST_HZ:g}",
-                    hz=f"{hz:g}",
+                    "a rate is between {least:g} and {most:g} Hz, not {hz:g}",
+                    least=LEAST_HZ,
+                    most=MOST_HZ,
+                    hz=hz,
                 )
             )
         from rclpy.serialization import serialize_message

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import string
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from text.fractions import with_comma
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -24,17 +24,6 @@ class Phrase:
 
     en: str
     ru: str
-
-
-class _Russian(string.Formatter):
-    """Writes a float with a decimal comma; what is text already, such as what one types, stays."""
-
-    def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401 - as in `string`
-        written: str = super().format_field(value, format_spec)
-        return written.replace(".", ",") if isinstance(value, float) else written
-
-
-_RUSSIAN = _Russian()
 
 
 def language(environment: Mapping[str, str]) -> str:
@@ -62,7 +51,7 @@ class Speech:
     def text(self, phrase: Phrase, **values: object) -> str:
         """The phrase in this language, printable."""
         if self.language == "ru":
-            return printable(_RUSSIAN.format(phrase.ru, **values))
+            return printable(with_comma(phrase.ru, **values))
         return printable(phrase.en.format(**values))
 
     # One line for each severity: rclpy remembers the severity of each line that logs.

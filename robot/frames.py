@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
+from text.fractions import with_comma
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -55,7 +57,8 @@ class Words:
 
     def __call__(self, key: str, **values: object) -> str:
         """The phrase with its values."""
-        return self._phrases[key][self._at].format(**values)
+        phrase = self._phrases[key][self._at]
+        return with_comma(phrase, **values) if self._at else phrase.format(**values)
 
 
 _NOISE = {

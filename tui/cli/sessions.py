@@ -10,7 +10,7 @@ from tui.cli.output import BOLD, DIM, RED, Paint, table, write
 from tui.cli.report import status_fields
 from tui.cli.stop_in_force import stop_is_kept
 from tui.hardware_words import hardware_words
-from tui.i18n import _, pick, said
+from tui.i18n import _, decimal, pick, said
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -25,7 +25,16 @@ def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection
         domain=session.domain, hardware=hardware_words(session.hardware), pid=session.supervisor_pid
     )
     write(f"{paint(session.name, BOLD)}  {pick(session.title)}  {paint(f'({where})', DIM)}")
-    head = (_("NODE"), _("STATE"), "PID", _("UPTIME"), _("RESTARTS"), "CPU %", _("MB"), _("DETAIL"))
+    head = (
+        _("NODE"),
+        _("STATE"),
+        "PID",
+        _("UPTIME"),
+        _("RESTARTS"),
+        _("CPU %"),
+        _("MB"),
+        _("DETAIL"),
+    )
     rows = [_row(node) for node in nodes]
     first, *lines = table(head, rows)
     write(paint(first, DIM))
@@ -40,7 +49,7 @@ def _row(node: NodeStatus) -> tuple[str, ...]:
         "" if node.pid is None else str(node.pid),
         "" if node.uptime_s is None else _duration(node.uptime_s),
         str(node.restarts),
-        "" if node.cpu_percent is None else f"{node.cpu_percent:.1f}",
+        "" if node.cpu_percent is None else decimal(f"{node.cpu_percent:.1f}"),
         "" if node.memory_bytes is None else f"{node.memory_bytes / 1e6:.0f}",
         said(node.detail),
     )

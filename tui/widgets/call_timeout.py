@@ -9,7 +9,7 @@ from textual import on
 from textual.containers import Horizontal
 from textual.widgets import Input, Static
 
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.field import Field
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class CallTimeout(Horizontal):
         """Say everything in the language spoken now."""
         self.query_one(".timeout-label", Static).update(_("Wait for the answer"))
         self.query_one(".timeout-unit", Static).update(_("s"))
-        limits = {"least": f"{LEAST_S:g}", "greatest": f"{MOST_S:g}"}
+        limits = {"least": decimal(f"{LEAST_S:g}"), "greatest": f"{MOST_S:g}"}
         wrong = "" if self.seconds else "✗ " + _("{least} to {greatest} s").format(**limits)
         self.query_one(".timeout-bad", Static).update(wrong)
 

@@ -17,7 +17,7 @@ from text.plain import plain
 from tui import clock
 from tui.bandwidth import Pace
 from tui.figures import figure
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, in_row, word_strips
 
@@ -207,7 +207,7 @@ class ImageView(OneStyle, Widget):
             words = _(" · {shown} of {hz} Hz: the terminal is slow")
         else:
             words = _(" · {shown} of {hz} Hz: limited to {limit} kB/s")
-        limit = f"{self._bandwidth.limit / 1000:g}"
+        limit = decimal(f"{self._bandwidth.limit / 1000:g}")
         return words.format(shown=figure(shown, 1), hz=hz, limit=limit)
 
     def _draw(self, source: Pixels) -> None:

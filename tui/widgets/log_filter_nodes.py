@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from launcher.status import Severity
 from text.plain import plain
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
@@ -67,5 +67,5 @@ def short_count(count: int) -> str:
     for size, letter in ((1_000_000, "M"), (1_000, "k")):
         if count >= size:
             value = count / size
-            return f"{value:.1f}{letter}" if value < 10 else f"{int(value)}{letter}"
+            return decimal(f"{value:.1f}{letter}") if value < 10 else f"{int(value)}{letter}"
     return str(count)

@@ -11,7 +11,7 @@ from textual.widgets import Input, Static
 
 from graph.publications import LEAST_HZ, MOST_HZ
 from text.plain import plain
-from tui.i18n import _
+from tui.i18n import _, decimal
 from tui.widgets.field import Field
 
 if TYPE_CHECKING:
@@ -75,8 +75,7 @@ class PublishRate(Horizontal):
             hz = 0.0
         if LEAST_HZ <= hz <= MOST_HZ:
             return hz
-        limits = {"least": f"{LEAST_HZ:g}", "greatest": f"{MOST_HZ:g}"}
-        self.tell(lambda: _("The rate is {least} to {greatest} Hz.").format(**limits), "bad")
+        self.tell(_limits, "bad")
         self.field.focus()
         return None
 
@@ -98,3 +97,8 @@ class PublishRate(Horizontal):
     def _submitted(self, event: Input.Submitted) -> None:
         event.stop()
         self.post_message(self.Wanted())
+
+
+def _limits() -> str:
+    limits = {"least": decimal(f"{LEAST_HZ:g}"), "greatest": f"{MOST_HZ:g}"}
+    return _("The rate is {least} to {greatest} Hz.").format(**limits)
