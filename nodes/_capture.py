@@ -40,9 +40,9 @@ _OPEN = Phrase("The camera is {source}", "Камера — {source}")
 _LOST = Phrase(
     "Lost {source}: no more pictures come", "Потерян источник {source}: кадров больше нет"
 )
-_CANNOT = Phrase("Cannot open {source}: {problem}", "Не открыть {source}: {problem}")
+_CANNOT = Phrase("Cannot open {source}: {problem}", "Не удалось открыть {source}: {problem}")
 _OVER = Phrase("{source} is at its end", "{source}: запись закончилась")
-_BROKEN = Phrase("Bad picture from {source}: {problem}", "Негодный кадр от {source}: {problem}")
+_BROKEN = Phrase("Bad picture from {source}: {problem}", "Испорченный кадр от {source}: {problem}")
 _THERE = Phrase("there is {cameras}", "есть {cameras}")
 _NONE = Phrase("there is no camera at all (/dev/video*)", "камер нет вообще (/dev/video*)")
 

@@ -37,7 +37,7 @@ _REFUSED_BY_PICO = Phrase(
     "Pico отверг строк: {count}; они повреждены по пути или требуют больше, чем в его config.py",
 )
 STANDS = Phrase("The wheels stand: {reasons}", "Колёса стоят: {reasons}")
-_DRIVES = Phrase("ready to drive", "готово ехать")
+_DRIVES = Phrase("ready to drive", "готово к движению")
 _NO_ANSWER = Phrase("no Pico answers at {port}", "Pico не отвечает на {port}")
 _REFUSED = Phrase("refused: {refused}", "отказано: {refused}")
 _FLAGS = {

@@ -33,7 +33,7 @@ STANDS = Phrase(
     "The robot has not moved for {patience_s:g} s, {distance:.2f} m from the point: "
     "something holds it, a safety gate or an obstacle",
     "Робот не движется {patience_s:g} с, до точки {distance:.2f} м: "
-    "его что-то держит, гейт безопасности или препятствие",
+    "его что-то держит, узел безопасности или препятствие",
 )
 WANDERS = Phrase(
     "The robot drives and does not arrive, {distance:.2f} m from the point: "

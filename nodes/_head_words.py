@@ -48,7 +48,7 @@ NO_HEAD = Phrase(
 
 SAME_SERVO = Phrase(
     "pan_servo and tilt_servo are both {pan_servo}; each joint has a servo of its own",
-    "pan_servo и tilt_servo — оба {pan_servo}; у каждого сустава свой сервопривод",
+    "pan_servo и tilt_servo — оба {pan_servo}; у каждого сочленения свой сервопривод",
 )
 _NO_ROOM = {
     "pan": Phrase(

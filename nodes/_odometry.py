@@ -14,7 +14,7 @@ from robot.odometry import Pose, yaw_from_quaternion
 if TYPE_CHECKING:
     from nodes._node import LessonNode
 
-_NO_NUMBER = Phrase("{topic} is no number, not believed", "В {topic} не числа, не верю")
+_NO_NUMBER = Phrase("{topic} is no number, not believed", "В {topic} не числа: сообщение не учтено")
 
 
 class OdometryListener:

@@ -57,7 +57,7 @@ _PROBLEMS[errno.EBUSY] = _PROBLEMS[errno.EAGAIN]
 _PROBLEMS[errno.EPERM] = _PROBLEMS[errno.EACCES]
 _OTHER = Phrase("{problem}", "{problem}")
 _NOT_YET = Phrase("not yet connected to {port}", "ещё не подключено: {port}")
-_CANNOT = Phrase("Cannot open {port}: {problem}", "Не открыть {port}: {problem}")
+_CANNOT = Phrase("Cannot open {port}: {problem}", "Не удалось открыть {port}: {problem}")
 _SINCE = Phrase("connected to {port} for {seconds:.0f} s", "подключено: {port}, {seconds:.0f} с")
 
 

@@ -31,7 +31,7 @@ _FORGOTTEN_S = 25.0
 
 _OTHERS = Phrase(
     "{topic} is also published by {others}: the wheels obey whoever spoke last",
-    "в {topic} публикует ещё и {others}: колёса слушаются того, кто сказал последним",
+    "в {topic} публикует ещё и {others}: колёса выполняют последнюю команду, чья бы она ни была",
 )
 _NO_NODE = Phrase("a program without a node's name", "программа без имени узла")
 _NAMESAKE = Phrase("another {name}", "ещё один {name}")

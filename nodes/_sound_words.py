@@ -77,7 +77,7 @@ _PROBLEMS = {
         "another program is using it; close that one (fuser -v /dev/snd/*)",
         "занято другой программой; закройте её (fuser -v /dev/snd/*)",
     ),
-    "rate": Phrase("it cannot do {detail} Hz", "оно не умеет {detail} Гц"),
+    "rate": Phrase("it cannot do {detail} Hz", "оно не поддерживает {detail} Гц"),
     "gone": Phrase("it is gone; is it unplugged?", "оно пропало; его отключили?"),
     "silent": Phrase("no sound moves any more", "звук больше не идёт"),
     "hung": Phrase("PortAudio does not answer", "PortAudio не отвечает"),

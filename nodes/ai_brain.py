@@ -72,7 +72,8 @@ _REPLIES = {
 }
 _DECIDED = Phrase("Decision: {thought}", "Решение: {thought}")
 _HEAD_ASKED = Phrase(
-    "Asking the head for pan {pan}°, tilt {tilt}°", "Прошу голову: pan {pan}°, tilt {tilt}°"
+    "Asking the head for pan {pan}°, tilt {tilt}°",
+    "Прошу голову повернуться: pan {pan}°, tilt {tilt}°",
 )
 _HEAD_DONE = Phrase("The head has turned", "Голова повернулась")
 _HEAD_REFUSED = Phrase("The head refused", "Голова отказалась")

@@ -78,7 +78,7 @@ _NO_GATE = Phrase(
     "Nobody publishes {topic}: the wheels stand. Deck's safety_stop does with gate: true, that of"
     " the course does not; drive_topic: /drive in the profile drives without a gate",
     "{topic} никто не публикует: колёса стоят. Это делает safety_stop из Deck с gate: true, узел из"
-    " курса этого не делает; без шлюза ехать можно с drive_topic: /drive в профиле",
+    " курса этого не делает; без узла безопасности ехать можно с drive_topic: /drive в профиле",
 )
 _GATE_WITHIN_S = 5.0
 """Which is long for a gate that starts with the others."""

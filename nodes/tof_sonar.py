@@ -36,11 +36,11 @@ _LOOK_EVERY_S = 0.1
 _STARTED = Phrase("The sonar at {port} publishes {topic}", "Сонар на {port} публикует {topic}")
 _SILENT = Phrase(
     "No distance from {port} for {seconds:g} s: is it a {model}, and is it wired?",
-    "Нет расстояний от {port} уже {seconds:g} с: это {model}? подключён ли он?",
+    "Нет измерений от {port} уже {seconds:g} с: это {model}? подключён ли он?",
 )
 _GARBLED = Phrase(
     "Bytes from {port} make no sense: wrong port, wrong baud, or a bad cable?",
-    "Байты от {port} не понять: не тот порт, не та скорость или плохой кабель?",
+    "Данные от {port} не разобрать: не тот порт, не та скорость или плохой кабель?",
 )
 
 

@@ -25,7 +25,7 @@ _PHRASES = {
         "группа {group} закончена (раз: {times})",
     ),
     "stop": ("group stops", "группа остановлена"),
-    "ask": ("how is the battery?", "сколько в батарее?"),
+    "ask": ("how is the battery?", "запрос напряжения батареи"),
     "battery": ("battery {volts:.2f} V", "батарея {volts:.2f} В"),
     "bad": ("NO FRAME OF AN LSC-16", "НЕ КАДР LSC-16"),
 }

@@ -24,7 +24,7 @@ _PHRASES = {
     "hello": ("hello, protocol {protocol}", "привет, протокол {protocol}"),
     "drive": (
         "drive left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad",
-        "ехать: левое {left:.2f} правое {right:.2f} рад/с, руль {steering:.2f} рад",
+        "движение: левое {left:.2f} правое {right:.2f} рад/с, руль {steering:.2f} рад",
     ),
     "halt": ("EMERGENCY STOP", "АВАРИЙНЫЙ СТОП"),
     "release": ("emergency stop released", "аварийный стоп снят"),
@@ -51,7 +51,7 @@ _PHRASES = {
         "CRC НЕ СОШЛАСЬ: пришла {told}, верно {counted:04X}",
     ),
     "unknown": ("UNKNOWN LINE, though its crc is right", "НЕИЗВЕСТНАЯ СТРОКА, хотя crc верна"),
-    "cut": ("NO WHOLE LINE", "НЕ ЦЕЛАЯ СТРОКА"),
+    "cut": ("NO WHOLE LINE", "НЕПОЛНАЯ СТРОКА"),
 }
 _FLAGS_RU = {
     "E": "аварийный стоп",

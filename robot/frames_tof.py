@@ -14,7 +14,7 @@ _PHRASES = {
     "far": ("nothing in range ({centimetres} cm)", "ничего не видно ({centimetres} см)"),
     "near": ("too close to measure ({centimetres} cm)", "слишком близко ({centimetres} см)"),
     "none": ("no valid reading ({centimetres} cm)", "негодное измерение ({centimetres} см)"),
-    "rest": (", strength {strength}, {celsius:.1f} °C", ", сила {strength}, {celsius:.1f} °C"),
+    "rest": (", strength {strength}, {celsius:.1f} °C", ", сигнал {strength}, {celsius:.1f} °C"),
     "bad": (
         "CHECKSUM FAILED: {told:02X} came, {counted:02X} is right",
         "СУММА НЕ СОШЛАСЬ: пришла {told:02X}, верно {counted:02X}",

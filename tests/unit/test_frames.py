@@ -59,7 +59,7 @@ def said(reader: FrameReader, *chunks: bytes) -> list[tuple[str, str]]:
         (
             Drive(17, 3.2, 3.4, 0.1),
             "drive left 3.20 right 3.40 rad/s steering 0.10 rad, seq 17, crc ok",
-            "ехать: левое 3,20 правое 3,40 рад/с, руль 0,10 рад, № 17, crc верна",
+            "движение: левое 3,20 правое 3,40 рад/с, руль 0,10 рад, № 17, crc верна",
         ),
         (Halt(7), "EMERGENCY STOP, seq 7, crc ok", "АВАРИЙНЫЙ СТОП, № 7, crc верна"),
         (

@@ -1,7 +1,8 @@
-"""One word for one thing: in the Russian of the screen, of the README and of the docs alike."""
+"""One word for one thing: in the Russian of screens, nodes, README and docs alike."""
 
 from __future__ import annotations
 
+import ast
 import re
 from functools import cache
 from pathlib import Path
@@ -14,6 +15,7 @@ ROOT = Path(__file__).parents[2]
 DOCS = (ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.ru.md")))
 ENGLISH_DOCS = sorted({ROOT / "README.md", *(ROOT / "docs").glob("*.md")} - set(DOCS))
 PROFILES = sorted((ROOT / "profiles").glob("*.yaml"))
+SPEAKERS = sorted(path for room in ("nodes", "robot") for path in (ROOT / room).glob("*.py"))
 CODE = re.compile(r"```.*?```|`[^`]*`", re.DOTALL)
 INSTEAD = {
     r"\bлог(и|а|ов|у|е|ах|ом|ами)?\b": "журнал",
@@ -25,6 +27,15 @@ INSTEAD = {
     r"\bэкстренн\w+|\bаварийн\w+ остан\w+": "аварийный стоп",
     r"\bм/сек\b|\bсек\.": "м/с, с",
     r"\bсообщени\w* действи\w+|состояни\w* действи\w+": "экшен",
+    r"\bгейт\w*|\bшлюз\w*": "узел безопасности",
+    r"\bотклик\w*": "обратная связь",
+    r"\bаккумулятор\w*": "батарея",
+    r"\bсустав\w*": "сочленение",
+    r"\bнедосоздан\w*": "неполный",
+    r"\bвождени\w+|\bводит[ьи]?\b|\bвести (?:стрелк|клавиш)\w+": "управлять",
+    r"\bедь\b|\bготово ехать\b": "доехать, готово к движению",
+    r"\bпроцессор и память\b": "ЦП и память",
+    r"\bне верю\b|\bне верит\b": "не учитывается",
 }
 """What is not said, and what is said instead."""
 IN_ENGLISH = (
@@ -50,8 +61,19 @@ def catalogue() -> tuple[list[str], list[str]]:
     return said, translated
 
 
+@cache
+def nodes() -> list[str]:
+    """What nodes say, in either language."""
+    trees = (ast.parse(path.read_text()) for path in SPEAKERS)
+    constants = (
+        node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)
+    )
+    return [constant.value for constant in constants if isinstance(constant.value, str)]
+
+
 def russian() -> list[str]:
-    return catalogue()[1] + [CODE.sub("", path.read_text()) for path in (*DOCS, *PROFILES)]
+    pages = [CODE.sub("", path.read_text()) for path in (*DOCS, *PROFILES)]
+    return catalogue()[1] + nodes() + pages
 
 
 def english() -> list[str]:
@@ -78,6 +100,7 @@ def test_english_is_as_a_native_speaker_writes_it(pattern: str) -> None:
         "· стр. {page}/{pages} (v — дальше)",
         "Сохранено {size} байт в {path}",
         "имитация",
+        "готово к движению",
         "перезапуск",
         "Журнал",
         "ЦП",
