@@ -81,8 +81,13 @@ async def until_state(
     try:
         status: NodeStatus = await until(there, f"{name} {words}", within_s)
     except pytest.fail.Exception:
-        log = [line.text for line in await client.history(name, 20)]
-        pytest.fail(f"{name} is not {words} but {client.nodes[name]}; log: {log}")
+        node = client.nodes[name]
+        needed = [client.nodes[need] for need in node.needs]
+        logs = {
+            each.name: [line.text for line in await client.history(each.name, 20)]
+            for each in (node, *needed)
+        }
+        pytest.fail(f"{name} is not {words} but {node}; it needs {needed}; logs: {logs}")
     return status
 
 

@@ -22,11 +22,13 @@ GOAL_M = 3.0
 def robot(ros_domain: int) -> Iterator[list[str]]:
     """Bring the robot up; its nodes."""
     up = deck("up", "robot", "--set", "drive_to_point.patience_s=1.0")
-    assert (up.process.returncode, up.errors) == (0, [])
-    (session,) = json.loads("\n".join(deck("ps", "--json").lines))
-    assert session["domain"] == ros_domain
-    yield [node["node"] for node in session["nodes"] if node["state"] == "ready"]
-    deck("down")
+    try:
+        assert (up.process.returncode, up.errors) == (0, [])
+        (session,) = json.loads("\n".join(deck("ps", "--json").lines))
+        assert session["domain"] == ros_domain
+        yield [node["node"] for node in session["nodes"] if node["state"] == "ready"]
+    finally:
+        deck("down")
 
 
 def test_the_robot_drives_up_to_a_box_and_stands(robot: list[str], ros_domain: int) -> None:
