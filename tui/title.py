@@ -68,20 +68,23 @@ def states(app: DeckApp) -> Sequence[str]:
         opening = app.sessions.opening
         return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
     if app.brake.state.engaged:
-        return _where(app, session, stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0]))
+        return _where(session, stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0]))
     if app.strangers.now:
-        return _where(app, session, app.strangers.words())
+        return _where(session, app.strangers.words())
     if app.brake.state.blocked:
-        return _where(app, session, _held(app.brake.state))
+        return _where(session, _held(app.brake.state))
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
 
 
-def _where(app: DeckApp, session: SessionInfo, alarm: Sequence[str]) -> Sequence[str]:
-    """Return the words of an alarm, after them what is recorded and the domain if there is room."""
-    words, domain = alarm[0], domain_words(session)
-    # No more than its size: where an alarm is urgent tabs give way to longer words.
-    recorded = [f"{words} · {each} · {domain}" for each in app.recording.words[-1:]]
-    return (*recorded, f"{words} · {domain}", *alarm)
+def aside(app: DeckApp) -> str:
+    """Return what is to be said beside an alarm, if it costs no tab its name: what is recorded."""
+    # No more than its size: with longer words it would be told only on wide terminals.
+    return "".join(app.recording.words[-1:]) if look(app) != "state" else ""
+
+
+def _where(session: SessionInfo, alarm: Sequence[str]) -> Sequence[str]:
+    """Return the words of an alarm, after them the domain if there is room for all of it."""
+    return (f"{alarm[0]} · {domain_words(session)}", *alarm)
 
 
 def domain_words(session: SessionInfo) -> str:

@@ -107,13 +107,30 @@ async def test_that_the_disk_will_be_full_is_told_once() -> None:
         assert not any("1:20" in words for words in told(app))
 
 
+async def stopped_and_recorded(app: DeckApp, pilot: Pilot[Any]) -> tuple[str, str]:
+    """Press the stop, then the key that records; return the title before and after."""
+    await pilot.press("space")
+    await until(pilot, lambda: "STOP" in title(app).upper())
+    before = title(app)
+    await pilot.press("f6")
+    await until(pilot, lambda: app.recording.words)
+    await pilot.pause()
+    return before, title(app)
+
+
 async def test_beside_an_alarm_too_the_title_tells_how_much_is_recorded() -> None:
-    async with opened(size=(160, 45)) as (app, pilot):
-        await pilot.press("space")
-        await until(pilot, lambda: app.brake.state.engaged)
-        await pilot.press("f6")
-        await until(pilot, lambda: "3.4 MB" in title(app))
-        assert "STOP" in title(app).upper()
+    async with opened(size=(120, 40)) as (app, pilot):
+        _before, after = await stopped_and_recorded(app, pilot)
+        assert "3.4 MB" in after
+        assert "STOP" in after
+        assert "7 Dev." in after
+
+
+async def test_what_is_recorded_takes_no_tab_away_beside_an_alarm() -> None:
+    async with opened(size=(80, 24)) as (app, pilot):
+        before, after = await stopped_and_recorded(app, pilot)
+        assert after == before
+        assert " 6  7 " in after
 
 
 async def test_the_key_records_from_a_text_field_too() -> None:

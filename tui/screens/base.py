@@ -151,7 +151,9 @@ class DeckScreen(Screen[None], Acting, Working):
         """Show title, session and emergency stop as they are."""
         deck = self.deck
         for bar in self.query(TitleBar):
-            bar.show(title.tabs(deck, self.tab), title.states(deck), title.look(deck))
+            bar.show(
+                title.tabs(deck, self.tab), title.states(deck), title.look(deck), title.aside(deck)
+            )
         for place in self.query(ReplayBar):
             place.show(self.feed.replay)
 

@@ -297,4 +297,7 @@ class PublishDialog(Dialog[None]):
             if had != self.is_publishing:
                 self.refresh_bindings()
         bar = self.query_one(TitleBar)
-        bar.show(title.tabs(self.deck, "topics"), title.states(self.deck), title.look(self.deck))
+        deck = self.deck
+        bar.show(
+            title.tabs(deck, "topics"), title.states(deck), title.look(deck), title.aside(deck)
+        )

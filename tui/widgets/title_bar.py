@@ -16,6 +16,8 @@ ENOUGH = 16
 """Cells of an alarm that are worth it: told whole it would take the words of the tabs away."""
 SHORT = 3
 """Letters of a tab's word where there is little room."""
+NAMED = 3
+"""So many of the shapes of the tabs show a part of each name."""
 
 
 class _Level(NamedTuple):
@@ -74,23 +76,26 @@ class TitleBar(Widget):
         self._tabs: tuple[tuple[str, str, bool], ...] = ()
         self._states: tuple[str, ...] = ()
         self._look = "state"
+        self._aside = ""
 
     def show(
         self,
         tabs: Sequence[tuple[str, str, bool]],
         states: Sequence[str],
         look: str = "state",
+        aside: str = "",
     ) -> None:
         """Show tabs of (text, action, in front), and of `states` the first that fits, right.
 
         `look`: `state`, `alarm`, `danger` or `stop`; with the last the whole line is red. Where
         the words of the last two do not fit beside the tabs these give way. Tabs that are not in
         front are shortened, to a few letters, moved together, and then to their keys, before the
-        state is.
+        state is. `aside` follows the state where a few letters of each tab, or all that the state
+        leaves of them, have room beside it.
         """
-        shown = (tuple(tabs), tuple(states), look)
-        if shown != (self._tabs, self._states, self._look):
-            self._tabs, self._states, self._look = shown
+        shown = (tuple(tabs), tuple(states), look, aside)
+        if shown != (self._tabs, self._states, self._look, self._aside):
+            self._tabs, self._states, self._look, self._aside = shown
             self.set_class(look == "stop", "-stop")
             self.refresh()
 
@@ -101,7 +106,7 @@ class TitleBar(Widget):
 
     def render(self) -> Content:
         """Draw the tabs, then what fits of the state."""
-        level, state = self._fitting()
+        level, state = self._with_aside(*self._fitting())
         left = self._left(level)
         gap = " " * max(0, self.size.width - left.cell_length - cell_len(state) - 2)
         style = self.get_visual_style(f"title-bar--{self._look}")
@@ -114,18 +119,15 @@ class TitleBar(Widget):
         While it is urgent the words come first, and all tabs may give way. The words of an alarm
         come from a node and may be of any length: they are cut before the tabs lose theirs.
         """
-        alone = self.size.width - cell_len(NAME) - 3
-        shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
-        levels = [_Level(_shortened(self._tabs, letters), gap) for letters, gap in shapes]
-        named = levels[2]
-        levels.append(_Level(_keys(self._tabs), 2))
+        alone, levels = self._room(), self._levels()
+        named = levels[NAMED - 1]
         states = self._states or ("",)
         for state in states if self._look in URGENT else ():
             for level in (*levels, _Level((), 2)):
                 if cell_len(state) <= alone - level.width:
                     return level, state
         for level in levels:
-            spared = states[-1:] if len(states) > 1 and level in levels[:3] else ()
+            spared = states[-1:] if len(states) > 1 and level in levels[:NAMED] else ()
             for state in states:
                 if state not in spared and cell_len(state) <= alone - level.width:
                     return level, state
@@ -133,6 +135,26 @@ class TitleBar(Widget):
             if self._look == "alarm" and level is named and room >= ENOUGH:
                 return level, _cut(states[-1], room)
         return levels[-1], _cut(states[-1], alone - levels[-1].width)
+
+    def _with_aside(self, level: _Level, state: str) -> tuple[_Level, str]:
+        """Return both with what stands aside, if no tab loses its name, or its place, for that."""
+        levels = self._levels()
+        named = levels[:NAMED] if level in levels[:NAMED] else [level]
+        for other in named if self._aside else ():
+            told = f"{state} · {self._aside}"
+            if other.width <= level.width and cell_len(told) <= self._room() - other.width:
+                return other, told
+        return level, state
+
+    def _room(self) -> int:
+        """Return the cells that the name of the program leaves for tabs and state."""
+        return self.size.width - cell_len(NAME) - 3
+
+    def _levels(self) -> list[_Level]:
+        """Return all tabs, ever shorter; the first NAMED show a part of each name."""
+        shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
+        levels = [_Level(_shortened(self._tabs, letters), gap) for letters, gap in shapes]
+        return [*levels, _Level(_keys(self._tabs), 2)]
 
     def _left(self, level: _Level) -> Content:
         parts = [Content.styled(NAME, self.get_visual_style("title-bar--name"))]
