@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from graph.bag_decoding import TypeText
 from graph.bag_errors import BagError, no_bag, unreadable
+from graph.bag_unfit import unfit
 from graph.words import Words, say
 
 if TYPE_CHECKING:
@@ -134,14 +136,23 @@ def open_bag(path: Path) -> Bag:
             return Bag(path, WholeBag(path if (path / METADATA).exists() else files[0]), None)
         except Exception as error:
             if not mcaps or isinstance(error, PermissionError):
-                raise unreadable(path, error) from error
+                raise _unreadable(path, files, error) from error
             reason = error
     try:
         cut = CutFiles(mcaps)
     except Exception as error:
         foreign = isinstance(error, (OSError, ValueError, struct.error))
-        raise unreadable(path, reason if reason and foreign else error) from error
+        raise _unreadable(path, files, reason if reason and foreign else error) from error
     return Bag(path, cut, cut.missing(path))
+
+
+def _unreadable(path: Path, files: list[Path], error: Exception) -> BagError:
+    """Return why no reader takes the files, by their first bytes if these tell it."""
+    with suppress(OSError):
+        reason = unfit(path, files, metadata_of(path))
+        if reason:
+            return BagError(say("{path} cannot be read: {reason}", path=path, reason=reason))
+    return unreadable(path, error)
 
 
 def files_of(path: Path) -> list[Path]:

@@ -1,4 +1,4 @@
-"""The bags in a folder, as far as their metadata tells: nothing in them is read or decoded."""
+"""The bags in a folder, as far as metadata and first bytes tell: no message is read or decoded."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from graph.bag import SUFFIXES, metadata_of
+from graph.bag_unfit import endless, unfit
 from graph.words import say
 
 
@@ -49,10 +50,12 @@ def _listed(path: Path) -> ListedBag | None:
         return None
     stats = [file.stat() for file in parts]
     size, changed_s = sum(one.st_size for one in stats), max(one.st_mtime for one in stats)
-    if not path.is_dir():
-        return ListedBag(path.name, path, size, changed_s)
+    metadata = metadata_of(path) if path.is_dir() else {}
+    broken = unfit(path, parts, metadata) or endless(parts) or ""
+    if not path.is_dir() or broken:
+        return ListedBag(path.name, path, size, changed_s, trouble=broken)
     try:
-        known = _known(metadata_of(path))
+        known = _known(metadata)
     except (KeyError, TypeError, ValueError):
         broken = say("its metadata.yaml is missing or damaged")
         return ListedBag(path.name, path, size, changed_s, trouble=broken)

@@ -10,8 +10,9 @@ import pytest
 from mcap.reader import make_reader
 
 from graph.bag import open_bag
-from graph.bag_errors import BagError
+from graph.bag_errors import BagError, unreadable
 from tests.unit.bags import write_bag
+from tui.i18n import said, set_language
 
 
 @pytest.fixture(scope="module")
@@ -77,21 +78,45 @@ def test_a_link_to_itself_and_an_endless_name_are_told(tmp_path: Path) -> None:
     assert "cannot be read: File name too long" in said_of(tmp_path / ("n" * 300))
 
 
-@pytest.mark.parametrize("content", [b"", b"hello, I am no bag"])
-def test_a_reason_that_is_a_sentence_brings_no_second_dot(tmp_path: Path, content: bytes) -> None:
-    fake = tmp_path / "fake.mcap"
-    fake.write_bytes(content)
-    said = said_of(fake)
-    assert ". Is it whole?" in said
-    assert ".. Is it whole?" not in said
+def test_a_reason_that_is_a_sentence_brings_no_second_dot() -> None:
+    said = str(unreadable(Path("walk"), ValueError("File magic is invalid.")))
+    assert "invalid. Is it whole?" in said
 
 
-def test_a_file_that_only_looks_like_one_is_named(tmp_path: Path) -> None:
-    fake = tmp_path / "fake.mcap"
+@pytest.mark.parametrize("name", ["fake.mcap", "fake.db3"])
+def test_an_empty_file_is_told_as_such(tmp_path: Path, name: str) -> None:
+    fake = tmp_path / name
+    fake.touch()
+    assert said_of(fake) == f"{fake} cannot be read: {name} is empty, nothing was written to it"
+
+
+@pytest.mark.parametrize(("name", "kind"), [("fake.mcap", "MCAP"), ("fake.db3", "SQLite")])
+def test_a_file_that_only_looks_like_one_is_named(tmp_path: Path, name: str, kind: str) -> None:
+    fake = tmp_path / name
     fake.write_bytes(b"hello, I am no bag")
-    said = said_of(fake)
-    assert "fake.mcap cannot be read" in said
-    assert "ros2 bag reindex" in said
+    assert said_of(fake) == f"{fake} cannot be read: {name} is not an {kind} file"
+
+
+def test_a_file_that_metadata_names_and_that_is_gone_is_told(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "walk", seconds=1)
+    (bag / "walk.mcap").unlink()
+    assert said_of(bag).endswith("metadata.yaml names walk.mcap, which is not there")
+
+
+def test_what_is_wrong_with_a_file_is_told_in_russian_alone(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "walk", seconds=1)
+    (bag / "walk.mcap").write_bytes(b"")
+    with pytest.raises(BagError) as told:
+        open_bag(bag)
+    set_language("ru")
+    try:
+        said_in_russian = said(told.value.words)
+    finally:
+        set_language("en")
+    assert (
+        said_in_russian
+        == f"{bag} не удаётся прочитать: файл walk.mcap пуст, в него ничего не записано"
+    )
 
 
 def test_an_unknown_storage_is_named(tmp_path: Path) -> None:

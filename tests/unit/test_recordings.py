@@ -68,6 +68,25 @@ def test_one_without_its_metadata_is_listed_with_a_word(
     assert trouble.strip() == "its metadata.yaml is missing or damaged"
 
 
+def test_one_that_cannot_be_read_is_listed_with_a_word_and_without_its_figures(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    write_bag(recordings_path() / "walk", seconds=1)
+    (recordings_path() / "walk" / "walk.mcap").write_bytes(b"")
+    (recordings_path() / "other.mcap").write_text("hello")
+    cut = write_bag(recordings_path() / "cut", seconds=1) / "cut.mcap"
+    os.truncate(cut, cut.stat().st_size - 1)
+    assert main(["replay"]) == 0
+    _head, *rows, _last = lines(capsys)
+    told = dict(zip((row.split()[0] for row in rows[::2]), map(str.strip, rows[1::2]), strict=True))
+    assert told == {
+        "walk": "walk.mcap is empty, nothing was written to it",
+        "other.mcap": "other.mcap is not an MCAP file",
+        "cut": "cut.mcap has no end: it is being written, or was cut short",
+    }
+    assert all("–" in row for row in rows[::2])
+
+
 def test_a_name_is_found_there_and_a_path_goes_before_it(tmp_path: Path) -> None:
     there = write_bag(recordings_path() / "walk", seconds=1)
     assert find_recording("walk") == there

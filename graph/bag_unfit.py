@@ -1,0 +1,50 @@
+"""Files of a bag that are no such files, told by their first bytes: which, and why."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from graph.words import Words, say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_KINDS = {".mcap": (b"\x89MCAP0\r\n", "MCAP"), ".db3": (b"SQLite format 3\x00", "SQLite")}
+"""How a file begins that is named so, and what it is called. An MCAP file ends so, too."""
+
+
+def unfit(folder: Path, files: Iterable[Path], metadata: Mapping[str, object]) -> Words | None:
+    """Return what is wrong with one of a bag's files, None if all of them begin as they should.
+
+    `metadata`: what the bag's metadata.yaml says, which names its files.
+    """
+    named = metadata.get("relative_file_paths")
+    for name in (Path(str(each)).name for each in (named if isinstance(named, list) else ())):
+        # The first rosbag2 wrote the folder before it; readers leave that out too.
+        if not (folder / name).exists():
+            return say("metadata.yaml names {file}, which is not there", file=name)
+    for file in files:
+        begin, kind = _KINDS[file.suffix]
+        with file.open("rb") as opened:
+            found = opened.read(len(begin))
+        if not found:
+            return say("{file} is empty, nothing was written to it", file=file.name)
+        if not begin.startswith(found):
+            return say("{file} is not an {kind} file", file=file.name, kind=kind)
+    return None
+
+
+def endless(files: Iterable[Path]) -> Words | None:
+    """Return which of a bag's files was not ended properly, None if none is seen to be so."""
+    for file in files:
+        if file.suffix == ".mcap":
+            end, _kind = _KINDS[file.suffix]
+            with file.open("rb") as opened:
+                opened.seek(-min(len(end), opened.seek(0, os.SEEK_END)), os.SEEK_END)
+                if opened.read() != end:
+                    return say(
+                        "{file} has no end: it is being written, or was cut short", file=file.name
+                    )
+    return None
