@@ -6,41 +6,8 @@ from typing import NoReturn
 
 import yaml
 
-from graph.words import Words, say
-
-_LIST = say("this list is not closed: a ',' or a ']' is missing")
-_BRACES = say("these braces are not closed: a ',' or a '}' is missing")
-_INDENT = say("the indentation does not fit the lines above")
-_NO_VALUE = say("a value is missing here, or a ']' or '}'")
-_BEGUN_BEFORE = {
-    "could not find expected ':'": say(
-        "a ':' is missing after the name of the field, or a space after it"
-    ),
-    "did not find expected ',' or ']'": _LIST,
-    "expected ',' or ']'": _LIST,
-    "did not find expected ',' or '}'": _BRACES,
-    "expected ',' or '}'": _BRACES,
-    "found unexpected end of stream": say("the text in quotes is not closed"),
-}
-"""How PyYAML's own words begin (of both its parsers), and what is meant; told of where it began."""
-_WORDS = {
-    "found character that cannot start any token": say(
-        "nothing can begin with this character: put the text in quotes"
-    ),
-    "did not find expected key": _INDENT,
-    "expected <block end>": _INDENT,
-    "did not find expected node content": _NO_VALUE,
-    "expected the node content": _NO_VALUE,
-    "did not find expected '-' indicator": say("the indentation does not fit the list above"),
-    "block sequence entries are not allowed": say(
-        "a list cannot begin here: put it on a line of its own, or the '-' in quotes"
-    ),
-}
-_COLON = "mapping values are not allowed"
-_SECOND_COLON = say("a second ':' in one line: put the text that holds it in quotes")
-_NO_COLON = say(
-    "this line does not fit the one above: a ':' is missing there, or the indentation differs"
-)
+from graph.words import say
+from text.yaml_faults import fault_of
 
 
 class YamlError(ValueError):
@@ -66,29 +33,9 @@ def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:
     if "\t" in indent:
         tab = say("this line is indented with a tab: use spaces, not tabs")
         raise YamlError(mark.line + 1, indent.index("\t") + 1, tab) from error
-    words = getattr(error, "problem", None) or str(error)
-    meant = _meant(words, _BEGUN_BEFORE)
-    if meant and error.context_mark:
-        mark = error.context_mark
-    place = _within(mark.line, mark.column, lines)
-    if words.startswith(_COLON):
-        meant = _SECOND_COLON if ":" in content[: mark.column] else _NO_COLON
-    meant = meant or _meant(words, _WORDS)
-    if meant is None:
-        raise YamlError(*place, say("not YAML: {reason}", reason=words)) from error
-    raise YamlError(*place, meant) from error
-
-
-def _within(line: int, column: int, lines: list[str]) -> tuple[int, int]:
-    """Return a place counted from 1; what is missed at the very end, at the last line's end."""
-    while line > 0 and (line >= len(lines) or not lines[line].strip()):
-        line -= 1
-        column = len(lines[line].rstrip())
-    return line + 1, column + 1
-
-
-def _meant(words: str, known: dict[str, Words]) -> Words | None:
-    return next((said for begin, said in known.items() if words.startswith(begin)), None)
+    fault = fault_of(error, text)
+    words = say(fault.words) if fault.words else say("not YAML: {reason}", reason=error.problem)
+    raise YamlError(fault.line, fault.column, words) from error
 
 
 def tell_character(text: str, offset: int) -> NoReturn:

@@ -8,6 +8,7 @@ import yaml
 
 from launcher.profile_tree import Place
 from launcher.words import say
+from text.yaml_faults import fault_of
 
 if TYPE_CHECKING:
     from launcher.profile_tree import Problems
@@ -15,24 +16,24 @@ if TYPE_CHECKING:
 
 def tell_syntax(error: yaml.YAMLError, text: str, file: str, problems: Problems) -> None:
     """Tell a syntax error in words that help whoever wrote the file."""
-    mark = error.problem_mark if isinstance(error, yaml.MarkedYAMLError) else None
-    if mark is None:
+    if not isinstance(error, yaml.MarkedYAMLError) or error.problem_mark is None:
         _character_problem(error, text, file, problems)
         return
-    line, column = mark.line + 1, mark.column + 1
+    mark = error.problem_mark
     lines = text.splitlines()
     content = lines[mark.line] if mark.line < len(lines) else ""
     indent = content[: len(content) - len(content.lstrip())]
     if "\t" in indent:
-        place = Place(file, line, indent.index("\t") + 1)
+        place = Place(file, mark.line + 1, indent.index("\t") + 1)
         problems.add(
             place, (), say("this line is indented with a tab"), say("use spaces, not tabs")
         )
         return
-    words = getattr(error, "problem", None) or str(error)
-    context = getattr(error, "context", None)
-    message = f"{words}, {context}" if context else words
-    problems.add(Place(file, line, column), (), say("not YAML: {reason}", reason=message))
+    fault = fault_of(error, text)
+    found = ", ".join(words for words in (error.problem, error.context) if words)
+    reason = say(fault.words) if fault.words else found
+    message = say("not YAML: {reason}", reason=reason)
+    problems.add(Place(file, fault.line, fault.column), (), message)
 
 
 def _character_problem(error: yaml.YAMLError, text: str, file: str, problems: Problems) -> None:

@@ -167,7 +167,29 @@ BAD = {
         "nodes:\n\ta: {exec: [x]}",
         "2:1: this line is indented with a tab (use spaces, not tabs)",
     ),
-    "an unclosed bracket": ("nodes: {a: {exec: [x]}", "not YAML"),
+    "an unclosed brace": (
+        "nodes: {a: {exec: [x]}",
+        "1:8: not YAML: these braces are not closed: a ',' or a '}' is missing",
+    ),
+    "an unclosed bracket": (
+        "nodes:\n  a: {exec: [x}",
+        "2:13: not YAML: this list is not closed: a ',' or a ']' is missing",
+    ),
+    "a missing colon": (
+        "nodes:\n  a\n    exec: [x]",
+        (
+            "3:9: not YAML: this line does not fit the one above: a ':' is missing there, or the"
+            " indentation differs"
+        ),
+    ),
+    "an unclosed text": (
+        'nodes:\n  a: {exec: ["x]}',
+        "2:14: not YAML: the text in quotes is not closed",
+    ),
+    "a crooked indent": (
+        "nodes:\n  a:\n    exec: [x]\n   needs: [b]",
+        "4:4: not YAML: the indentation does not fit the lines above",
+    ),
     "an empty file": ("", "1:1: is empty (a profile has at least `nodes:`)"),
     "only a comment": ("# nothing\n", "1:1: is empty (a profile has at least `nodes:`)"),
     "a list": ("- a\n- b", "1:1: expected keys and values, found a list"),
