@@ -151,6 +151,23 @@ def test_a_mistyped_command_is_told_also_if_more_follows(
     )
 
 
+@pytest.mark.parametrize(
+    "words", [("help", "lst"), ("lst", "--help"), ("--lang", "en", "help", "lst")]
+)
+def test_a_mistyped_command_is_told_also_where_its_help_is_asked_for(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    assert capsys.readouterr().err == (
+        "no profile and no command 'lst'; did you mean `deck list`?\n"
+    )
+
+
+def test_help_for_a_profile_is_that_of_deck(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["help", "09-brain"]) == 0
+    assert capsys.readouterr().out.startswith("usage: deck [PROFILE]")
+
+
 def test_what_a_profile_does_not_take_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["01-hello", "--for", "5"]) == 2
     assert "deck: unrecognized arguments: --for 5\n" in capsys.readouterr().err

@@ -81,14 +81,22 @@ def _parsed(command: str, words: Sequence[str]) -> Namespace | int:
     """
     parser = parser_of(command)
     try:
+        if command == OPEN and words[-1:] == ["--help"]:
+            _refuse_no_command(parser.parse_known_args(words[:-1])[0].profile)
         options, more = parser.parse_known_args(words)
-        if more and command == OPEN and options.profile is not None:
-            from tui.cli.screen import profile_or_command
-
-            profile_or_command(options.profile)
+        if more and command == OPEN:
+            _refuse_no_command(options.profile)
         return parser.parse_args(words) if more else options
     except SystemExit as end:
         return end.code if isinstance(end.code, int) else 2
+
+
+def _refuse_no_command(word: str | None) -> None:
+    """Raise a LauncherError if there is a word that is neither a command nor a profile."""
+    if word is not None:
+        from tui.cli.screen import profile_or_command
+
+        profile_or_command(word)
 
 
 def complain(error: LauncherError) -> int:
