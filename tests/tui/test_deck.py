@@ -36,6 +36,7 @@ from tui.panels.wheels import WheelsFeed
 from tui.screens.deck import LessonDeck
 from tui.widgets.command_line import CommandLine
 from tui.widgets.image_view import ImageView
+from tui.widgets.key_bar import KeyBar
 from tui.widgets.nodes_table import NodesTable, duration
 from tui.widgets.outcome import Outcome
 from tui.widgets.sonar import SonarPanel
@@ -54,16 +55,45 @@ async def test_a_node_and_all_nodes_are_started_stopped_restarted() -> None:
     asked: list[tuple[str, ...]] = []
     async with opened(pad) as (_app, pilot):
         await pilot.press("down")
-        for key, verb in (("s", "start"), ("x", "stop"), ("r", "restart"), ("ч", "stop")):
+        for key, verb in (("x", "stop"), ("r", "restart"), ("ч", "stop")):
             asked.append((verb, "camera"))
             await pilot.press(key)
             await pilot.pause()
             assert pad.link.asked == asked
+        pad.link.set_state("camera", NodeState.EXITED)
+        await pilot.pause()
+        asked.append(("start", "camera"))
+        await pilot.press("s")
+        await pilot.pause()
+        assert pad.link.asked == asked
         for key, verb in (("S", "start"), ("X", "stop"), ("R", "restart")):
             asked.append((verb,))
             await pilot.press(key)
             await pilot.pause()
             assert pad.link.asked == asked
+
+
+@pytest.mark.parametrize(
+    ("state", "keys"),
+    [
+        (NodeState.WAITING, "s Start  x Stop  r Restart"),
+        (NodeState.STARTING, "x Stop  r Restart"),
+        (NodeState.READY, "x Stop  r Restart"),
+        (NodeState.RUNNING, "x Stop  r Restart"),
+        (NodeState.STOPPING, "s Start  x Stop  r Restart"),
+        (NodeState.BACKOFF, "s Start  x Stop  r Restart"),
+        (NodeState.EXITED, "s Start  r Restart"),
+        (NodeState.FAILED, "s Start  r Restart"),
+    ],
+)
+async def test_what_is_done_already_is_not_offered(state: NodeState, keys: str) -> None:
+    pad = RecordedPad()
+    async with opened(pad) as (app, pilot):
+        pad.link.set_state("sonar_front", state)
+        await pilot.pause()
+        await pilot.pause()
+        shown = str(app.screen.query_one(KeyBar).render()).strip()
+        assert shown.startswith(f"{keys}  m Mute")
 
 
 async def test_a_node_is_chosen_by_a_click_and_stopped_by_a_click() -> None:

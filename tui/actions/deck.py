@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
+from launcher.status import NodeState
 from text.plain import plain
 from tui.actions.action import Action
 from tui.i18n import N_, _
 
 if TYPE_CHECKING:
     from tui.screens.deck import LessonDeck
+
+
+ENDED = frozenset({NodeState.EXITED, NodeState.FAILED})
+RUNS = frozenset({NodeState.STARTING, NodeState.READY, NodeState.RUNNING})
 
 
 class DeckAction(Action["LessonDeck"]):
@@ -31,11 +36,15 @@ class _AskNode(_OfNode):
     """Ask the supervisor to do something with the chosen node."""
 
     asked: ClassVar[str]
+    done: ClassVar[frozenset[NodeState]] = frozenset()
+    """States in which there is nothing of it to do."""
 
     @classmethod
     def possible(cls, target: LessonDeck) -> bool | None:
-        """Not when the session is over."""
-        return False if target.feed.link is None else super().possible(target)
+        """Not when the session is over, and not what is done already."""
+        if target.feed.link is None or target.chosen_state in cls.done:
+            return False
+        return super().possible(target)
 
     @classmethod
     def shown(cls, target: LessonDeck) -> bool:
@@ -63,6 +72,7 @@ class StartNode(_AskNode):
     tooltip = N_("Start the chosen node, with all that it needs.")
     footer = True
     asked = "start"
+    done = RUNS
 
 
 class StopNode(_AskNode):
@@ -75,6 +85,7 @@ class StopNode(_AskNode):
     tooltip = N_("Stop the chosen node; press again to force it.")
     footer = True
     asked = "stop"
+    done = ENDED
 
 
 class RestartNode(_AskNode):

@@ -11,7 +11,7 @@ from textual.containers import Container, Vertical
 from textual.widgets import Static
 
 from launcher.errors import LauncherError
-from launcher.status import Severity
+from launcher.status import NodeState, Severity
 from text.plain import plain
 from tui.actions import bindings
 from tui.actions.deck import DECK_ACTIONS
@@ -90,6 +90,8 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
 
     _cut: tuple[str, str] = ("", "")
     """Name and state of the chosen node where the table has no room for all of it."""
+    _offered_for: NodeState | None = None
+    """The state of the chosen node by which its keys are offered."""
 
     def compose_body(self) -> ComposeResult:
         """The nodes above the log; panels come with the session."""
@@ -121,6 +123,12 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         if self.feed.link is None:
             return ""
         return next((table.chosen for table in self.query(NodesTable)), "")
+
+    @property
+    def chosen_state(self) -> NodeState | None:
+        """Where the chosen node is in its life, None without one or of one of others."""
+        node = self.feed.nodes.get(self.chosen_node)
+        return None if node is None else node.state
 
     @work(group="ask")
     async def ask(self, what: str, *names: str) -> None:
@@ -216,6 +224,9 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         self.pane.view.know_nodes(message.nodes)
         self._show_nodes()
         self._lay_out(self.size.height)
+        if self._offered_for is not self.chosen_state:
+            self._offered_for = self.chosen_state
+            self.refresh_bindings()
 
     def on_log_arrived(self, message: LogArrived) -> None:
         """Append the lines."""
