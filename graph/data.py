@@ -103,6 +103,7 @@ class TopicRow:
     `subscriber` (nodes), `offered`, `requested`; `more`, the number of further pairs, if there are
     any. UNKNOWN_TYPE: `type`, `package`, `reason`, and if the package is missing its names for
     `pip` (where PyPI has it), `apt` and `pixi`. QUIET: `seconds`. NO_PUBLISHER: none.
+    Both in a replay: `recorded`.
     A remark: `types`, with the one that is shown in `shown`.
     """
     published_by: tuple[EndpointInfo, ...] = ()

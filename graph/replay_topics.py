@@ -12,6 +12,7 @@ from graph.data import EndpointInfo, NodeRow, Sample, TopicRow, Trouble
 from graph.qos import TRANSIENT_LOCAL
 from graph.rates import QUIET_S, Arrival, RateMeter
 from graph.troubles import quiet
+from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -24,6 +25,8 @@ NODE = "/bag"
 FOLLOWED = 200
 """Messages of one turn that a follower gets."""
 NANOSECONDS = 1e-9
+RECORDED = {"recorded": ""}
+"""Fact of a topic that is silent in a bag: there is no node to be looked at."""
 
 
 class Newest(NamedTuple):
@@ -111,7 +114,7 @@ class ReplayTopic:
         else:
             return row
         return replace(
-            row, trouble=finding.trouble, detail=finding.detail, facts=dict(finding.facts)
+            row, trouble=finding.trouble, detail=finding.detail, facts={**finding.facts, **RECORDED}
         )
 
     def _sample(self, message: Newest, wall_s: float, now_ns: int) -> Sample | None:
@@ -121,7 +124,11 @@ class ReplayTopic:
             self._broken = error.words
             return None
         except Exception as error:  # noqa: BLE001 - whatever a bag holds must not end the replay
-            self._broken = f"a message of {self._shown.kind.name} cannot be decoded: {error}"
+            self._broken = say(
+                "a message of {type} cannot be decoded: {reason}",
+                type=self._shown.kind.name,
+                reason=error,
+            )
             return None
         self._broken = ""
         age_s = max(0.0, (now_ns - message.stamp_ns) * NANOSECONDS)
@@ -190,6 +197,12 @@ class ReplayTopics:
         rows = {name: topic.row(now_s, begun_s) for name, topic in self._topics.items()}
         for name in interest.named - rows.keys():
             rows[name] = TopicRow(
-                name, (), 0, 0, trouble=Trouble.NO_PUBLISHER, detail="not in this recording"
+                name,
+                (),
+                0,
+                0,
+                trouble=Trouble.NO_PUBLISHER,
+                detail="not in this recording",
+                facts=RECORDED,
             )
         return tuple(rows[name] for name in sorted(rows))

@@ -14,6 +14,7 @@ from graph.rates import Arrival, RateMeter
 from graph.stamps import delay_reader
 from graph.stand_in import stand_in
 from graph.types import UnknownTypeError, load_message
+from graph.words import say
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -162,7 +163,11 @@ class Tap:
             value = self._decode(raw)
         except Exception as error:  # noqa: BLE001
             # Whatever a stranger publishes under this name must not end the observer.
-            self.broken = f"a message of {self.type_name} cannot be decoded: {error}"
+            self.broken = say(
+                "a message of {type} cannot be decoded: {reason}",
+                type=self.type_name,
+                reason=error,
+            )
             return None
         self.broken = ""
         age_s = max(0.0, now_s - stamp_s)

@@ -140,13 +140,36 @@ async def test_the_emergency_stop_has_nothing_to_stop(drive: Path) -> None:
 
 async def test_the_footer_offers_nothing_that_needs_a_robot(drive: Path) -> None:
     async with replayed(drive) as (app, pilot, _replay):
-        for key, title in (("1", "Restart"), ("2", "Publish"), ("3", "Send")):
+        for key, title in (
+            ("1", "Restart"),
+            ("2", "Publish"),
+            ("3", "Send"),
+            ("5", "Parameters"),
+        ):
             await pilot.press(key)
             await pilot.pause()
             shown = str(app.screen.query_one(KeyBar).render())
             assert "f7 P" in shown
             for robots in (title, "STOP", "Start", "Stop", "Mute"):
                 assert robots not in shown, (key, shown)
+
+
+@pytest.mark.parametrize(
+    ("screen", "told", "untrue"),
+    [
+        ("flow", "Nobody has spoken so far in this recording", "speak, or wait"),
+        ("composer", "This is a recording", "^s sends"),
+        ("topics", "Nothing of it was recorded around here", "Look at their logs"),
+    ],
+)
+async def test_no_screen_advises_what_only_a_robot_takes(
+    tmp_path: Path, screen: str, told: str, untrue: str
+) -> None:
+    bag = write_robot_bag(tmp_path / "drive", silent=("/ai_command",))
+    app = DeckApp(BagPad(position_s=6.0), Order(replay=ReplayOrder(bag)), screen)
+    async with app.run_test(size=(120, 40)) as pilot:
+        await until(pilot, lambda: told in text_of(app))
+        assert untrue not in text_of(app)
 
 
 async def test_a_bag_without_panels_opens_on_its_topics(tmp_path: Path) -> None:

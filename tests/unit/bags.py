@@ -80,8 +80,11 @@ def write_bag(
     return folder
 
 
-def write_robot_bag(folder: Path) -> Path:
-    """A bag of ten seconds in which a robot drives: sonar, wheels, and one line of /rosout."""
+def write_robot_bag(folder: Path, silent: Sequence[str] = ()) -> Path:
+    """A bag of ten seconds in which a robot drives: sonar, wheels, and one line of /rosout.
+
+    `silent`: topics for words that nobody has said.
+    """
     types = store()
     made = types.types
     joint, header, stamp = (
@@ -97,6 +100,8 @@ def write_robot_bag(folder: Path) -> Path:
         def channel(topic: str, kind: str) -> Connection:
             return writer.add_connection(topic, kind, typestore=types)
 
+        for topic in silent:
+            channel(topic, "std_msgs/msg/String")
         sonar = channel("/sensor/sonar_front", "std_msgs/msg/Float32")
         wheels = channel("/wheel_commands", "sensor_msgs/msg/JointState")
         said = made["rcl_interfaces/msg/Log"](

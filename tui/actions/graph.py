@@ -131,7 +131,9 @@ class Parameters(GraphAction):
 
     @classmethod
     def possible(cls, target: GraphScreen) -> bool | None:
-        """Only of a node."""
+        """Only of a node, which a recording is not."""
+        if target.feed.replay is not None:
+            return False
         return target.node_pane is not None and target.shows_pane
 
     @classmethod

@@ -260,6 +260,8 @@ class ComposerScreen(DeckScreen):
         story, now_s = self._story, clock.now()
         if story is None:
             hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
+            if self.feed.replay is not None:
+                hint = _("This is a recording: nobody can hear it.")
             self.outcome.show(f"{_('Nothing has been sent yet.')} {hint}", ())
             return
         at = clock.time_of_day(story.sent_s)

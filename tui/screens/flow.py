@@ -292,7 +292,8 @@ class FlowScreen(DeckScreen):
         if empty:
             rows = () if self._update is None else self._update.topics
             there = {row.name for row in rows if row.publishers or row.subscribers}
-            note.update("\n".join(words.nothing_yet(there, self.deck.keys_of(WriteCommand)[0])))
+            key, recorded = self.deck.keys_of(WriteCommand)[0], self.feed.replay is not None
+            note.update("\n".join(words.nothing_yet(there, key, recorded=recorded)))
 
     def _say_step(self) -> None:
         chain, step = self.chosen_chain, self.chosen_step

@@ -75,8 +75,13 @@ def headline(chain: Chain, shown: Sequence[Step]) -> str:
     )
 
 
-def nothing_yet(topics: Collection[str], command_key: str) -> list[str]:
-    """What is missing, and what to do about it with the `topics` that are there."""
+def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) -> list[str]:
+    """What is missing, and what to do about it with the `topics` that are there.
+
+    `recorded`: whether it is a recording that is shown, to which nobody can say anything.
+    """
+    if recorded:
+        return [_("Nobody has spoken so far in this recording: play it on, or jump.")]
     said = [_("Nobody has spoken since this screen was opened.")]
     if MIC in topics:
         said.append(_("The microphone is there: speak, or wait for what is said next."))

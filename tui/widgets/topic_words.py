@@ -8,7 +8,7 @@ from rich.cells import cell_len
 
 from graph.data import Trouble
 from text.plain import plain
-from tui.i18n import _, decimal, ngettext
+from tui.i18n import _, decimal, ngettext, said
 from tui.widgets.qos_words import misfit_words
 from tui.widgets.topic_figures import count_text, seconds_text
 from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text
@@ -37,6 +37,8 @@ def advice(row: TopicRow) -> tuple[str, str]:
 
 def _way_out(row: TopicRow, trouble: Trouble) -> str:
     facts = row.facts
+    if "recorded" in facts:
+        return _("Nothing of it was recorded around here: go on, or jump.")
     if trouble is Trouble.NO_PUBLISHER:
         return _("Start the node that publishes it, or look for a misspelt or remapped name.")
     if trouble is Trouble.QUIET:
@@ -47,7 +49,7 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
         return _how_to_install(facts).format(**facts)
     if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
         return misfit_words(facts)
-    return row.detail
+    return said(row.detail)
 
 
 def _how_to_install(facts: Mapping[str, str]) -> str:
