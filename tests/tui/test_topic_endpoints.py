@@ -106,6 +106,12 @@ def test_deck_is_not_nobody() -> None:
     assert ends(replace(ours, published_by=(LIDAR,))) == "lidar, Deck → brain"
 
 
+def test_who_listens_twice_is_told_as_often_as_the_table_counts() -> None:
+    row = a_row([LIDAR, BRAIN, BRAIN], [LIDAR, BRAIN, LIDAR, LIDAR])
+    assert (row.publishers, row.subscribers) == (3, 4)
+    assert ends(row) == "lidar, brain ×2 → lidar ×3, brain"
+
+
 def test_a_crowd_that_does_not_fit_is_cut() -> None:
     crowd = [replace(BRAIN, node=f"/brain_{number}") for number in range(40)]
     assert "… and 28 more pairs" in text(a_row([LIDAR], crowd))

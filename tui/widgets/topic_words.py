@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
@@ -121,22 +122,26 @@ def size_text(size_bytes: int) -> str:
 
 def ends(row: TopicRow) -> str:
     """Who publishes and who listens, by their names where they are known."""
-    publishers = names(row.published_by)
+    publishers = names(row.published_by, counted=True)
     if not publishers and (row.publishers or not row.own_publishers):
         publishers = ngettext("{n} publisher", "{n} publishers", row.publishers).format(
             n=row.publishers
         )
     if row.own_publishers:
         publishers = f"{publishers}, {OURSELVES}" if publishers else OURSELVES
-    subscribers = names(row.subscribed_by) or ngettext(
+    subscribers = names(row.subscribed_by, counted=True) or ngettext(
         "{n} subscriber", "{n} subscribers", row.subscribers
     ).format(n=row.subscribers)
     return f"{publishers} → {subscribers}"
 
 
-def names(endpoints: Sequence[EndpointInfo]) -> str:
-    """The nodes of these endpoints, each once, without the slash of the root namespace."""
-    found = dict.fromkeys(plain(end.node.removeprefix("/"), LONGEST) for end in endpoints)
-    shown = list(found)[:SHOWN_NODES]
+def names(endpoints: Sequence[EndpointInfo], *, counted: bool = False) -> str:
+    """The nodes of these endpoints, each once, without the slash of the root namespace.
+
+    `counted`: with the number of its endpoints where there are several, as beside their sum.
+    """
+    found = Counter(plain(end.node.removeprefix("/"), LONGEST) for end in endpoints)
+    several = {name: f" ×{count}" for name, count in found.items() if counted and count > 1}
+    shown = [name + several.get(name, "") for name in found][:SHOWN_NODES]
     more = len(found) - len(shown)
     return ", ".join(shown) + (f" +{more}" if more else "")
