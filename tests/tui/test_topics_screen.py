@@ -45,6 +45,24 @@ async def test_only_the_chosen_topic_is_decoded(room: Room) -> None:
     )
 
 
+async def test_what_takes_a_message_is_offered_when_one_is_there(room: Room) -> None:
+    def offered() -> set[str]:
+        keys = room.screen.query_one(KeyBar).keys()
+        return {key.title for key in keys}
+
+    await room.choose(SONAR)
+    await room.show(lesson_update())
+    assert {"Plot field", "Copy"} <= offered()
+    await room.choose("/drive")
+    assert {"Plot field", "Copy"}.isdisjoint(offered())
+    await room.pilot.press("y")
+    await room.pilot.pause()
+    assert "There is no message to copy." in [one.message for one in room.app._notifications]
+    await room.choose(SONAR)
+    await room.show(lesson_update())
+    assert {"Plot field", "Copy"} <= offered()
+
+
 async def test_walking_past_topics_subscribes_none_of_them(
     room: Room, monkeypatch: pytest.MonkeyPatch
 ) -> None:

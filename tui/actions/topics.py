@@ -114,6 +114,11 @@ class PlotField(TopicsAction):
         return not target.is_covered and (target.detail.front is target.detail.echo or None)
 
     @classmethod
+    def shown(cls, target: TopicsScreen) -> bool:
+        """Not without a message: there the key says so."""
+        return target.has_message
+
+    @classmethod
     async def run(cls, target: TopicsScreen) -> None:
         """Take it in, or out."""
         target.toggle_field()
@@ -168,6 +173,11 @@ class CopyMessage(TopicsAction):
     tooltip = N_("Copy the message as YAML, as `ros2 topic pub` takes it.")
     footer = True
     from_elsewhere = False
+
+    @classmethod
+    def shown(cls, target: TopicsScreen) -> bool:
+        """Not without one: there the key says so."""
+        return target.has_message
 
     @classmethod
     async def run(cls, target: TopicsScreen) -> None:

@@ -71,6 +71,8 @@ class TopicsScreen(TopicsPictures):
     def __init__(self) -> None:
         super().__init__()
         self._settling: Timer | None = None
+        self._offered_with_message = False
+        """Whether the keys were offered beside a message."""
         self._listed: tuple[TopicRow, ...] = ()
         self._missed: Sample | None = None
         """What would have been shown while another screen was in front."""
@@ -118,6 +120,9 @@ class TopicsScreen(TopicsPictures):
         missed, self._missed = self._missed, None
         if missed is not None and missed.topic == self.table.chosen:
             self.show_message(missed)
+        if self._offered_with_message is not self.has_message:
+            self._offered_with_message = self.has_message
+            self.refresh_bindings()
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget the topics of a session that has ended."""
@@ -140,10 +145,16 @@ class TopicsScreen(TopicsPictures):
         self.detail.show_topic(self.table.chosen_row)
         self.mark_plotted()
         self.keep_pace()
+        self._offered_with_message = self.has_message
         self.refresh_bindings()
         if self._settling is not None:
             self._settling.stop()
         self._settling = self.set_timer(SETTLED_S, self.topics_changed)
+
+    @property
+    def has_message(self) -> bool:
+        """Whether a message of the chosen topic is shown, or held."""
+        return self.detail.echo.message is not None
 
     def follow_topics(self) -> set[str]:
         """Those that are plotted, and the chosen one while an expression looks at each message."""
