@@ -25,13 +25,13 @@ def not_made(folder: Path, error: OSError) -> BagError:
         return BagError(
             say("{path} is there already: choose another folder, or remove it", path=folder)
         )
-    reason = error.strerror or str(error)
+    reason = say(error.strerror or str(error))
     return BagError(say("{path} cannot be made: {reason}", path=folder, reason=reason))
 
 
 def not_written(file: Path, error: OSError) -> Words:
     """Return why a recording has ended before its time."""
-    reason = error.strerror or str(error)
+    reason = say(error.strerror or str(error))
     return say(
         "recording has ended: {path} cannot be written ({reason}); what was recorded till then "
         "can be replayed. Free some space and record again",
@@ -61,6 +61,6 @@ def unreadable(path: Path, error: Exception) -> BagError:
         say(
             "{path} cannot be read: {reason}. Is it whole? `ros2 bag reindex` repairs many bags",
             path=path,
-            reason=str(reason).rstrip("."),
+            reason=say(str(reason).rstrip(".")),
         )
     )

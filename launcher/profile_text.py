@@ -66,7 +66,7 @@ def _unreadable(error: OSError) -> tuple[str, str]:
         return say("no such file"), say("`deck list` shows the profiles there are")
     if isinstance(error, PermissionError):
         return say("no permission to read it"), say("chmod u+r it, or ask its owner")
-    return say("cannot be read: {reason}", reason=error.strerror or str(error)), ""
+    return say("cannot be read: {reason}", reason=say(error.strerror or str(error))), ""
 
 
 def _decoded(data: bytes, file: str, problems: Problems) -> str | None:

@@ -149,5 +149,5 @@ def _check_own(path: Path) -> None:
 
 
 def _not_made(path: Path, error: OSError) -> RunDirError:
-    reason = error.strerror or str(error)
+    reason = say(error.strerror or str(error))
     return RunDirError(say("{path} cannot be made: {reason}", path=path, reason=reason))

@@ -128,7 +128,7 @@ def _refusal(other: Neighbour, free: int) -> dict[str, object]:
 
 
 def _no_room(folder: Path, problem: OSError) -> Words:
-    reason = problem.strerror or str(problem)
+    reason = say(problem.strerror or str(problem))
     return say("{path} cannot be written: {reason}", path=folder, reason=reason)
 
 

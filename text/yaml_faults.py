@@ -9,10 +9,7 @@ from dataclasses import dataclass
 
 import yaml
 
-
-def N_(message: str) -> str:  # noqa: N802 - gettext's own name
-    """Mark `message` for the catalogue."""
-    return message
+from text.marks import N_
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from io import BytesIO
 from pathlib import Path
@@ -117,6 +118,16 @@ def test_what_is_wrong_with_a_file_is_told_in_russian_alone(tmp_path: Path) -> N
         said_in_russian
         == f"{bag} не удаётся прочитать: файл walk.mcap пуст, в него ничего не записано"
     )
+
+
+def test_what_the_system_says_of_a_file_is_told_in_russian_too() -> None:
+    words = unreadable(Path("walk"), OSError(errno.EIO, os.strerror(errno.EIO))).words
+    assert "Input/output error. Is it whole?" in words
+    set_language("ru")
+    try:
+        assert "ошибка ввода-вывода. Возможно" in said(words)
+    finally:
+        set_language("en")
 
 
 def test_an_unknown_storage_is_named(tmp_path: Path) -> None:

@@ -134,4 +134,4 @@ def _full(path: str) -> Path:
 
 
 def _not_opened(path: str, error: OSError) -> str:
-    return f"{path}: {error.strerror or error}"
+    return f"{path}: {_(error.strerror or str(error))}"

@@ -56,4 +56,4 @@ def reason(error: OSError | ValueError) -> str:
     if not isinstance(error, OSError):
         return str(error)
     known = _REASONS.get(error.errno or 0)
-    return _(known) if known else (error.strerror or str(error))
+    return _(known or error.strerror or str(error))
