@@ -96,6 +96,21 @@ async def test_the_whole_list_is_seen_at_80x24_whichever_lesson_is_chosen(last: 
         assert "Look at what runs" in shown(app)
 
 
+@pytest.mark.parametrize(("last", "top"), [("", "Look at what runs"), ("29", "14 ")])
+async def test_a_list_longer_than_the_screen_opens_with_all_above_that_there_is_room_for(
+    last: str, top: str
+) -> None:
+    many = [
+        LESSONS[0]._replace(name=f"{at:02}", lesson=f"{at:02}", path=Path(f"{at:02}.yaml"))
+        for at in range(31)
+    ]
+    app = DeckApp(RecordedPad(known=many), PICK, "deck")
+    app.last_lesson = last
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(pilot)
+        assert top in shown(app).splitlines()[1]
+
+
 async def test_the_first_lesson_scrolls_to_the_heading_above_it() -> None:
     async with opened(size=(80, 12), order=PICK) as (app, pilot):
         await pilot.press("end", "home")

@@ -112,6 +112,8 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         """The width that the columns share."""
         self._rows: tuple[Row, ...] = ()
         self._chosen = ""
+        self._moved = False
+        """Whether a person has chosen a row."""
 
     def show(self, columns: Sequence[Column], rows: Sequence[Row]) -> None:
         """Show these rows under these columns; texts are one line each, and harmless."""
@@ -173,6 +175,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
 
     def action_move(self, by: int) -> None:
         """Choose the row so many below."""
+        self._moved = True
         at = self._index(self._chosen)
         self._choose_near(max(0, min((at or 0) + by, len(self._rows) - 1)), -1 if by < 0 else 1)
 
@@ -189,6 +192,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         """Choose a row; twice opens it."""
         index = event.y - self._top + self.scroll_offset.y
         if event.y >= self._top and index < len(self._rows) and self._rows[index].key:
+            self._moved = True
             again = self._rows[index].key == self._chosen
             self._choose(index)
             if again and event.chain > 1:
@@ -199,7 +203,8 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._place()
         index = self._index(self._chosen)
         if index is not None:
-            self._bring_into_view(index)
+            # What was chosen while there was little room yet has scrolled off what stands above it.
+            self._bring_into_view(index, self.scroll_offset.y if self._moved else 0)
 
     def watch_show_vertical_scrollbar(self) -> None:
         """Make room for the scroll bar, or use what it has left."""
@@ -238,15 +243,16 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             self._chosen = key
             self._refresh_row(index)
             self.post_message(self.Highlighted(self, key))
-        self._bring_into_view(index)
+        self._bring_into_view(index, self.scroll_offset.y)
 
-    def _bring_into_view(self, index: int) -> None:
-        top, rows = self.scroll_offset.y, max(1, self.size.height - self._top)
+    def _bring_into_view(self, index: int, top: int) -> None:
+        """Scroll as little as there is need for, if row `top` were the first in sight."""
+        rows = max(1, self.size.height - self._top)
         target = min(index, max(top, index - rows + 1))
         if index < rows and not any(row.key for row in self._rows[:index]):
             # What stands above the first row is its heading.
             target = 0
-        if target != top:
+        if target != self.scroll_offset.y:
             # Rows that have just come have no scroll bar yet, without which nothing would scroll.
             self.scroll_to(y=target, animate=False, immediate=True, force=True)
 
