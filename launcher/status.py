@@ -26,7 +26,7 @@ class NodeState(str, Enum):
     """Its process runs and it has no readiness condition to check."""
     STOPPING = "stopping"
     EXITED = "exited"
-    """Ended: by itself with code 0, or because somebody stopped it."""
+    """Ended: by itself with code 0 and nothing left to do, or because somebody stopped it."""
     BACKOFF = "backoff"
     """Ended and will be started again; `NodeStatus.detail` says when."""
     FAILED = "failed"

@@ -21,6 +21,7 @@ from launcher.supervisor_words import (
     end_words,
     instead,
     late,
+    left_undone,
     stopped_words,
     what,
     who,
@@ -316,10 +317,14 @@ class Node:
             if not self._down:
                 self._restarts += 1
             return not self._down
-        if isinstance(verdict, Finished) or self.plan.optional:
+        undone = "" if self.plan.ready is None else left_undone(self.plan.ready)
+        if self.plan.optional or (isinstance(verdict, Finished) and not undone):
             self._become(NodeState.EXITED, why)
             return False
-        if verdict.crashes > 1:
+        if isinstance(verdict, Finished):
+            why = undone
+            self._around.say(self.plan.name, Severity.ERROR, why)
+        elif verdict.crashes > 1:
             why = say(
                 "given up: it ended {count} times in {seconds:.0f} s: {why}",
                 count=verdict.crashes,

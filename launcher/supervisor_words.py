@@ -96,6 +96,15 @@ def lack(condition: Condition) -> str:
     return say("node {name} is not in the graph", name=condition.name)
 
 
+def left_undone(condition: Condition) -> str:
+    """What goes undone when a node ends, however well; empty if it need only have been there."""
+    if condition.kind == "topic":
+        return say("ended by itself; it was to publish {name}", name=condition.name)
+    if condition.kind == "service":
+        return say("ended by itself; it was to serve {name}", name=condition.name)
+    return ""
+
+
 def who(left: Sequence[Process], most: int = 3) -> str:
     """Processes by number and name, no more than `most` of them."""
     names = ", ".join(f"{process.pid} ({process.name})" for process in left[:most])

@@ -263,6 +263,27 @@ async def test_a_clean_end_is_an_end(session: FakeSession) -> None:
     assert (node.state, node.detail) == (NodeState.EXITED, "ended")
 
 
+@pytest.mark.parametrize("was_ready", [True, False])
+@pytest.mark.parametrize(
+    ("kind", "state", "words"),
+    [
+        ("topic", NodeState.FAILED, "ended by itself; it was to publish /x"),
+        ("service", NodeState.FAILED, "ended by itself; it was to serve /x"),
+        ("node", NodeState.EXITED, "ended"),
+    ],
+)
+async def test_who_is_to_publish_or_serve_does_not_end_well_by_itself(
+    session: FakeSession, kind: str, state: NodeState, words: str, was_ready: bool
+) -> None:
+    if was_ready:
+        session.is_ready.set()
+    node = await started(session, replace(PLAN, ready=Condition(kind, "/x")))
+    assert node.serves is was_ready
+    session.process.end(100, Exit(0))
+    await settle()
+    assert (node.state, node.detail) == (state, words)
+
+
 async def test_a_node_that_always_returns_returns_after_a_clean_end(session: FakeSession) -> None:
     node = await started(session, replace(PLAN, restart="always"))
     session.process.end(100, Exit(0))
