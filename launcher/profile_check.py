@@ -86,7 +86,7 @@ def check_run(
             problems.add(place_of(tree, where), where, message, hint)
     elif not is_installed(run):
         message = say("there is no module {module!r}", module=run)
-        own = file_of(run, folders, folders[0])
+        own = file_of(run.removesuffix(".py"), folders, folders[0])
         hint = say("for your own file write run: {file}", file=own) if own else ""
         problems.add(
             place_of(tree, where), where, message, hint or did_you_mean(run, likely_names(run))

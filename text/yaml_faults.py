@@ -41,6 +41,7 @@ _WORDS = {
     "found character that cannot start any token": N_(
         "nothing can begin with this character: put the text in quotes"
     ),
+    "found unknown escape": N_("YAML does not know this \\ in double quotes: use single quotes"),
     "did not find expected key": _INDENT,
     "expected <block end>": _INDENT,
     "did not find expected node content": _NO_VALUE,

@@ -124,6 +124,10 @@ BAD = {
         "nodes: {a: {run: hello}}",
         "1:18: nodes.a.run: there is no module 'hello' (did you mean nodes.hello?)",
     ),
+    "a file of one's own without its folder": (
+        "nodes: {a: {run: mine.py}}",
+        "1:18: nodes.a.run: there is no module 'mine.py' (for your own file write run: ./mine.py)",
+    ),
     "a package that cannot be run": (
         "nodes: {a: {run: nodes}}",
         "1:18: nodes.a.run: there is no module 'nodes'",
@@ -175,6 +179,27 @@ BAD = {
         "nodes:\n  a: {exec: [x}",
         "2:13: not YAML: this list is not closed: a ',' or a ']' is missing",
     ),
+    "a bracket with nothing in it": (
+        "nodes: {a: {exec: [",
+        "1:20: not YAML: a value is missing here, or a ']' or '}'",
+    ),
+    "a title with a colon": (
+        "title: My robot: sonar\nnodes: {a: {exec: [x]}}",
+        ("1:16: not YAML: a second ':' in one line: put the text that holds it in quotes"),
+    ),
+    "a text that begins with a sign": (
+        "title: @home\nnodes: {a: {exec: [x]}}",
+        "1:8: not YAML: nothing can begin with this character: put the text in quotes",
+    ),
+    "a path of Windows in double quotes": (
+        'title: "C:\\dir"\nnodes: {a: {exec: [x]}}',
+        "1:11: not YAML: YAML does not know this \\ in double quotes: use single quotes",
+    ),
+    "a list behind its key": (
+        "title: - a\nnodes: {a: {exec: [x]}}",
+        "1:8: not YAML: a list cannot begin here: put it on a line of its own",
+    ),
+    "what nobody has words for": ("title: >b\nnodes: {a: {exec: [x]}}", "1:9: not YAML: did not"),
     "a missing colon": (
         "nodes:\n  a\n    exec: [x]",
         (
@@ -328,6 +353,7 @@ BAD = {
 @pytest.mark.parametrize("case", BAD)
 def test_one_message_tells_place_field_and_mend(case: str, tmp_path: Path) -> None:
     text, expected = BAD[case]
+    (tmp_path / "mine.py").touch()
     messages = told(tmp_path, text)
     assert len(messages) == 1
     assert expected in messages[0]
