@@ -168,7 +168,7 @@ GOOD_TERMINAL = {"TERM": "xterm-256color", "COLORTERM": "truecolor"}
     ("facts", "verdict"),
     [
         (TerminalFacts(environ=GOOD_TERMINAL), []),
-        (TerminalFacts(environ={"TERM": "xterm-kitty"}), []),
+        (TerminalFacts(environ={"TERM": "xterm-kitty", "COLORTERM": "truecolor"}), []),
         (TerminalFacts(environ={"TERM": "xterm-256color"}), [("terminal.colour", "warn")]),
         (
             TerminalFacts(environ={**GOOD_TERMINAL, "NO_COLOR": "1"}),
@@ -234,6 +234,24 @@ def test_a_terminal_of_few_colours_is_told_how_to_have_more(term: str) -> None:
     colour = [one for one in judge_terminal(TerminalFacts(environ={"TERM": term})) if one.mend]
     assert [one.key for one in colour] == ["terminal.colour"]
     assert "TERM=xterm-256color" in colour[0].mend
+
+
+@pytest.mark.parametrize(
+    ("term", "drawn"),
+    [
+        ("alacritty", "16 colours"),
+        ("foot", "16 colours"),
+        ("xterm-direct", "16 colours"),
+        ("xterm-ghostty", "16 colours"),
+        ("xterm-kitty", "256 colours"),
+    ],
+)
+def test_a_terminal_that_can_do_more_than_is_drawn_is_told_how_to_say_so(
+    term: str, drawn: str
+) -> None:
+    found = judge_terminal(TerminalFacts(environ={"TERM": term}))
+    assert drawn in text(found, "terminal.colour")
+    assert "COLORTERM=truecolor" in text(found, "terminal.colour")
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 LEAST, HOME = (80, 24), (120, 40)
 VARIABLES = ("TERM", "COLORTERM", "NO_COLOR", "SSH_CONNECTION", "TMUX", "TERM_PROGRAM", "LANG")
 TRUECOLOR_TERMS = ("-direct", "-truecolor", "kitty", "alacritty", "wezterm", "ghostty", "foot")
+"""In the names of terminals that can show 16 million colours, whether Rich knows it or not."""
 
 
 @dataclass(frozen=True)
@@ -79,15 +80,22 @@ def _colour(facts: TerminalFacts) -> Finding:
     if env.get("NO_COLOR"):
         mend = _("unset NO_COLOR if you want colours")
         return warn("terminal.colour", _("NO_COLOR is set: no colours"), mend)
-    if env.get("COLORTERM") in ("truecolor", "24bit") or any(
-        word in term for word in TRUECOLOR_TERMS
-    ):
+    depth = _drawn_with(env)
+    if depth == "truecolor":
         return ok("terminal.colour", _("16 million colours"))
-    if "256color" not in term:
-        mend = _("if the terminal can, export TERM=xterm-256color")
-        return warn("terminal.colour", _("16 colours or fewer: hues come close"), mend)
     mend = _("if the terminal can, export COLORTERM=truecolor (SSH does not pass it on)")
-    return warn("terminal.colour", _("256 colours: pictures look coarse"), mend)
+    if depth == "256":
+        return warn("terminal.colour", _("256 colours: pictures look coarse"), mend)
+    if not any(word in term for word in TRUECOLOR_TERMS):
+        mend = _("if the terminal can, export TERM=xterm-256color")
+    return warn("terminal.colour", _("16 colours or fewer: hues come close"), mend)
+
+
+def _drawn_with(env: Mapping[str, str]) -> str | None:
+    """Return what the screen will be drawn with; Rich decides it, whatever the terminal can."""
+    from rich.console import Console
+
+    return Console(force_terminal=True, _environ=env).color_system
 
 
 def _size(facts: TerminalFacts) -> Finding:
