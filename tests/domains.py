@@ -45,11 +45,17 @@ class DomainPool:
 
         Tests kill processes at any moment, and a node that a test starts by itself has no Deck
         that clears its way. Where another user has ports, with a node or without, it would be
-        given other ones than tests reckon with: such a domain is the last choice.
+        given other ones than tests reckon with: such a domain is the last choice, and so is one in
+        which somebody's robot runs.
         """
         discard_unfinished(self._shared_memory)
-        parts = filter(None, map(_PART.fullmatch, names(self._shared_memory)))
-        strange = {domain_of(int(part[1])) for part in parts if self._is_strange(part[0])}
+        parts = list(filter(None, map(_PART.fullmatch, names(self._shared_memory))))
+        alive = _held_files()
+        strange = {
+            domain_of(int(part[1]))
+            for part in parts
+            if self._is_strange(part[0]) or self._identity(part[0]) in alive
+        }
         for some, choice in (
             (DOMAINS, set(DOMAINS) - strange),
             (SPARE, set(SPARE) - strange),
@@ -92,6 +98,14 @@ class DomainPool:
             return False
         return owner != os.geteuid()
 
+    def _identity(self, name: str) -> tuple[int, int] | None:
+        """Device and inode of a file; None if it has gone."""
+        try:
+            found = (self._shared_memory / name).lstat()
+        except FileNotFoundError:
+            return None
+        return found.st_dev, found.st_ino
+
     def _lock(self, domain: int) -> bool:
         lock = os.open(self._folder / str(domain), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
         try:
@@ -126,6 +140,18 @@ class DomainPool:
             file.truncate(0)
             file.write(str(turn + 1))
         return some[turn % len(some)]
+
+
+def _held_files() -> set[tuple[int, int]]:
+    """Device and inode of each file that somebody holds by a lock (proc_locks(5)).
+
+    To try the lock of a port would be in the way of the node that is just making it.
+    """
+    found = set()
+    for line in Path("/proc/locks").read_text().splitlines():
+        major, minor, inode = line.split()[-3].split(":")
+        found.add((os.makedev(int(major, 16), int(minor, 16)), int(inode)))
+    return found
 
 
 def domain_of(port: int) -> int:

@@ -45,6 +45,15 @@ def test_where_another_user_has_ports_is_the_last_choice(
     assert pool.take() in range(1, 102)
 
 
+def test_where_a_robot_runs_is_the_last_choice(pool: DomainPool, shared_memory: Path) -> None:
+    port = make_port(shared_memory, 1)
+    with port.with_name(f"{port.name}_el").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert pool.take() == 2
+    taken = [pool.take() for _ in DOMAINS[1:]]
+    assert taken[-1] == 1
+
+
 def test_each_is_held_once_and_comes_back_late(pool: DomainPool) -> None:
     first, second = pool.take(), pool.take()
     pool.let_go(first)
