@@ -79,6 +79,7 @@ TEMPLATES_RU: Mapping[str, str] = MappingProxyType(
 )
 """The same in Russian."""
 
+_UNITS_RU = MappingProxyType({"m/s": "м/с", "rad": "рад", "deg": "°"})
 _LONGEST_NAME = 40
 
 
@@ -113,7 +114,10 @@ class Problem:
 
     def in_russian(self) -> str:
         """The message in Russian, without the place."""
-        return TEMPLATES_RU[self.code].format(**self.args)
+        unit = str(self.args.get("unit", ""))
+        # Numbers keep their point: so they are written in the JSON.
+        args = {**self.args, "unit": _UNITS_RU.get(unit, unit)}
+        return TEMPLATES_RU[self.code].format(**args)
 
     def __str__(self) -> str:
         """Place, field and message in one line."""

@@ -152,7 +152,7 @@ def test_a_refusal_names_the_place_in_the_node_s_language(parser: Parser) -> Non
     problem = parser.results(1)[0]["problems"][0]
     place = problem["field"], problem["line"], problem["column"]
     assert place == ("commands[0].speed", 2, 44)
-    assert problem["message"] == "должно быть от -0.5 до 0.5 m/s, а не 7"
+    assert problem["message"] == "должно быть от -0.5 до 0.5 м/с, а не 7"
     assert (problem["code"], problem["args"]["high"]) == ("range", 0.5)
     parser.process.wait_for_words("2:44 commands[0].speed: должно быть")
 

@@ -6,7 +6,8 @@ import re
 
 import pytest
 
-from robot.problems import TEMPLATES, TEMPLATES_RU, Problem, field_name
+from robot.commands import parse_llm
+from robot.problems import TEMPLATES, TEMPLATES_RU, CommandError, Problem, field_name
 
 
 def fields(template: str) -> list[str]:
@@ -25,7 +26,18 @@ def test_both_languages_say_the_same_things(code: str) -> None:
 def test_a_problem_speaks_russian() -> None:
     problem = Problem.of("range", low=-0.5, high=0.5, unit="m/s", value=7.0)
     assert problem.message == "must be from -0.5 to 0.5 m/s, not 7"
-    assert problem.in_russian() == "должно быть от -0.5 до 0.5 m/s, а не 7"
+    assert problem.in_russian() == "должно быть от -0.5 до 0.5 м/с, а не 7"
+
+
+def test_units_of_all_fields_are_russian_in_russian() -> None:
+    """A range is that of a field, and English letters tell nothing to who reads Russian alone."""
+    text = """{"thought": "", "commands": [
+        {"action": "drive", "speed": 9, "steering": 9},
+        {"action": "turn_head", "pan": 999, "tilt": 999}]}"""
+    with pytest.raises(CommandError) as refused:
+        parse_llm(text)
+    units = {problem.in_russian().split(", ")[0].split()[-1] for problem in refused.value.problems}
+    assert units == {"м/с", "рад", "°"}
 
 
 def test_a_decimal_comma_is_told_with_its_mend() -> None:
