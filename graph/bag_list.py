@@ -65,5 +65,5 @@ def _listed(path: Path) -> ListedBag | None:
 def _known(metadata: Mapping[str, Any]) -> tuple[float, int, int]:
     """Return seconds, topics and messages; raises KeyError, TypeError or ValueError."""
     seconds = int(metadata["duration"]["nanoseconds"]) / 1e9
-    counts = [int(one["message_count"]) for one in metadata["topics_with_message_count"]]
-    return seconds, sum(1 for count in counts if count), int(metadata["message_count"])
+    topics = metadata["topics_with_message_count"]
+    return seconds, len(topics), int(metadata["message_count"])

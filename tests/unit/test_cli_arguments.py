@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -104,6 +105,7 @@ def test_every_command_has_help_in_both_languages(
     assert english.startswith(f"usage: deck {command}")
     assert russian.startswith(f"использование: deck {command}")
     assert "show this help" not in russian
+    assert not re.search(r"\b(PROFILE|NODE|NAME|TOPIC|FOLDER|BAG)\b", russian)
 
 
 def test_the_help_of_all_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:

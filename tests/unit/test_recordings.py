@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -49,6 +50,17 @@ def test_they_are_listed_the_newest_first(capsys: pytest.CaptureFixture[str]) ->
     assert new.split()[:6] == ["new", *new.split()[1:3], "1:15", "3", "753"]
     assert old.split()[0] == "old"
     assert last == f"in {recordings_path()}; to see one: deck replay NAME"
+
+
+def test_topics_that_said_nothing_are_counted_as_the_end_of_a_recording_counts_them(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = write_bag(recordings_path() / "walk", seconds=75) / "metadata.yaml"
+    silent = re.sub(r"- message_count: \d+\n", "- message_count: 0\n", path.read_text())
+    assert "- message_count: 0" in silent
+    path.write_text(silent)
+    assert main(["replay"]) == 0
+    assert lines(capsys)[1].split()[4] == "3"
 
 
 @pytest.mark.parametrize(

@@ -112,7 +112,7 @@ def _open_parser() -> Parser:
         allow_abbrev=False,
     )
     parser.add_argument(
-        "profile", nargs="?", metavar="PROFILE", help=_("name, lesson number or file: 09-brain")
+        "profile", nargs="?", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain")
     )
     _add_profile_options(parser)
     _add_bandwidth(parser)
@@ -144,7 +144,7 @@ def _add_list(parser: Parser) -> None:
 
 def _add_check(parser: Parser) -> None:
     parser.add_argument(
-        "profile", nargs="?", metavar="PROFILE", help=_("name or file; without it all of them")
+        "profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; without it all of them")
     )
     parser.add_argument(
         "--preflight",
@@ -167,7 +167,7 @@ def _add_ps(parser: Parser) -> None:
 
 def _add_logs(parser: Parser) -> None:
     parser.add_argument(
-        "node", nargs="?", metavar="NODE", help=_("name of the node; without it all of them")
+        "node", nargs="?", metavar=_("NODE"), help=_("name of the node; without it all of them")
     )
     parser.add_argument("-f", "--follow", action="store_true", help=_("go on with what comes"))
     parser.add_argument(
@@ -178,12 +178,12 @@ def _add_logs(parser: Parser) -> None:
         default=100,
         help=_("how many lines of the past, 100 by default"),
     )
-    parser.add_argument("--profile", metavar="NAME", help=_("which one, if several run"))
+    parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several run"))
 
 
 def _add_running(parser: Parser) -> None:
     parser.add_argument(
-        "name", nargs="?", metavar="NAME", help=_("name of the profile, if several run")
+        "name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several run")
     )
 
 
@@ -211,7 +211,7 @@ def _add_watch(parser: Parser) -> None:
 
 def _add_record(parser: Parser) -> None:
     parser.add_argument(
-        "topics", nargs="*", metavar="TOPIC", help=_("what to record; without it all topics")
+        "topics", nargs="*", metavar=_("TOPIC"), help=_("what to record; without it all topics")
     )
     parser.add_argument(
         "--hidden", action="store_true", help=_("hidden topics too: feedback and status of actions")
@@ -222,7 +222,7 @@ def _add_record(parser: Parser) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        metavar="FOLDER",
+        metavar=_("FOLDER"),
         type=folder,
         help=_(
             "where to, a new folder; by default in DECK_RECORDINGS_DIR, else ~/deck-recordings,"
@@ -249,7 +249,7 @@ def _add_replay(parser: Parser) -> None:
     parser.add_argument(
         "bag",
         nargs="?",
-        metavar="BAG",
+        metavar=_("BAG"),
         help=_("name, folder with metadata.yaml, or .mcap file; without it: which ones there are"),
     )
     parser.add_argument(
@@ -303,7 +303,7 @@ _ADD = {
 
 def _add_profile(parser: Parser) -> None:
     parser.add_argument(
-        "profile", metavar="PROFILE", help=_("name, lesson number or file: 09-brain")
+        "profile", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain")
     )
 
 
@@ -317,7 +317,7 @@ def _add_profile_options(parser: Parser) -> None:
     parser.add_argument(
         "--set",
         dest="overrides",
-        metavar="NODE.PARAM=VALUE",
+        metavar=_("NODE.PARAM=VALUE"),
         action="append",
         default=[],
         help=_("a parameter of a node, the value as in YAML; may be repeated"),
