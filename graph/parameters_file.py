@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 KEY = "ros__parameters"
 DEEPEST = 16
 """Levels of nested names; a name of more parts is written with its dots."""
+LONGEST_KEY = 1024
+"""Characters of a key that may stand before its colon without a `?` (YAML 1.1, section 5.1)."""
 NOT_WRITTEN = "bytes, which a file of parameters cannot hold"
 
 
@@ -108,7 +110,8 @@ def _place(
 
 def _lines(tree: Mapping[str, object], indent: str) -> Iterator[str]:
     for name, value in tree.items():
-        key = f"{indent}{written(name)}:"
+        text = written(name)
+        key = f"{indent}{text}:" if len(text) <= LONGEST_KEY else f"{indent}? {text}\n{indent}:"
         if isinstance(value, dict):
             yield key
             yield from _lines(value, indent + "  ")

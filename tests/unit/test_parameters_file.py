@@ -50,6 +50,18 @@ def test_what_is_written_is_read_again(node: str, values: dict[str, tuple[str, A
         assert carried(kind, found[name])[f"{kind}_value"] == value
 
 
+@pytest.mark.parametrize(
+    "name",
+    [*("a" * length for length in range(1020, 1027)), "b." + "\x01" * 300, "c" * 2000 + ".d"],
+    ids=lambda name: f"{name[0]}{len(name)}",
+)
+def test_a_name_longer_than_yaml_takes_for_a_plain_key_is_read_again(name: str) -> None:
+    values = {name: ("integer", 1), "z": ("string", "last")}
+    text = dump("/node", rows(values))
+    assert load(text, "/node") == {name: 1, "z": "last"}
+    assert yaml.safe_load(text)["/node"]["ros__parameters"]["z"] == "last"
+
+
 @given(st.dictionaries(NAMES, VALUES, min_size=1))
 def test_pyyaml_reads_the_same_nested_by_dots(values: dict[str, tuple[str, Any]]) -> None:
     def flat(tree: dict[str, Any], prefix: str) -> dict[str, Any]:
