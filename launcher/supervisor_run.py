@@ -22,7 +22,7 @@ from launcher.process_exit import Reaper
 from launcher.process_members import Members, Orphans
 from launcher.process_shm import sweep_abandoned
 from launcher.process_spawner import Spawner
-from launcher.process_stop import QUICK, Stop
+from launcher.process_stop import end_all
 from launcher.rundir import OWN_RUN_DIR
 from launcher.status import SessionInfo, Severity, Stray
 from launcher.strays import end_strays, find_strays, forget_ended_runs
@@ -139,10 +139,6 @@ def _answer(message: Mapping[str, object]) -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)
-
-
-def _say_nothing(*_: object) -> None:
-    pass
 
 
 def _keep_last_words(folder: Path) -> None:
@@ -277,9 +273,7 @@ class Supervisor:
         hurry.cancel()
         # What has left its node behind so well that it could not be told whose it was.
         orphans = Orphans(self.info.run_id, self._spawner)
-        ending = asyncio.create_task(Stop(orphans, self._session.clock, _say_nothing, QUICK).run())
-        await asyncio.wait([ending], timeout=HURRIED_S)
-        left = orphans.left()
+        left = await end_all(orphans, self._session.clock, HURRIED_S)
         if left:
             words = say("{reason}; still running: {who}", reason=self._reason, who=who(left))
             self._reason = words
