@@ -103,9 +103,10 @@ async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Pro
     """
 
     async def end() -> None:
-        await Stop(target, clock, _say_nothing, QUICK).run()
-        while target.left():
+        while True:
             await Stop(target, clock, _say_nothing, QUICK).run()
+            if not target.left():
+                return
 
     ending = asyncio.create_task(end())
     await asyncio.wait([ending], timeout=within_s)
