@@ -26,10 +26,16 @@ if TYPE_CHECKING:
     from launcher.status import SessionInfo
     from tui.app import DeckApp
     from tui.emergency import Emergency
+    from tui.widgets.title_bar import TitleBar
 
 TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
 WELL = frozenset({"ready", "running"})
 COMING = frozenset({"waiting", "starting", "backoff"})
+
+
+def show(bar: TitleBar, app: DeckApp, front: str) -> None:
+    """Show all of it on a bar; `front`: the screen there that is in front."""
+    bar.show(tabs(app, front), states(app), look(app), aside(app))
 
 
 def tabs(app: DeckApp, front: str) -> Sequence[tuple[str, str, bool]]:

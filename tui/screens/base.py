@@ -149,11 +149,8 @@ class DeckScreen(Screen[None], Acting, Working):
 
     def show_frame(self) -> None:
         """Show title, session and emergency stop as they are."""
-        deck = self.deck
         for bar in self.query(TitleBar):
-            bar.show(
-                title.tabs(deck, self.tab), title.states(deck), title.look(deck), title.aside(deck)
-            )
+            title.show(bar, self.deck, self.tab)
         for place in self.query(ReplayBar):
             place.show(self.feed.replay)
 

@@ -296,8 +296,4 @@ class PublishDialog(Dialog[None]):
             self.query_one(Publications).show_publications(publications)
             if had != self.is_publishing:
                 self.refresh_bindings()
-        bar = self.query_one(TitleBar)
-        deck = self.deck
-        bar.show(
-            title.tabs(deck, "topics"), title.states(deck), title.look(deck), title.aside(deck)
-        )
+        title.show(self.query_one(TitleBar), self.deck, "topics")

@@ -138,10 +138,10 @@ class TitleBar(Widget):
 
     def _with_aside(self, level: _Level, state: str) -> tuple[_Level, str]:
         """Return both with what stands aside, if no tab loses its name, or its place, for that."""
-        levels = self._levels()
-        named = levels[:NAMED] if level in levels[:NAMED] else [level]
-        for other in named if self._aside else ():
-            told = f"{state} · {self._aside}"
+        if not self._aside:
+            return level, state
+        told, named = f"{state} · {self._aside}", self._levels()[:NAMED]
+        for other in named if level in named else [level]:
             if other.width <= level.width and cell_len(told) <= self._room() - other.width:
                 return other, told
         return level, state
