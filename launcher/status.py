@@ -87,6 +87,11 @@ class NodeStatus:
         """Whether it runs, but its time to become ready is up."""
         return self.state is NodeState.RUNNING and self.detail.startswith(NOT_READY)
 
+    @property
+    def serves(self) -> bool:
+        """Whether those that need it may start: it runs, and is ready if it tells that."""
+        return self.state in (NodeState.READY, NodeState.RUNNING) and not self.late
+
 
 @dataclass(frozen=True)
 class LogLine:

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from tui.widgets.title_bar import TitleBar
 
 TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
-WELL = frozenset({"ready", "running"})
 COMING = frozenset({"waiting", "starting", "backoff"})
 
 
@@ -135,7 +134,7 @@ def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     if app.feed.watching:
         return _watched(app, session)
     nodes = app.feed.nodes.values()
-    well = sum(node.state.value in WELL and not node.late for node in nodes)
+    well = sum(node.serves for node in nodes)
     sign = "◔" if starting(app) else "●" if well == len(nodes) else "○"
     count = f"{sign} {well}/{len(nodes)}"
     name, hardware = plain(session.name), hardware_words(session.hardware)

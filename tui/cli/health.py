@@ -15,18 +15,13 @@ OTHER_TYPE = " is published as "
 """In the supervisor's words about a topic of another type, which waiting does not change."""
 
 
-def serves(node: NodeStatus) -> bool:
-    """Whether those that need the node may start."""
-    return node.state in (NodeState.READY, NodeState.RUNNING) and not node.late
-
-
 def settled(nodes: Mapping[str, NodeStatus]) -> bool:
     """Whether nothing is on its way up: each node is ready, has ended, or waits in vain."""
     return not any(
         node.state is NodeState.STARTING
         or (
             node.state is NodeState.WAITING
-            and all(serves(nodes[name]) for name in node.needs if name in nodes)
+            and all(nodes[name].serves for name in node.needs if name in nodes)
         )
         for node in nodes.values()
     )
@@ -53,4 +48,4 @@ def well(node: NodeStatus, optional: Collection[str] = (), *, on_the_way: bool =
         return not node.restarts and OTHER_TYPE not in node.detail
     if node.state is NodeState.EXITED:
         return not node.restarts and not node.exit_code and node.signal is None
-    return serves(node) and not node.restarts
+    return node.serves and not node.restarts
