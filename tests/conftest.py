@@ -10,6 +10,7 @@ import signal
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from unittest import mock
 
 import psutil
 import pytest
@@ -36,6 +37,14 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 STATE_DIR = "DECK_STATE_DIR"
 _STATE = "deck-test-state-"
+
+MIDDLEWARE = (
+    "FASTRTPS_DEFAULT_PROFILES_FILE",
+    "FASTDDS_DEFAULT_PROFILES_FILE",
+    "SKIP_DEFAULT_XML_FILE",
+    "ROS_STATIC_PEERS",
+    "ROS_LOCALHOST_ONLY",
+)
 
 
 def _clear_states() -> None:
@@ -79,9 +88,18 @@ def pytest_unconfigure() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _own_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def _unchanged_environment() -> Iterator[None]:
+    """Take back what the program under test sets: a screen that observes keeps out the network."""
+    with mock.patch.dict(os.environ):
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _own_environment(
+    _unchanged_environment: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     """Keep a developer's own settings, run directory and logs out of the tests."""
-    for name in ("NO_COLOR", "LANGUAGE", "LC_ALL", "LC_MESSAGES", "COLORTERM"):
+    for name in ("NO_COLOR", "LANGUAGE", "LC_ALL", "LC_MESSAGES", "COLORTERM", *MIDDLEWARE):
         monkeypatch.delenv(name, raising=False)
     for name in [name for name in os.environ if name.startswith("DECK_") and name != STATE_DIR]:
         monkeypatch.delenv(name)
