@@ -119,9 +119,7 @@ class LivePad:
         if self._replay is not None:
             return self._replay
         from graph.observer import Observer
-        from launcher.discovery import set_discovery
 
-        set_discovery(os.environ, session.discovery)
         return Observer(session.domain, session.discovery)
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.deck_process import DeckProcess
+from tests.e2e.terminal import Terminal
 from tests.namespaces import Machine
 from tests.waiting import wait_until
 
@@ -144,11 +145,28 @@ def test_no_process_of_deck_listens_to_a_cable(
         program, *words[program], "--domain", str(ros_domain), within=robot.inside(tmp_path)
     )
     try:
-        # The first that is in the domain, nodes and the probe, and what they have opened by then.
-        ports = wait_until(lambda: _of_a_participant(robot.listening()), "open ports", 60)
-        assert {port.partition(":")[0] for port in ports} == {"127.0.0.1"}
+        assert _addresses_listened_at(robot) == {"127.0.0.1"}
     finally:
         session.close()
+
+
+@pytest.mark.timeout(120)
+def test_the_screen_does_not_listen_to_a_cable(
+    robot: Machine, ros_domain: int, tmp_path: Path
+) -> None:
+    (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").write_text(PLANTED)
+    deck = [*robot.inside(tmp_path), sys.executable, "-m", "tui"]
+    terminal = Terminal([*deck, "watch", "--domain", str(ros_domain)], 80, 24)
+    try:
+        assert _addresses_listened_at(robot) == {"127.0.0.1"}
+    finally:
+        terminal.close()
+
+
+def _addresses_listened_at(machine: Machine) -> set[str]:
+    """Wait for the first that is in the domain, and what else has been opened by then."""
+    ports = wait_until(lambda: _of_a_participant(machine.listening()), "open ports", 60)
+    return {port.partition(":")[0] for port in ports}
 
 
 def _of_a_participant(ports: list[str]) -> list[str]:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+
+from launcher.status import SessionInfo
+from tui.launchpad import LivePad
 
 OPENED = """
 import asyncio, sys
@@ -29,3 +33,9 @@ def test_a_lesson_that_is_chosen_from_the_list_has_its_screen_imported_by_then()
         [sys.executable, "-c", OPENED], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "[]"
+
+
+def test_whoever_looks_on_changes_no_setting_of_what_is_started_later() -> None:
+    before = dict(os.environ)
+    LivePad().observe(SessionInfo("run", "", "lesson", discovery="localhost"))
+    assert dict(os.environ) == before
