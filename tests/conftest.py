@@ -16,6 +16,7 @@ import psutil
 import pytest
 from hypothesis import HealthCheck, settings
 
+from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS
 from tests.domains import DomainPool
 
 # A loaded machine is no failure of the code. Each run takes other examples: half as many as usual
@@ -38,13 +39,8 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 STATE_DIR = "DECK_STATE_DIR"
 _STATE = "deck-test-state-"
 
-MIDDLEWARE = (
-    "FASTRTPS_DEFAULT_PROFILES_FILE",
-    "FASTDDS_DEFAULT_PROFILES_FILE",
-    "SKIP_DEFAULT_XML_FILE",
-    "ROS_STATIC_PEERS",
-    "ROS_LOCALHOST_ONLY",
-)
+MIDDLEWARE = (*FAST_DDS_VARIABLES, ONLY_THESE, PEERS, LOCALHOST_ONLY)
+"""Whom a developer's own programs find, and who finds them."""
 
 
 def _clear_states() -> None:
@@ -89,7 +85,7 @@ def pytest_unconfigure() -> None:
 
 @pytest.fixture(autouse=True)
 def _unchanged_environment() -> Iterator[None]:
-    """Take back what the program under test sets: a screen that observes keeps out the network."""
+    """Take back what a test, or the program in it, has set for good."""
     with mock.patch.dict(os.environ):
         yield
 
