@@ -11,7 +11,7 @@ import sys
 
 from bench.load import FLOATS, RATES_HZ
 from graph.data import GraphUpdate
-from graph.observer import Observer
+from graph.observer.observer import Observer
 
 
 def main() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from graph.recording import Recorder
+from graph.recording.recorder import Recorder
 
 
 def main() -> None:

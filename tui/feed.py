@@ -25,7 +25,7 @@ from tui.watching import WATCH
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
-    from graph.replay import Replay
+    from graph.replay.replay import Replay
     from launcher.events import Event
     from launcher.status import LogLine, NodeStatus, SessionInfo
     from tui.app import DeckApp

@@ -20,7 +20,7 @@ from tui.watching import watched
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from graph.replay import Replay
+    from graph.replay.replay import Replay
     from launcher.catalog import ProfileEntry
     from launcher.client import SupervisorClient
     from launcher.client_start import StartingSupervisor
@@ -66,7 +66,7 @@ class LivePad:
     async def prepare(self) -> None:
         """Import, here and in a supervisor, what is the same for every profile."""
         await self._start_ahead()
-        await _imported("launcher.client", "launcher.supervisor_beside", "graph.observer")
+        await _imported("launcher.client", "launcher.supervisor_beside", "graph.observer.observer")
         # Without ROS there is a word for it, later: the nodes' own and the observer's.
         with contextlib.suppress(ImportError):
             await _imported(*OF_ROS)
@@ -88,7 +88,7 @@ class LivePad:
             self._replay = recording.replay
             return recording
         if order.watch is not None:
-            await _imported("graph.observer")
+            await _imported("graph.observer.observer")
             return watched(*order.watch)
         if order.profile is not None:
             await self._start_ahead()
@@ -99,7 +99,7 @@ class LivePad:
             link = await client.attach(order.attach)
         else:
             link = await self._launch(order.profile, order)
-        await _imported("graph.observer")
+        await _imported("graph.observer.observer")
         return link
 
     async def _launch(self, profile: Path, order: Order) -> SupervisorClient:
@@ -118,7 +118,7 @@ class LivePad:
         """Return the graph of the session's domain, or the recording that stands for it."""
         if self._replay is not None:
             return self._replay
-        from graph.observer import Observer
+        from graph.observer.observer import Observer
 
         return Observer(session.domain, session.discovery)
 
@@ -142,8 +142,8 @@ def _read(path: Path, order: Order) -> Profile:
 
 
 def _opened_bag(order: ReplayOrder) -> ReplayLink:
-    from graph.bag_errors import BagError
-    from graph.replay import Replay
+    from graph.bag.errors import BagError
+    from graph.replay.replay import Replay
     from launcher.errors import UsageError
     from tui.replay import ReplayLink
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from textual.timer import Timer
 
-    from graph.recording import Recorder, RecordingStatus
+    from graph.recording.recorder import Recorder, RecordingStatus
     from launcher.status import SessionInfo
     from tui.app import DeckApp
 
@@ -79,7 +79,7 @@ class Recording:
             self._tell(await asyncio.to_thread(recorder.stop))
 
     async def _begin(self, images: bool) -> None:
-        from graph.bag_errors import BagError
+        from graph.bag.errors import BagError
         from launcher.errors import LauncherError
 
         async with self._busy:
@@ -145,7 +145,7 @@ def _toggle() -> type:
 
 def _started(session: SessionInfo, images: bool) -> Recorder:
     """Begin to record everything of the session, where `deck replay` finds it by its name."""
-    from graph.recording import Recorder
+    from graph.recording.recorder import Recorder
     from launcher.rundir import new_recording
 
     folder = new_recording(session.name)

@@ -10,7 +10,7 @@ from tui.i18n import _, decimal, ngettext, said
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from graph.recording import RecordingStatus
+    from graph.recording.recorder import RecordingStatus
 
 BETWEEN = " · "
 LONGEST = 300

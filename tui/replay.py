@@ -8,7 +8,7 @@ from tui.panel_needs import panels_for
 from tui.watching import WatchLink
 
 if TYPE_CHECKING:
-    from graph.replay import Replay
+    from graph.replay.replay import Replay
 
 REPLAY = "replay"
 """What stands in place of the hardware."""

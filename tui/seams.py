@@ -1,8 +1,8 @@
 """The two seams of the screen: what it needs of the supervisor and of the ROS graph.
 
-`launcher.client.SupervisorClient` and `graph.observer.Observer` fit them, and so do the recorded
-ones of the tests. A `Launchpad` lists what can be opened and opens it. For type checkers only:
-whoever runs needs none of it.
+`launcher.client.SupervisorClient` and `graph.observer.observer.Observer` fit them, and so do the
+recorded ones of the tests. A `Launchpad` lists what can be opened and opens it. For type checkers
+only: whoever runs needs none of it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
-    from graph.held import Holding
+    from graph.publishing.dead_man_switch import Holding
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
     from tui.orders import Lesson, Order

@@ -15,7 +15,7 @@ from tui.i18n import _, said
 from tui.watching import WATCH
 
 if TYPE_CHECKING:
-    from graph.replay import Replay
+    from graph.replay.replay import Replay
     from launcher.status import SessionInfo, Stray
     from tui.app import DeckApp
     from tui.orders import Order

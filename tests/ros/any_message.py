@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from graph.browse import interfaces
-from graph.fields import BYTES, INTEGERS, FieldType, parse
-from graph.types import load_action, load_message, load_service
-from graph.values import fields_of
+from graph.messages.browse import interfaces
+from graph.messages.fields import BYTES, INTEGERS, FieldType, parse
+from graph.messages.types import load_action, load_message, load_service
+from graph.messages.values import fields_of
 
 TYPES = tuple(name for name in interfaces() if "/msg/" in name)
 """All messages, those of services and actions left out."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from graph.data import GraphUpdate, NodeRow, Sample, TopicRow
-from graph.observer import Observer
+from graph.observer.observer import Observer
 from graph.ros import FAST_DDS, FAST_DDS_VARIABLES
 from tests import ports
 from tests.waiting import wait_until

@@ -8,7 +8,7 @@ from pathlib import Path
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 
-from graph.recording import RecordedTopic, Recorder
+from graph.recording.recorder import RecordedTopic, Recorder
 from tests.waiting import wait_until
 
 

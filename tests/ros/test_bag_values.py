@@ -16,9 +16,9 @@ from std_msgs.msg import ByteMultiArray, Char, ColorRGBA, Empty, Int8MultiArray
 from std_msgs.msg import String as Text
 from tf2_msgs.msg import TFMessage
 
-from graph.bag_decoding import TypeText, bag_decoder
-from graph.bag_types import definition, jazzy
-from graph.values import to_tree
+from graph.bag.decoding import TypeText, bag_decoder
+from graph.bag.types import definition, jazzy
+from graph.messages.values import to_tree
 
 MESSAGES = [
     Image(height=1, width=2, encoding="rgb8", step=6, data=[1, 2, 3, 4, 5, 255]),

@@ -12,7 +12,7 @@ from typing import Any, cast
 import pytest
 from std_msgs.msg import Bool
 
-from graph.observer import Observer
+from graph.observer.observer import Observer
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tui.app import DeckApp

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from graph.browse import Constant, definition, interfaces
-from graph.types import UnknownTypeError
+from graph.messages.browse import Constant, definition, interfaces
+from graph.messages.types import UnknownTypeError
 
 if TYPE_CHECKING:
     from pathlib import Path

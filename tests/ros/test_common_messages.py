@@ -9,7 +9,7 @@ import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from graph.data import Value
-from graph.types import load_message, load_service
+from graph.messages.types import load_message, load_service
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until

@@ -11,8 +11,8 @@ from nav_msgs.msg import Path
 from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
-from graph.dated import draft
-from graph.making import FieldError
+from graph.messages.dated import draft
+from graph.messages.making import FieldError
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until

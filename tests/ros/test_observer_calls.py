@@ -10,7 +10,7 @@ import rclpy
 from rclpy.service import Service
 
 from graph.data import CallResult
-from graph.types import load_service
+from graph.messages.types import load_service
 from tests.ros.observing import Peer, Watcher, let_updates_come
 from tests.ros.peer import Peer as InProcess
 from tests.waiting import wait_until

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from graph import goals_life
+from graph.calls import goal_life as goals_life
+from graph.calls.goals import GoalError
 from graph.data import Goal, GoalStatus
-from graph.goals import GoalError
-from graph.making import FieldError
-from graph.orders import ObserverError
-from graph.types import UnknownTypeError
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.observer.orders import ObserverError
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 

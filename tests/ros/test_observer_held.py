@@ -9,9 +9,9 @@ import pytest
 from ackermann_msgs.msg import AckermannDriveStamped
 from std_msgs.msg import Float32
 
-from graph.held import RESTS, Holding
-from graph.making import FieldError
-from graph.outbox import PublishError
+from graph.messages.making import FieldError
+from graph.publishing.dead_man_switch import RESTS, Holding
+from graph.publishing.outbox import PublishError
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until

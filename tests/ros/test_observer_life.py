@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from graph.data import GraphUpdate
-from graph.interest import Interest
-from graph.observer import Observer
-from graph.orders import ObserverError
-from graph.station import Station
+from graph.observer.interest import Interest
+from graph.observer.observer import Observer
+from graph.observer.orders import ObserverError
+from graph.observer.station import Station
 from tests.middleware_words import own_words
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
@@ -38,7 +38,8 @@ def run(program: str, domain: int, **env: str) -> subprocess.CompletedProcess[st
 
 def test_importing_the_room_imports_neither_rclpy_nor_numpy(ros_domain: int) -> None:
     program = (
-        "import json, sys; import graph, graph.data, graph.images, graph.observer;"
+        "import json, sys;"
+        "import graph, graph.data, graph.pictures.images, graph.observer.observer;"
         "print(json.dumps([m for m in ('rclpy', 'numpy', 'rosidl_parser') if m in sys.modules]))"
     )
     assert json.loads(run(program, ros_domain).stdout) == []
@@ -46,8 +47,8 @@ def test_importing_the_room_imports_neither_rclpy_nor_numpy(ros_domain: int) -> 
 
 WORKING = """
 import sys, threading, time
-from graph.interest import Interest
-from graph.observer import Observer
+from graph.observer.interest import Interest
+from graph.observer.observer import Observer
 seen = threading.Event()
 observer = Observer({domain})
 observer.start(lambda update: seen.set() if update.topics else None)
@@ -134,7 +135,7 @@ def test_a_domain_that_is_refused_is_told_and_so_is_every_order(
 def test_a_machine_without_ros_is_told_in_words(ros_domain: int) -> None:
     program = (
         "import sys, threading; sys.modules['rclpy'] = None\n"
-        "from graph.observer import Observer\n"
+        "from graph.observer.observer import Observer\n"
         f"told = threading.Event(); observer = Observer({ros_domain})\n"
         "observer.start(lambda update: (print(update.error), told.set()))\n"
         "assert told.wait(30); observer.stop()"

@@ -10,10 +10,10 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Float32
 
 from graph.data import Publication
-from graph.making import FieldError
-from graph.orders import ObserverError
-from graph.outbox import PublishError
-from graph.types import UnknownTypeError
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.observer.orders import ObserverError
+from graph.publishing.outbox import PublishError
 from tests.ros.observing import Peer as Process
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer

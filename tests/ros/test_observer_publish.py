@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from graph.making import FieldError
-from graph.observer import Observer
-from graph.orders import ObserverError
-from graph.outbox import PublishError
-from graph.types import UnknownTypeError
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.observer.observer import Observer
+from graph.observer.orders import ObserverError
+from graph.publishing.outbox import PublishError
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from graph.data import Trouble
-from graph.types import load_message
+from graph.messages.types import load_message
 from tests.ros.observing import Peer, Watcher, let_updates_come
 from tests.waiting import wait_until
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from graph import goals_cancel
+from graph.calls import goal_cancel as goals_cancel
 from graph.data import GoalStatus, SeenGoal
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until

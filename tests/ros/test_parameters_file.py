@@ -8,8 +8,8 @@ from typing import Any
 import rclpy
 from rclpy.context import Context
 
+from graph.calls.parameters_file import dump
 from graph.data import ParameterRow
-from graph.parameters_file import dump
 
 
 def overrides(path: Path, domain: int) -> dict[str, Any]:

@@ -25,11 +25,12 @@ from std_msgs.msg import Bool, Float32, String
 from std_srvs.srv import SetBool
 from tf2_msgs.msg import TFMessage
 
-from graph import recording_room, recording_tap
-from graph.bag import open_bag
-from graph.bag_decoding import bag_decoder
-from graph.bag_errors import BagError
-from graph.recording import Recorder
+from graph.bag.decoding import bag_decoder
+from graph.bag.errors import BagError
+from graph.bag.reading import open_bag
+from graph.recording import disk_room as recording_room
+from graph.recording import tap as recording_tap
+from graph.recording.recorder import Recorder
 from tests.ros.observing import Watcher, let_updates_come
 from tests.ros.peer import LATCHED, Peer
 from tests.ros.recorded import (
@@ -240,7 +241,7 @@ def test_a_folder_that_is_there_is_refused(tmp_path: Path) -> None:
 RECORD = """
 import resource, sys, time
 from graph import recording_writer
-from graph.recording import Recorder
+from graph.recording.recorder import Recorder
 from pathlib import Path
 if sys.argv[3] != "0":
     recording_writer.FLUSH_S = 3600.0  # Else the time, too, decides how much is in a chunk.

@@ -10,10 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 
-from graph.decoding import read_image
-from graph.making import FieldError, to_message
-from graph.types import UnknownTypeError, load_message, load_service
-from graph.values import to_tree
+from graph.messages.decoding import read_image
+from graph.messages.making import FieldError, to_message
+from graph.messages.types import UnknownTypeError, load_message, load_service
+from graph.messages.values import to_tree
 from tests.ros.any_message import TEXTS, TYPES, same, trees_of
 
 if TYPE_CHECKING:

@@ -10,13 +10,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 
-from graph.browse import interfaces
-from graph.dated import draft
-from graph.making import FieldError, to_message
-from graph.types import UnknownTypeError
-from graph.values import to_tree
-from graph.yaml_form import check, prefilled
-from graph.yaml_text import YamlError, from_yaml, to_yaml
+from graph.messages.browse import interfaces
+from graph.messages.dated import draft
+from graph.messages.making import FieldError, to_message
+from graph.messages.types import UnknownTypeError
+from graph.messages.values import to_tree
+from graph.messages.yaml_form import check, prefilled
+from graph.messages.yaml_text import YamlError, from_yaml, to_yaml
 from tests.ros.any_message import parts_of, same, trees_of
 
 TYPES = interfaces()

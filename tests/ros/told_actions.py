@@ -8,8 +8,8 @@ from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalRespons
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 
-from graph.making import to_message
-from graph.types import load_action
+from graph.messages.making import to_message
+from graph.messages.types import load_action
 
 DRIVE = "deck_interfaces/action/DriveToPoint"
 

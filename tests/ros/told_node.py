@@ -23,8 +23,8 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 
-from graph.making import to_message
-from graph.types import load_message, load_service
+from graph.messages.making import to_message
+from graph.messages.types import load_message, load_service
 from tests.ros.told_actions import ActionOrders
 
 IDLE_S = 0.02

@@ -17,7 +17,7 @@ from graph.data import (
     Publication,
     SetResult,
 )
-from graph.held import Holding
+from graph.publishing.dead_man_switch import Holding
 from tests.tui.recorded_lesson import NOW_S, lesson_update
 
 PARAMETERS: tuple[ParameterRow, ...] = (

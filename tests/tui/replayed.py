@@ -10,7 +10,7 @@ from typing import Any
 
 from textual.pilot import Pilot
 
-from graph.replay import Replay
+from graph.replay.replay import Replay
 from launcher.status import SessionInfo
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import settle

@@ -9,7 +9,7 @@ from textual.app import App, ComposeResult
 from textual.events import Paste
 
 from graph.data import ParameterRow, ParametersResult
-from graph.yaml_scalars import in_quotes, unquoted
+from graph.messages.yaml_scalars import in_quotes, unquoted
 from tests.hostile import EVIL
 from tests.tui.graph_room import opened
 from tests.tui.recorded import RecordedGraph

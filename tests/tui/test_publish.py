@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from graph.data import Publication, Sample
-from graph.outbox import PublishError
-from graph.yaml_form import check
+from graph.messages.yaml_form import check
+from graph.publishing.outbox import PublishError
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
 from tui.actions.publish import PublishAtRate

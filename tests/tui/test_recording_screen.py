@@ -11,9 +11,9 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import TextArea
 
-from graph import recording
-from graph.bag_errors import not_made
-from graph.recording import RecordedTopic, RecordingStatus
+from graph.bag.errors import not_made
+from graph.recording import recorder as recording
+from graph.recording.recorder import RecordedTopic, RecordingStatus
 from tests.tui.app_runs import opened
 from tests.tui.snapshots import Look, SnapCompare, both_languages
 from tui.app import DeckApp

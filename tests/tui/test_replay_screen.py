@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
-from graph.bag import Bag, TopicInBag
-from graph.bag_errors import unreadable
-from graph.replay import Replay
+from graph.bag.errors import unreadable
+from graph.bag.reading import Bag, TopicInBag
+from graph.replay.replay import Replay
 from tests.tui.replayed import BagPad, replayed
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
 from tests.unit.bags import write_bag, write_robot_bag

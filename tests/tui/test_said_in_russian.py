@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from graph.data import ParameterRow, Trouble
-from graph.images import ImageError, to_rgb
-from graph.orders import ObserverError
-from graph.replay_refusals import Refusals
-from graph.types import UnknownTypeError, load_message
+from graph.messages.types import UnknownTypeError, load_message
+from graph.observer.orders import ObserverError
+from graph.pictures.images import to_rgb
+from graph.pictures.pixels import ImageError
+from graph.replay.refusals import Refusals
 from tests.tui.app_runs import opened
 from tests.tui.recorded import lesson_update, topic
 from tui.i18n import said, set_language

@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from graph.pictures import Picture, read_picture
+from graph.pictures.picture import Picture
+from graph.pictures.reading import read_picture
 from tests.tui.recorded import NOW_S, TOPICS, lesson_update, sample
 from tests.tui.topics_room import (
     CAMERA,

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.app import App, ComposeResult
 
-from graph.yaml_form import prefilled
+from graph.messages.yaml_form import prefilled
 from tui.i18n import set_language
 from tui.widgets import yaml_form
 from tui.widgets.yaml_form import YamlForm

@@ -8,10 +8,10 @@ from typing import Any, cast
 
 import pytest
 
-from graph.asking import Asking
-from graph.held import Holding
-from graph.orders import ObserverError
-from graph.station import Station
+from graph.observer.asking import Asking
+from graph.observer.orders import ObserverError
+from graph.observer.station import Station
+from graph.publishing.dead_man_switch import Holding
 
 BOOL, STOP = "std_msgs/msg/Bool", {"data": True}
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from graph.bag import open_bag
-from graph.bag_errors import BagError, unreadable
+from graph.bag.errors import BagError, unreadable
+from graph.bag.reading import open_bag
 from tests.unit.bags import write_bag
 from tui.i18n import said, set_language
 

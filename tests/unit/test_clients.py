@@ -7,8 +7,8 @@ from typing import Any, cast
 
 import pytest
 
-from graph import clients
-from graph.clients import KEPT, SETTLE_S, Clients
+from graph.calls import clients
+from graph.calls.clients import KEPT, SETTLE_S, Clients
 
 TYPE = "rcl_interfaces/srv/ListParameters"
 

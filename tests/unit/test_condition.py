@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from graph.condition import Condition, ConditionError
+from graph.messages.condition import Condition, ConditionError
 
 SCAN: dict[str, Any] = {
     "header": {"stamp": {"sec": 12, "nanosec": 500}, "frame_id": "laser"},

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from graph.bag import open_bag
+from graph.bag.reading import open_bag
 from launcher.status import NodeState, NodeStatus, SessionInfo
 from tests.unit.bags import write_bag
 from text.fractions import with_comma

@@ -8,11 +8,11 @@ from typing import Any, cast
 import pytest
 from deck_interfaces.action import DriveToPoint
 
-from graph import goals_life
+from graph.calls import goal_life as goals_life
+from graph.calls.goal_life import ANSWER_WITHIN_S, GONE_AFTER_S, GoalLife
+from graph.calls.goal_line import Heard
 from graph.data import Goal, GoalStatus
-from graph.dated import Draft
-from graph.goals_life import ANSWER_WITHIN_S, GONE_AFTER_S, GoalLife
-from graph.goals_line import Heard
+from graph.messages.dated import Draft
 
 ID = bytes(range(16))
 EXECUTING, SUCCEEDED, ABORTED = 2, 4, 6

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graph.fields import FieldType, parse
+from graph.messages.fields import FieldType, parse
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from graph.data import Value
-from graph.images import ImageError, shrink, to_rgb
+from graph.pictures.images import shrink, to_rgb
+from graph.pictures.pixels import ImageError
 
 ORANGE = (250, 120, 10)
 

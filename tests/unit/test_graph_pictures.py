@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from graph.data import Value
-from graph.images import ImageError
-from graph.pictures import COMPRESSED, IMAGE, RAMP, ramp_colours, read_picture, rounded
+from graph.pictures.picture import COMPRESSED, IMAGE, RAMP, ramp_colours, rounded
+from graph.pictures.pixels import ImageError
+from graph.pictures.reading import read_picture
 
 ORANGE = (250, 120, 10)
 
@@ -185,7 +186,7 @@ def test_what_cannot_be_decoded_is_named(value: dict[str, Value], words: str) ->
 
 
 def test_too_many_bytes_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("graph.compressed.MOST_BYTES", 100)
+    monkeypatch.setattr("graph.pictures.compressed.MOST_BYTES", 100)
     with pytest.raises(ImageError, match="too large"):
         read_picture(COMPRESSED, {"format": "jpeg", "data": JPEG_BYTES}, whole)
 

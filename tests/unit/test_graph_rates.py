@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.rates import Arrival, RateMeter
+from graph.observer.rates import RateMeter
+from graph.observer.timing import Arrival
 
 T0 = 1_700_000_000.0
 

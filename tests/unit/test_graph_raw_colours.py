@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from graph.data import Value
-from graph.images import ImageError, to_rgb
-from graph.pictures import IMAGE, read_picture
+from graph.pictures.images import to_rgb
+from graph.pictures.picture import IMAGE
+from graph.pictures.pixels import ImageError
+from graph.pictures.reading import read_picture
 
 PATTERNS = ("rggb", "bggr", "gbrg", "grbg")
 RED_Y, RED_U, RED_V = 81, 90, 240

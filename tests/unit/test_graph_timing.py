@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.rates import Arrival, RateMeter
-from graph.stamps import delay_reader, delay_s
-from graph.timing import Spread
+from graph.messages.stamps import delay_reader, delay_s
+from graph.observer.rates import RateMeter
+from graph.observer.timing import Arrival, Spread
 
 T0 = 1_700_000_000.0
 

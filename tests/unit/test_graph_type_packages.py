@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from graph.scan import TopicEnds
-from graph.stand_in import stand_in
-from graph.troubles import structural
-from graph.type_packages import ON_PYPI, how_to_install, install_names
-from graph.types import UnknownTypeError, load_message
+from graph.messages.packages import ON_PYPI, how_to_install, install_names
+from graph.messages.stand_in import stand_in
+from graph.messages.types import UnknownTypeError, load_message
+from graph.observer.troubles import structural
+from graph.scan.endpoints import TopicEnds
 
 ROOT = Path(__file__).parents[2]
 NOBODY = TopicEnds("/t", ())
@@ -66,8 +66,8 @@ def test_a_stand_in_is_made_once_and_only_of_names() -> None:
 
 
 def test_no_stand_in_where_the_middleware_is_another(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("graph.stand_in.MIDDLEWARE", "rmw_other_cpp")
+    monkeypatch.setattr("graph.messages.stand_in.MIDDLEWARE", "rmw_other_cpp")
     assert stand_in("foo_msgs/msg/Another") is None
     monkeypatch.undo()
-    monkeypatch.setattr("graph.stand_in.MODEL", ({b"std_msgs::msg"}, b"Text"))
+    monkeypatch.setattr("graph.messages.stand_in.MODEL", ({b"std_msgs::msg"}, b"Text"))
     assert stand_in("foo_msgs/msg/AThird") is None

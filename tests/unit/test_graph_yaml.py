@@ -11,7 +11,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graph.yaml_text import YamlError, from_yaml, is_cut, to_yaml
+from graph.messages.yaml_text import YamlError, from_yaml, is_cut, to_yaml
 
 TREE: dict[str, Any] = {
     "header": {"stamp": {"sec": 17, "nanosec": 250_000_000}, "frame_id": "base_link"},

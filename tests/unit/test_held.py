@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.held import LONGEST_S, RESTS, Grip, Holding
+from graph.publishing.dead_man_switch import LONGEST_S, RESTS, Grip, Holding
 
 GO, OTHER, REST = {"speed": 0.2}, {"speed": -0.2}, {"speed": 0.0}
 

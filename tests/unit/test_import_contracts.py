@@ -15,7 +15,7 @@ ROOMS = ("graph", "launcher", "nodes", "robot", "text", "tui")
 
 ALLOWED = {
     "tui.app": ["graph", "launcher", "robot", "text", "textual", "rich"],
-    "graph.observer": ["rclpy", "std_msgs.msg", "numpy", "text", "yaml"],
+    "graph.observer.observer": ["rclpy", "std_msgs.msg", "numpy", "text", "yaml"],
     "nodes.hello": ["rclpy", "robot", "text", "cv2", "example_interfaces.srv"],
     "launcher.profile": [
         "asyncio",
@@ -37,7 +37,7 @@ ALLOWED = {
 
 FORBIDDEN = {
     "tui.app": ["nodes", "rclpy", "sensor_msgs.msg"],
-    "graph.observer": ["launcher", "nodes", "robot", "textual", "tui"],
+    "graph.observer.observer": ["launcher", "nodes", "robot", "textual", "tui"],
     "nodes.hello": ["graph", "launcher", "textual", "tui"],
     "launcher.profile": [
         *("graph", "nodes", "rclpy", "robot", "std_msgs.msg", "textual", "tui"),

@@ -12,10 +12,10 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from graph.calls.parameters_file import dump, load, load_file, save_file
+from graph.calls.parameters_values import TYPES, carried
 from graph.data import ParameterRow
-from graph.parameters_file import dump, load, load_file, save_file
-from graph.parameters_values import TYPES, carried
-from graph.yaml_faults import YamlError
+from graph.messages.yaml_faults import YamlError
 
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"))
 INTEGERS = st.integers(-(2**63), 2**63 - 1)

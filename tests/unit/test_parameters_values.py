@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from graph.parameters_values import TYPES, WrongValueError, carried, plain
+from graph.calls.parameters_values import TYPES, WrongValueError, carried, plain
 
 
 @pytest.mark.parametrize(

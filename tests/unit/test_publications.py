@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.publications import LATE_S, _Repeated
+from graph.publishing.publications import LATE_S, _Repeated
 from graph.qos import RELIABLE, VOLATILE, Qos
 
 

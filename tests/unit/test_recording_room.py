@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from graph.bag_errors import BagError
-from graph.recording_room import Room, free_bytes
+from graph.bag.errors import BagError
+from graph.recording.disk_room import Room, free_bytes
 
 HERE = Path("/here/walk")
 MB = 1_000_000

@@ -10,11 +10,11 @@ import pytest
 from mcap.reader import make_reader
 from mcap.stream_reader import CRCValidationError
 
-from graph.bag import open_bag
-from graph.bag_metadata import BagTopic
-from graph.recording_file import BagFile
-from graph.recording_tap import Sequences
-from graph.recording_writer import Message, RecordingWriter
+from graph.bag.metadata import BagTopic
+from graph.bag.reading import open_bag
+from graph.recording.file import BagFile
+from graph.recording.tap import Sequences
+from graph.recording.writer import Message, RecordingWriter
 from tests.waiting import wait_until
 
 TEXT = "uint8[] data\n"

@@ -13,7 +13,7 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin
 
 from graph.data import GraphUpdate, Sample, TopicRow, Trouble
-from graph.replay import Replay
+from graph.replay.replay import Replay
 from tests.unit.bags import BATTERY, write_bag
 from tests.waiting import wait_until
 
@@ -174,7 +174,7 @@ import sys, time
 for name in ("rclpy", "std_msgs", "sensor_msgs", "builtin_interfaces"):
     sys.modules[name] = None
 from pathlib import Path
-from graph.replay import Replay
+from graph.replay.replay import Replay
 replay = Replay(Path({str(path)!r}), rate=10)
 found = []
 replay.follow(["/number"])

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.held import Grip, Holding
+from graph.publishing.dead_man_switch import Grip, Holding
 from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
 from tui.teleop import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits

@@ -122,7 +122,7 @@ class Map(GraphAction):
 class Parameters(GraphAction):
     """The node's parameters."""
 
-    id = "graph.parameters"
+    id = "graph.calls.parameters"
     key = "E,У"
     title = N_("Parameters")
     tooltip = N_("Read the parameters of the chosen node, or hide them; Enter changes one.")

@@ -8,7 +8,7 @@ from tui.actions.action import Action
 from tui.i18n import N_
 
 if TYPE_CHECKING:
-    from graph.replay import Replay
+    from graph.replay.replay import Replay
     from tui.app import DeckApp
 
 SKIP_S = 5.0

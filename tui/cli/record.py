@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.bag_errors import BagError
+from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.process_shm_unfinished import discard_unfinished
 from launcher.rundir import new_recording
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Sequence
 
-    from graph.recording import Recorder, RecordingStatus
+    from graph.recording.recorder import Recorder, RecordingStatus
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 TOLD_S = 1.0
@@ -41,7 +41,7 @@ TOLD_S = 1.0
 
 def record_command(options: Namespace) -> int:
     """Record until it is stopped; 0 if the bag is whole and has something in it."""
-    from graph.recording import Recorder
+    from graph.recording.recorder import Recorder
 
     topics = [_topic(name) for name in options.topics]
     what, domain, discovery = robot_to_hear(options.domain)

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.bag_list import bags_in
+from graph.bag.listing import bags_in
 from launcher.errors import UsageError
 from launcher.profile_tree import did_you_mean
 from launcher.rundir import recordings_path
@@ -18,7 +18,7 @@ from tui.i18n import _, said
 from tui.recording_words import length_words, size_words
 
 if TYPE_CHECKING:
-    from graph.bag_list import ListedBag
+    from graph.bag.listing import ListedBag
 
 
 def list_recordings() -> int:

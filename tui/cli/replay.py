@@ -43,8 +43,8 @@ def _check(bag: Path, *, whole: bool) -> None:
 
     `whole`: look inside too, which the screen does by itself: it may take a while.
     """
-    from graph.bag import files_of, open_bag
-    from graph.bag_errors import BagError
+    from graph.bag.errors import BagError
+    from graph.bag.reading import files_of, open_bag
 
     try:
         if whole:

@@ -10,7 +10,7 @@ import signal
 import threading
 from typing import TYPE_CHECKING
 
-from graph.bag_errors import BagError
+from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.process_shm_unfinished import discard_unfinished
 from launcher.words import say
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from pathlib import Path
 
-    from graph.bag import Bag, TopicInBag
-    from graph.bag_publishing import BagPublisher, Progress
+    from graph.bag.publishing import BagPublisher, Progress
+    from graph.bag.reading import Bag, TopicInBag
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def publish_bag(path: Path, options: Namespace) -> int:
     """Publish until the end or until it is stopped; 1 if nothing could be published."""
-    from graph.bag import open_bag
+    from graph.bag.reading import open_bag
 
     _name, domain, discovery = robot_to_hear(options.domain)
     stop = threading.Event()
@@ -54,7 +54,7 @@ def _publish(
     stop: threading.Event,
     options: Namespace,
 ) -> int:
-    from graph.bag_publishing import BagPublisher
+    from graph.bag.publishing import BagPublisher
     from graph.ros import open_ros
 
     # There may be no supervisor here that does it.

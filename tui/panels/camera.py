@@ -5,7 +5,8 @@ from __future__ import annotations
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from graph.images import ImageError, to_rgb
+from graph.pictures.images import to_rgb
+from graph.pictures.pixels import ImageError
 from tui.figures import whole
 from tui.i18n import N_, _, said
 from tui.panels.other_type import other_type

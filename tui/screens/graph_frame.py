@@ -180,7 +180,7 @@ class GraphFrame(DeckScreen):
 
     async def find_installed(self) -> None:
         """List the types that are installed, though nobody uses them."""
-        from graph.browse import interfaces
+        from graph.messages.browse import interfaces
 
         self._installed = await asyncio.to_thread(interfaces)
         self.take(self.feed.update)

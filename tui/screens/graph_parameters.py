@@ -93,7 +93,7 @@ class _Saving:
         self._refused = ""
 
     async def __call__(self, path: str) -> str:
-        from graph.parameters_file import save_file
+        from graph.calls.parameters_file import save_file
 
         replace = path == self._refused
         try:
@@ -107,8 +107,8 @@ class _Saving:
 
 
 async def _load(app: DeckApp, table: GraphParameters, path: str) -> str:
-    from graph.parameters_file import load_file
-    from graph.yaml_faults import YamlError
+    from graph.calls.parameters_file import load_file
+    from graph.messages.yaml_faults import YamlError
 
     try:
         values = await asyncio.to_thread(load_file, _full(path), table.node)

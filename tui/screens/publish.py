@@ -9,8 +9,8 @@ from textual import on
 from textual.containers import Vertical
 from textual.content import Content
 
-from graph.yaml_form import filled
-from graph.yaml_text import is_cut
+from graph.messages.yaml_form import filled
+from graph.messages.yaml_text import is_cut
 from tui import title
 from tui.actions import bindings
 from tui.actions.app import EmergencyStop

@@ -10,7 +10,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
 from graph.housekeeping import is_housekeeping
-from graph.yaml_text import is_cut, to_yaml
+from graph.messages.yaml_text import is_cut, to_yaml
 from tui import title
 from tui.actions import bindings
 from tui.actions.publish import OpenPublish

@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
-from graph.images import ImageError, UnknownEncodingError
-from graph.pictures import COMPRESSED, IMAGE, Picture, ramp_colours, read_picture
+from graph.pictures.picture import COMPRESSED, IMAGE, Picture, ramp_colours
+from graph.pictures.pixels import ImageError, UnknownEncodingError
+from graph.pictures.reading import read_picture
 from text.plain import plain
 from tui.i18n import _, decimal, said
 from tui.screens.topics_plotting import PlotPlace, TopicsPlotting

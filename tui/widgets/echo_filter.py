@@ -9,7 +9,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
-from graph.condition import LONGEST, Condition, ConditionError
+from graph.messages.condition import LONGEST, Condition, ConditionError
 from text.plain import plain
 from tui.i18n import _, ngettext, said
 from tui.widgets.field import Field

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from graph.yaml_scalars import in_quotes, unquoted
+from graph.messages.yaml_scalars import in_quotes, unquoted
 from text.plain import is_plain, plain
 from tui.i18n import N_, _
 

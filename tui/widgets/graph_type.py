@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, ClassVar
 
-from graph.types import UnknownTypeError
+from graph.messages.types import UnknownTypeError
 from tui.i18n import _, said
 from tui.widgets.graph_index import users_of
 from tui.widgets.graph_links import GraphLinks, heading, link
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from textual.timer import Timer
     from textual.widget import Widget
 
-    from graph.browse import Definition
+    from graph.messages.browse import Definition
     from tui.widgets.rows import Row
 
 SETTLED_S = 0.12
@@ -97,7 +97,7 @@ class TypePane(GraphPane):
 
     async def _load(self, name: str) -> None:
         # Reading a type imports its package, which takes its time.
-        from graph.browse import definition
+        from graph.messages.browse import definition
 
         try:
             found = await asyncio.to_thread(definition, name)

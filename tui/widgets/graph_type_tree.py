@@ -10,8 +10,8 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.widgets import Tree
 
-from graph.browse import Constant, Definition, Field, definition
-from graph.types import UnknownTypeError
+from graph.messages.browse import Constant, Definition, Field, definition
+from graph.messages.types import UnknownTypeError
 from text.plain import plain
 from tui.i18n import N_, _, said
 from tui.widgets.graph_parameter_words import typed

@@ -12,7 +12,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from graph.images import shrink
+from graph.pictures.images import shrink
 from text.plain import plain
 from tui import clock
 from tui.bandwidth import Pace

@@ -11,7 +11,7 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Static
 
-from graph.browse import interfaces
+from graph.messages.browse import interfaces
 from tui.i18n import _
 from tui.widgets.field import Field
 from tui.widgets.type_field import TypeField

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from textual.events import Click, MouseMove
 
-    from graph.replay import Replay
-    from graph.replay_state import ReplayState
+    from graph.replay.replay import Replay
+    from graph.replay.state import ReplayState
     from tui.app import DeckApp
 
 LOOK_S = 0.25

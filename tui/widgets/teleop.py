@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, cast
 from textual.content import Content
 from textual.message import Message
 
-from graph.held import Holding
+from graph.publishing.dead_man_switch import Holding
 from robot.words import STOP, DriveSetpoint
 from text.plain import plain
 from tui import clock

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from graph.yaml_scalars import escaped
+from graph.messages.yaml_scalars import escaped
 from tui.widgets.marked_editor import MarkedEditor
 from tui.widgets.yaml_tokens import tokens
 

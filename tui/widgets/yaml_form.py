@@ -10,10 +10,10 @@ from textual.containers import Vertical
 from textual.message import Message
 from textual.widgets import Static, TextArea
 
-from graph.making import FieldError
-from graph.types import UnknownTypeError
-from graph.yaml_form import check, prefilled
-from graph.yaml_text import YamlError
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.messages.yaml_form import check, prefilled
+from graph.messages.yaml_text import YamlError
 from text.plain import plain
 from tui.actions import Acting, bindings
 from tui.actions.yaml_form import FORM_ACTIONS

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from graph.making import FieldError
-from graph.types import UnknownTypeError
-from graph.yaml_text import YamlError
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.messages.yaml_text import YamlError
 from text.plain import plain
 from tui.i18n import _, said
 from tui.widgets.marked_editor import Place

@@ -1,0 +1,1 @@
+"""Recorded bags: read, listed, described, and published into a domain again."""

@@ -1,0 +1,139 @@
+"""From the raw bytes of a bag to trees, by the definitions that the bag carries itself.
+
+No ROS is needed, and a type may be of a package that is not installed, or of another
+distribution. The trees are those of `graph.data.Value`.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from graph.bag.errors import BagError
+from graph.messages.fields import BYTES
+from graph.messages.values import DUMMY
+from graph.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosbags.typesys.store import Typestore
+
+    from graph.data import Value
+
+AS_BYTES = BYTES | {"byte"}
+CDR = frozenset({b"\x00\x00", b"\x00\x01"})
+"""How big-endian and little-endian plain CDR begin (OMG DDS-XTypes 1.3, 7.6.3.1.2)."""
+LISTED = frozenset({"bool", "string", "wstring"})
+
+
+class TypeText(NamedTuple):
+    """What a bag says of a type."""
+
+    name: str
+    text: str = ""
+    """Empty where the bag does not define its types: sqlite3 before ROS 2 Iron."""
+    is_idl: bool = False
+    distro: str = ""
+    """ROS distribution that wrote the bag, if it says."""
+
+
+@lru_cache(maxsize=256)
+def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
+    """Return what makes a tree of a message of this type.
+
+    Raises BagError for a type that is neither defined nor known. What it returns raises anything
+    for bytes that are no such message.
+    """
+    store = _store(kind)
+    if kind.name not in store.fielddefs:
+        raise BagError(
+            say(
+                "type {type} is not defined in the bag, and is not one of ROS's own; record "
+                "the bag again with its definitions: `deck record`, or `ros2 bag record -s "
+                "mcap`",
+                type=kind.name,
+            )
+        )
+    read = _reader(store, kind.name)
+    plan = store.get_msgdef(kind.name)
+
+    def decode(raw: bytes) -> dict[str, Value]:
+        if raw[:2] not in CDR:
+            raise ValueError("it is not in plain CDR")
+        take = plan.deserialize_cdr_le if raw[1] else plan.deserialize_cdr_be
+        # The store's own method refuses messages with bytes to spare; rmw makes such ones.
+        message, _end = take(memoryview(raw)[4:], 0, plan.cls, store)
+        return read(message)
+
+    return decode
+
+
+def _store(kind: TypeText) -> Typestore:
+    from rosbags.typesys import (
+        Stores,
+        TypesysError,
+        get_types_from_idl,
+        get_types_from_msg,
+        get_typestore,
+    )
+
+    if not kind.text:
+        known = {store.name: store for store in Stores}
+        return get_typestore(known.get(f"ROS2_{kind.distro.upper()}", Stores.ROS2_JAZZY))
+    store = get_typestore(Stores.EMPTY)
+    try:
+        if kind.is_idl:
+            store.register(get_types_from_idl(kind.text))
+        else:
+            found = get_types_from_msg(kind.text, kind.name)
+            # The library takes the name of a service's for that of a package.
+            for name in found.keys() - {kind.name}:
+                if name.replace("/srv/msg/", "/srv/") == kind.name:
+                    found[kind.name] = found.pop(name)
+            store.register(found)
+    except (TypesysError, ValueError, KeyError) as error:
+        words = say(
+            "the definition of type {type} in the bag cannot be read: {reason}",
+            type=kind.name,
+            reason=error,
+        )
+        raise BagError(words) from error
+    return store
+
+
+def _reader(store: Typestore, type_name: str) -> Callable[[Any], dict[str, Value]]:
+    """Return what reads all fields of a message of a type of the store's."""
+    from rosbags.typesys.base import normalize_fieldname
+
+    fields = [
+        (name, normalize_fieldname(name), _field(store, kind))
+        for name, kind in store.fielddefs[type_name][1]
+        if name != DUMMY
+    ]
+
+    def read(message: Any) -> dict[str, Value]:  # noqa: ANN401 - generated, without a base class
+        return {name: field(getattr(message, attribute)) for name, attribute, field in fields}
+
+    return read
+
+
+def _field(store: Typestore, kind: Any) -> Callable[[Any], Value]:  # noqa: ANN401 - nested tuples
+    from rosbags.interfaces import Nodetype
+
+    node, rest = kind
+    if node is Nodetype.BASE:
+        return _as_it_is
+    if node is Nodetype.NAME:
+        return _reader(store, rest)
+    element, name = rest[0]
+    if element is Nodetype.NAME:
+        read = _reader(store, name)
+        return lambda values: [read(value) for value in values]
+    if name[0] in AS_BYTES:
+        return lambda values: bytes(values.tobytes())
+    return list if name[0] in LISTED else _as_it_is
+
+
+def _as_it_is(value: Value) -> Value:
+    return value

@@ -1,0 +1,197 @@
+"""A bag published into a ROS domain: raw messages in the rhythm in which they were recorded.
+
+Nothing is decoded. A topic that somebody else publishes is left to him, from the moment on at which
+he is seen: two publishers of one sensor are worse than none.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from graph.messages.types import UnknownTypeError, load_message
+from graph.qos import Qos, profile
+from graph.scan.endpoints import full_name
+from graph.words import say
+
+if TYPE_CHECKING:
+    import threading
+    from collections.abc import Callable, Collection
+
+    from rclpy.publisher import Publisher
+
+    from graph.bag.reading import Bag, TopicInBag
+    from graph.ros import Ros
+
+DEPTH = 100
+"""Queue of a publisher: a subscriber may be behind by so many messages."""
+FOUND_WITHIN_S = 1.0
+"""Until then those who are there have been found, and have found this publisher."""
+LOOK_S = 0.25
+"""How often others on the topics are looked for."""
+TELL_S = 1.0
+ACKED_WITHIN_S = 2.0
+SHARED = frozenset({"/rosout"})
+"""What every node publishes: nobody's alone."""
+
+
+@dataclass
+class Progress:
+    """How far it is."""
+
+    seconds: float = 0.0
+    """Of the bag."""
+    messages: int = 0
+    left_out: dict[str, str] = field(default_factory=dict)
+    """Topic to why it is not published, in words that can be translated."""
+
+
+class BagPublisher:
+    """Publishes the topics of a bag, on one thread, from `play` until its end."""
+
+    def __init__(
+        self,
+        bag: Bag,
+        ros: Ros,
+        refusal: Callable[[TopicInBag], str | None],
+        stopped_by_zeros: Collection[str] = (),
+    ) -> None:
+        """`refusal` tells why a topic is not to be published, None for those that are.
+
+        `stopped_by_zeros`: types of which an empty message is sent at the end.
+        """
+        self.progress = Progress()
+        self._bag = bag
+        self._ros = ros
+        self._stopped_by_zeros = frozenset(stopped_by_zeros)
+        self._publishers: dict[str, tuple[TopicInBag, Publisher]] = {}
+        for topic in bag.topics:
+            reason = refusal(topic)
+            if reason is None and topic.messages:
+                self._open(topic)
+            elif reason is not None:
+                self.progress.left_out[topic.name] = reason
+
+    @property
+    def topics(self) -> int:
+        """How many topics are published."""
+        return len(self._publishers)
+
+    def find_others(self, stop: threading.Event) -> None:
+        """Wait until all who are there are known; leave topics to those who publish them."""
+        stop.wait(FOUND_WITHIN_S)
+        self._give_way()
+
+    def play(
+        self,
+        stop: threading.Event,
+        tell: Callable[[Progress], None],
+        *,
+        rate: float = 1.0,
+        start_s: float = 0.0,
+        loop: bool = False,
+    ) -> None:
+        """Publish once, or with `loop` until `stop`; tell of the progress each second.
+
+        Raises BagError where the bag turns out to be damaged.
+        """
+        try:
+            self._once(stop, tell, rate, start_s)
+            while loop and not stop.is_set() and self._publishers:
+                self._once(stop, tell, rate, 0.0)
+        finally:
+            self._end()
+
+    def _once(
+        self, stop: threading.Event, tell: Callable[[Progress], None], rate: float, start_s: float
+    ) -> None:
+        bag = self._bag
+        begin_ns = bag.start_ns + round(start_s * 1e9)
+        self._latched_before(begin_ns)
+        begun_s = look_s = tell_s = time.monotonic()
+        for topic, stamp_ns, raw in bag.messages(begin_ns, list(self._publishers)):
+            due_s = begun_s + (stamp_ns - begin_ns) / 1e9 / rate
+            while not stop.is_set():
+                now_s = time.monotonic()
+                if now_s >= look_s + LOOK_S:
+                    look_s = now_s
+                    self._give_way()
+                if now_s >= tell_s + TELL_S:
+                    tell_s = now_s
+                    tell(self.progress)
+                if now_s >= due_s:
+                    break
+                stop.wait(min(due_s - now_s, LOOK_S))
+            if stop.is_set() or not self._publishers:
+                return
+            self.progress.seconds = (stamp_ns - bag.start_ns) / 1e9
+            self._put(topic, raw)
+
+    def _latched_before(self, begin_ns: int) -> None:
+        """Publish what was latched when the bag is begun later than at its beginning."""
+        names = [name for name, (topic, _) in self._publishers.items() if _latched(topic)]
+        if begin_ns <= self._bag.start_ns or not names:
+            return
+        newest: dict[str, tuple[TopicInBag, bytes]] = {}
+        for topic, stamp_ns, raw in self._bag.messages(names=names):
+            if stamp_ns >= begin_ns:
+                break
+            newest[topic.name] = (topic, raw)
+        for topic, raw in newest.values():
+            self._put(topic, raw)
+
+    def _put(self, topic: TopicInBag, raw: bytes) -> None:
+        found = self._publishers.get(topic.name)
+        # A bag may have two types under one name.
+        if found is not None and found[0].kind.name == topic.kind.name:
+            found[1].publish(raw)
+            self.progress.messages += 1
+
+    def _open(self, topic: TopicInBag) -> None:
+        from rclpy.exceptions import InvalidTopicNameException
+        from rclpy.validate_full_topic_name import validate_full_topic_name
+
+        if topic.name in self._publishers:
+            return
+        qos = Qos(topic.reliability or "reliable", topic.durability or "volatile")
+        try:
+            validate_full_topic_name(topic.name)
+            kind = load_message(topic.kind.name)
+            publisher = self._ros.node.create_publisher(kind, topic.name, profile(qos, DEPTH))
+        except UnknownTypeError as error:
+            self.progress.left_out[topic.name] = error.reason
+        except InvalidTopicNameException:
+            # Programs that are not of ROS write MCAP files, too.
+            self.progress.left_out[topic.name] = say("not a valid name of a ROS topic")
+        else:
+            self._publishers[topic.name] = (topic, publisher)
+
+    def _give_way(self) -> None:
+        """Leave topics to others who publish them."""
+        node = self._ros.node
+        for name in self._publishers.keys() - SHARED:
+            if node.handle.get_count_publishers(name) < 2:
+                continue
+            found = node.get_publishers_info_by_topic(name)
+            names = {full_name(one.node_name, one.node_namespace) for one in found}
+            others = sorted(names - {self._ros.name})
+            if others:
+                node.destroy_publisher(self._publishers.pop(name)[1])
+                self.progress.left_out[name] = say("{node} publishes it", node=", ".join(others))
+
+    def _end(self) -> None:
+        """Let nothing go on that was asked for, and nothing be lost that is under way."""
+        from rclpy.duration import Duration
+
+        deadline_s = time.monotonic() + ACKED_WITHIN_S
+        for topic, publisher in self._publishers.values():
+            if topic.kind.name in self._stopped_by_zeros:
+                publisher.publish(load_message(topic.kind.name)())
+        for _, publisher in self._publishers.values():
+            left_s = max(0.0, deadline_s - time.monotonic())
+            publisher.wait_for_all_acked(Duration(seconds=left_s))
+
+
+def _latched(topic: TopicInBag) -> bool:
+    return topic.durability == "transient_local"

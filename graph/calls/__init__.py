@@ -1,0 +1,1 @@
+"""What is asked of other nodes, never waited for: services, goals, parameters."""

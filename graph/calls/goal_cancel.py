@@ -1,0 +1,52 @@
+"""Cancelling one goal that somebody else has sent: a client for this alone, and its answer."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from graph.calls.goal_life import ANSWER_WITHIN_S, NO_WORD_OF_CANCEL, REFUSED
+from graph.calls.goal_line import ActionLine
+from graph.data import GoalStatus
+from graph.words import say
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+ID_BYTES = 16
+
+
+class Cancelling:
+    """One request to cancel, until it is answered; `step` it, and `close` it in the end."""
+
+    def __init__(self, node: Node, action: str, type_name: str, goal_id: str) -> None:
+        """Make the client. Raises UnknownTypeError, ValueError, and what rclpy raises."""
+        self.action = action
+        self._id = bytes.fromhex(goal_id)
+        # A request with an id of zeros is one to cancel them all (source: action_msgs/CancelGoal).
+        if len(self._id) != ID_BYTES or not any(self._id):
+            raise ValueError(f"{goal_id} is no id of a goal")
+        self._line = ActionLine(node, action, type_name)
+        self._began_s = time.monotonic()
+        self._request: int | None = None
+
+    def step(self, status: GoalStatus | None) -> str | None:
+        """Go on; return what came of it: why it is refused, or nothing; None while it is awaited.
+
+        `status` is how the goal stands: its server's answer may get lost, its status does not.
+        """
+        heard = self._line.take()
+        if status is not None and (status.ended or status is GoalStatus.CANCELING):
+            return ""
+        if self._request is None:
+            if self._line.is_ready:
+                self._request = self._line.cancel(self._id)
+        elif self._request in heard.cancelled:
+            return "" if heard.cancelled[self._request] else say(REFUSED)
+        if time.monotonic() - self._began_s < ANSWER_WITHIN_S:
+            return None
+        return say(NO_WORD_OF_CANCEL, seconds=f"{ANSWER_WITHIN_S:g}")
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._line.close()

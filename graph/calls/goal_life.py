@@ -1,0 +1,215 @@
+"""The life of one goal, from being sent to its end: what comes in, what is to go out."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from graph.data import Goal, GoalStatus
+from graph.messages.values import to_tree
+from graph.words import say
+
+if TYPE_CHECKING:
+    from graph.calls.goal_line import ActionLine, Heard
+    from graph.messages.dated import Draft
+
+ANSWER_WITHIN_S = 5.0
+"""For a server to be found, to accept, to agree to cancel, and to hand over a result."""
+GONE_AFTER_S = 0.5
+"""A server's last words may come a little after it has left the graph."""
+STATUS = {
+    1: GoalStatus.ACCEPTED,
+    2: GoalStatus.EXECUTING,
+    3: GoalStatus.CANCELING,
+    4: GoalStatus.SUCCEEDED,
+    5: GoalStatus.CANCELED,
+    6: GoalStatus.ABORTED,
+}
+"""Source: action_msgs/GoalStatus."""
+ENDS = frozenset({GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED})
+LOST = "its server has left the graph"
+REFUSED = "the server refuses to cancel it"
+NO_WORD_OF_CANCEL = "no answer to the request to cancel it within {seconds} s"
+
+
+class GoalLife:
+    """One goal. `hear` and `act` are called in turn until it `is_settled`."""
+
+    def __init__(self, told: Goal, goal_id: bytes, message: Draft, line: ActionLine) -> None:
+        """Begin with a goal that is `SENDING`, to be sent as `message` by `line`."""
+        self.told = told
+        """As the screen is to see it; `elapsed_s` apart."""
+        self.line = line
+        self.is_forgotten = False
+        self._id = goal_id
+        self._message = message
+        self._began_s = time.monotonic()
+        self._ended_s: float | None = None
+        self._wants_cancel = False
+        self._request: int | None = None
+        self._request_s = 0.0
+        self._accepted: bool | None = None
+        self._result: int | None = None
+        self._cancel: int | None = None
+        self._cancel_s = 0.0
+        self._over_s: float | None = None
+        """When the status was first said to be one of `ENDS`."""
+        self._servers: frozenset[bytes] = frozenset()
+        self._servers_seen_s = 0.0
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether neither side has anything more to say."""
+        if not self.told.ended or self._cancel is not None:
+            return False
+        # A goal that was given up before it was accepted would still be pursued.
+        awaits_answer = self._request is not None and self._accepted is None
+        return not (awaits_answer and self.line.servers())
+
+    @property
+    def is_urgent(self) -> bool:
+        """Whether an answer is due any moment."""
+        return self._cancel is not None or (self._accepted is None and not self.told.ended)
+
+    @property
+    def may_drive(self) -> bool:
+        """Whether the server may be at work on it."""
+        return not self.told.ended or not self.is_settled
+
+    def snapshot(self) -> Goal:
+        """Return it as it is now."""
+        until_s = self._ended_s if self._ended_s is not None else time.monotonic()
+        return replace(self.told, elapsed_s=until_s - self._began_s)
+
+    def cancel(self) -> None:
+        """Have it cancelled: at once, or as soon as it has been accepted."""
+        if self._result is not None or self._accepted is None:
+            self._wants_cancel = True
+
+    def hear(self, heard: Heard) -> None:
+        """Take in what has come."""
+        if self._request in heard.accepted and self._accepted is None:
+            self._answered(accepted=heard.accepted[self._request])
+        news = heard.feedback.get(self._id)
+        if news and not self.told.ended:
+            count = self.told.feedbacks + len(news)
+            self.told = replace(self.told, feedback=to_tree(news[-1]), feedbacks=count)
+        if self._id in heard.status:
+            if self._request is not None and self._accepted is None:
+                # The answer itself is lost where the server has not found this client yet.
+                self._answered(accepted=True)
+            self._status(STATUS.get(heard.status[self._id]))
+        if self._cancel in heard.cancelled:
+            self._cancel_answered(heard.cancelled[self._cancel])
+        if self._result in heard.results:
+            self._take_result(heard.results[self._result])
+
+    def act(self) -> None:
+        """Send what is to be sent, and give up what has no answer."""
+        now_s = time.monotonic()
+        if self._request is None:
+            self._send(now_s)
+        elif self._accepted is None:
+            if not self.told.ended and now_s - self._request_s >= ANSWER_WITHIN_S:
+                self._wants_cancel = True
+                self._end(
+                    GoalStatus.FAILED,
+                    say("no answer within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
+                )
+        else:
+            self._ask_to_cancel(now_s)
+            self._look_after_server(now_s)
+
+    def fail(self, error: str) -> None:
+        """End it: Deck cannot go on with it."""
+        self._result = self._cancel = None
+        self._end(GoalStatus.FAILED, error)
+
+    def cancel_blindly(self) -> None:
+        """Ask for it to be cancelled, though the server has not said that it knows it."""
+        if self._request is not None and self._accepted is None:
+            self.line.cancel(self._id)
+
+    def _send(self, now_s: float) -> None:
+        if self.told.ended:
+            return
+        if self._wants_cancel:
+            self._end(GoalStatus.CANCELED, say("it was cancelled before it was sent"))
+        elif self.line.is_ready:
+            self._request = self.line.send(self._id, self._message.dated())
+            self._request_s = now_s
+        elif now_s - self._began_s >= ANSWER_WITHIN_S:
+            self._end(
+                GoalStatus.FAILED,
+                say("nobody serves it within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
+            )
+
+    def _answered(self, *, accepted: bool) -> None:
+        self._accepted = accepted
+        if not accepted:
+            if not self.told.ended:
+                self._end(GoalStatus.REJECTED, say("the server rejects it"))
+            return
+        self._servers = self.line.servers()
+        self._servers_seen_s = time.monotonic()
+        self._result = self.line.ask_result(self._id)
+        if not self.told.ended:
+            self.told = replace(self.told, status=GoalStatus.ACCEPTED)
+        self._ask_to_cancel(time.monotonic())
+
+    def _status(self, status: GoalStatus | None) -> None:
+        if status in ENDS:
+            # The result says so too, and more.
+            self._over_s = self._over_s or time.monotonic()
+        elif status is not None and not self.told.ended and self._accepted:
+            self.told = replace(self.told, status=status)
+
+    def _ask_to_cancel(self, now_s: float) -> None:
+        if self._cancel is not None and now_s - self._cancel_s >= ANSWER_WITHIN_S:
+            self._cancel = None
+            word = say(NO_WORD_OF_CANCEL, seconds=f"{ANSWER_WITHIN_S:g}")
+            self.told = replace(self.told, error=word) if not self.told.ended else self.told
+        if self._wants_cancel and self._accepted:
+            self._wants_cancel = False
+            self._cancel = self.line.cancel(self._id)
+            self._cancel_s = now_s
+
+    def _cancel_answered(self, agreed: bool) -> None:
+        self._cancel = None
+        if not agreed and not self.told.ended:
+            self.told = replace(self.told, error=say(REFUSED))
+
+    def _take_result(self, response: Any) -> None:  # noqa: ANN401 - generated
+        self._result = self._cancel = None
+        self._wants_cancel = False
+        status = STATUS.get(response.status)
+        if status not in ENDS:
+            self._end(GoalStatus.FAILED, say("the server does not know it"))
+            return
+        result = to_tree(response.result)
+        self._end(status, _reason(result) if status == GoalStatus.ABORTED else "")
+        self.told = replace(self.told, result=result)
+
+    def _look_after_server(self, now_s: float) -> None:
+        if self.told.ended:
+            return
+        servers = self.line.servers()
+        self._servers = self._servers or servers
+        if self._servers & servers:
+            self._servers_seen_s = now_s
+        elif now_s - self._servers_seen_s >= GONE_AFTER_S:
+            self._cancel = None
+            self._end(GoalStatus.FAILED, say(LOST))
+        if self._over_s is not None and now_s - self._over_s >= ANSWER_WITHIN_S:
+            self._end(GoalStatus.FAILED, say("it has ended, and its result does not come"))
+
+    def _end(self, status: GoalStatus, error: str) -> None:
+        self._ended_s = time.monotonic()
+        self.told = replace(self.told, status=status, error=error)
+
+
+def _reason(result: dict[str, Any]) -> str:
+    """Return what the server says of an aborted goal: the texts of its result."""
+    texts = [value.strip() for value in result.values() if isinstance(value, str)]
+    return "; ".join(text for text in texts if text) or say("the server has aborted it")

@@ -1,0 +1,163 @@
+"""Deck's own goals: any number of them at once, each watched to its end, none waited for."""
+
+from __future__ import annotations
+
+import itertools
+import time
+import uuid
+from typing import TYPE_CHECKING
+
+from graph.calls.goal_life import GoalLife
+from graph.calls.goal_line import ActionLine
+from graph.data import Goal, GoalStatus
+from graph.messages.dated import draft
+from graph.messages.types import UnknownTypeError
+from graph.messages.values import to_tree
+from graph.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from concurrent.futures import Future
+
+    from rclpy.node import Node
+
+    from graph.data import ActionRow, Value
+
+LEAVE_WITHIN_S = 1.5
+"""How long an observer that is stopped waits for servers to agree to cancel."""
+LOOK_S = 0.01
+
+
+class GoalError(Exception):
+    """The goal cannot be sent; str() says why, `words` so that it can be translated."""
+
+    def __init__(self, words: str) -> None:
+        """Say why, as `graph.words.say` makes it."""
+        super().__init__(words)
+        self.words = words
+
+
+class Goals:
+    """All goals that were sent, until they are forgotten."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._numbers = itertools.count(1)
+        self._lives: dict[int, GoalLife] = {}
+        self._lines: dict[tuple[str, str], ActionLine] = {}
+        self._sent: set[bytes] = set()
+        """Ids of all, those that are forgotten too."""
+
+    @property
+    def under_way(self) -> bool:
+        """Whether any goal has not ended."""
+        return any(not life.told.ended for life in self._lives.values())
+
+    def send(
+        self,
+        action: str,
+        type_name: str,
+        goal: Mapping[str, Value],
+        known: ActionRow | None,
+        future: Future[int],
+    ) -> None:
+        """Send a goal as soon as a server is there; the future tells its number at once.
+
+        `known` is what the graph says of the action. Raises GoalError, UnknownTypeError or
+        FieldError.
+        """
+        if known and known.servers and type_name not in known.type_names:
+            types = ", ".join(known.type_names)
+            raise GoalError(
+                say("{name} is a {types}, not a {type}", name=action, types=types, type=type_name)
+            )
+        line = self._line(action, type_name)
+        try:
+            message = draft(line.type.Goal, goal)
+        except Exception:
+            self._close_lines()
+            raise
+        number, goal_id = next(self._numbers), uuid.uuid4()
+        fields = to_tree(message.dated())
+        told = Goal(number, action, type_name, GoalStatus.SENDING, fields, goal_id=goal_id.hex)
+        self._lives[number] = GoalLife(told, goal_id.bytes, message, line)
+        self._sent.add(goal_id.bytes)
+        future.set_result(number)
+
+    def has_sent(self, goal_id: bytes) -> bool:
+        """Whether this goal is one of Deck's own."""
+        return goal_id in self._sent
+
+    def cancel(self, number: int) -> None:
+        """Have a goal cancelled; one that has ended, or is not known, is left as it is."""
+        if number in self._lives:
+            self._lives[number].cancel()
+
+    def forget(self, number: int) -> None:
+        """Tell no more of a goal; one that has not ended is cancelled."""
+        life = self._lives.get(number)
+        if life is not None:
+            life.is_forgotten = True
+            if not life.told.ended:
+                life.cancel()
+
+    def step(self) -> bool:
+        """Take what has come, send what is due; tell whether an answer is due any moment."""
+        if not self._lives:
+            return False
+        for line in list(self._lines.values()):
+            _go_on(line, [life for life in self._lives.values() if life.line is line])
+        for number, life in list(self._lives.items()):
+            if life.is_forgotten and life.is_settled:
+                del self._lives[number]
+        self._close_lines()
+        return any(life.is_urgent for life in self._lives.values())
+
+    def rows(self) -> tuple[Goal, ...]:
+        """Return all goals that are not forgotten, oldest first."""
+        return tuple(life.snapshot() for life in self._lives.values() if not life.is_forgotten)
+
+    def close(self) -> None:
+        """Have all goals cancelled, within bounds: a robot must not drive on for nobody."""
+        for life in self._lives.values():
+            if life.may_drive:
+                life.cancel()
+        until_s = time.monotonic() + LEAVE_WITHIN_S
+        while self.step() and time.monotonic() < until_s:
+            time.sleep(LOOK_S)
+        for life in self._lives.values():
+            life.cancel_blindly()
+        self._lives.clear()
+        self._close_lines()
+
+    def _line(self, action: str, type_name: str) -> ActionLine:
+        key = (action, type_name)
+        if key not in self._lines:
+            try:
+                self._lines[key] = ActionLine(self._node, action, type_name)
+            except UnknownTypeError:
+                raise
+            except Exception as error:
+                words = say("{name} cannot be sent a goal: {error}", name=action, error=str(error))
+                raise GoalError(words) from error
+        return self._lines[key]
+
+    def _close_lines(self) -> None:
+        used = {id(life.line) for life in self._lives.values()}
+        for key, line in list(self._lines.items()):
+            if id(line) not in used:
+                line.close()
+                del self._lines[key]
+
+
+def _go_on(line: ActionLine, lives: list[GoalLife]) -> None:
+    going = lives
+    try:
+        heard = line.take()
+        for life in lives:
+            going = [life]
+            life.hear(heard)
+            life.act()
+    except Exception as error:  # noqa: BLE001 - one odd server must not end what else is under way
+        for life in going:
+            life.fail(str(error))

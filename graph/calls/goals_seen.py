@@ -1,0 +1,233 @@
+"""Goals that others have sent: what every server of an action tells everybody, and their end.
+
+A server publishes the state of all its goals, latched, and their feedback; whoever sent a goal
+and whoever looks on hear the same. So Deck needs no client until it is told to cancel one.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from graph.calls.goal_cancel import Cancelling
+from graph.calls.goal_life import LOST, STATUS
+from graph.calls.goal_line import FEEDBACKS, Servers, status_topic
+from graph.data import GoalStatus, SeenGoal
+from graph.messages.types import UnknownTypeError, load_action
+from graph.messages.values import to_tree
+from graph.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rclpy.node import Node
+    from rclpy.subscription import Subscription
+
+    from graph.data import ActionRow
+
+logger = logging.getLogger(__name__)
+
+LONGEST_S = 24 * 3600.0
+"""A goal that seems to be older than this was dated by another clock, as that of a simulation."""
+NANOSECONDS = 1e-9
+
+
+@dataclass
+class _Seen:
+    """One goal of another."""
+
+    told: SeenGoal
+    accepted_s: float
+    """Unix time by its server's clock."""
+    ended_s: float | None = None
+    """When it was seen to end; None too if it had ended before anybody looked."""
+
+    def snapshot(self, error: str) -> SeenGoal:
+        """Return it as it is now."""
+        now_s = None if self.told.ended else time.time()
+        age_s = (self.ended_s or now_s or math.inf) - self.accepted_s
+        sane_s = age_s if 0 <= age_s <= LONGEST_S else None
+        return replace(self.told, age_s=sane_s, error=error or self.told.error)
+
+
+class SeenAction:
+    """What is heard of one action."""
+
+    def __init__(self, node: Node, action: str, type_name: str) -> None:
+        """Begin to listen. Raises what rclpy raises for a name that is none."""
+        from action_msgs.msg import GoalStatusArray
+        from rclpy.qos import QoSProfile, qos_profile_action_status_default
+
+        self.action = action
+        self.type_name = type_name
+        self._node = node
+        self._servers = Servers(node, action)
+        self._since_s = time.time()
+        self._before: frozenset[bytes] = frozenset()
+        self._goals: dict[bytes, _Seen] = {}
+        self._status = _subscribe(
+            node, GoalStatusArray, status_topic(action), qos_profile_action_status_default
+        )
+        self._feedback: Subscription | None = None
+        try:
+            kind: Any = load_action(type_name)
+        except UnknownTypeError:
+            # What its feedback is made of nobody knows here; its status is the same everywhere.
+            return
+        self._feedback = _subscribe(
+            node,
+            kind.Impl.FeedbackMessage,
+            f"{action}/_action/feedback",
+            QoSProfile(depth=FEEDBACKS),
+        )
+
+    def take(self) -> None:
+        """Take what has come."""
+        for message in _taken(self._status):
+            self._hear_status(message.status_list)
+        for message in _taken(self._feedback) if self._feedback else ():
+            seen = self._goals.get(bytes(message.goal_id.uuid))
+            if seen is not None:
+                count = seen.told.feedbacks + 1
+                feedback = to_tree(message.feedback)
+                seen.told = replace(seen.told, feedback=feedback, feedbacks=count)
+        servers = self._servers.now()
+        if self._before - servers:
+            self._lose()
+        self._before = servers
+
+    def rows(
+        self, is_own: Callable[[bytes], bool], errors: Mapping[str, str]
+    ) -> Iterable[SeenGoal]:
+        """Yield the goals of others, in the order in which they were accepted."""
+        for goal_id, seen in sorted(self._goals.items(), key=lambda item: item[1].accepted_s):
+            if not is_own(goal_id):
+                yield seen.snapshot(errors.get(seen.told.goal_id, ""))
+
+    def status_of(self, goal_id: str) -> GoalStatus | None:
+        """Return how this goal stands; None if nothing is known of it."""
+        seen = self._goals.get(bytes.fromhex(goal_id))
+        return None if seen is None else seen.told.status
+
+    def close(self) -> None:
+        """Listen no more."""
+        for subscription in filter(None, (self._status, self._feedback)):
+            self._node.destroy_subscription(subscription)
+
+    def _hear_status(self, listed: Iterable[Any]) -> None:
+        """What its server lists no more is forgotten here, too."""
+        before, self._goals = self._goals, {}
+        for each in listed:
+            status = STATUS.get(each.status)
+            goal_id = bytes(each.goal_info.goal_id.uuid)
+            if status is None:
+                continue
+            stamp = each.goal_info.stamp
+            seen = before.get(goal_id) or _Seen(
+                SeenGoal(self.action, self.type_name, goal_id.hex(), status),
+                stamp.sec + stamp.nanosec * NANOSECONDS,
+            )
+            self._goals[goal_id] = seen
+            self._end(seen, status)
+
+    def _lose(self) -> None:
+        for seen in self._goals.values():
+            if not seen.told.ended:
+                self._end(seen, GoalStatus.FAILED)
+                seen.told = replace(seen.told, error=say(LOST))
+
+    def _end(self, seen: _Seen, status: GoalStatus) -> None:
+        # A goal of a moment may be heard of only when it has ended.
+        goes_on = not seen.told.ended or seen.accepted_s >= self._since_s
+        seen.told = replace(seen.told, status=status)
+        if seen.told.ended and seen.ended_s is None and goes_on:
+            seen.ended_s = time.time()
+
+
+class SeenGoals:
+    """The actions that are looked at."""
+
+    def __init__(self, node: Node, is_own: Callable[[bytes], bool]) -> None:
+        """`is_own` tells of an id whether Deck itself has sent that goal."""
+        self._node = node
+        self._is_own = is_own
+        self._actions: dict[str, SeenAction] = {}
+        self._cancelling: dict[str, Cancelling] = {}
+        self._errors: dict[str, str] = {}
+        """Id to why that goal was not cancelled."""
+
+    def tune(self, wanted: frozenset[str], known: Iterable[ActionRow]) -> None:
+        """Listen to exactly the actions that are wanted and known."""
+        types = {row.name: row.type_names[0] for row in known if row.name in wanted}
+        for name, action in list(self._actions.items()):
+            if name not in wanted or types.get(name, action.type_name) != action.type_name:
+                self._actions.pop(name).close()
+        for name, type_name in types.items():
+            if name not in self._actions:
+                try:
+                    self._actions[name] = SeenAction(self._node, name, type_name)
+                except Exception:
+                    # A name that only others allow; the rest of the graph is told all the same.
+                    logger.exception("the goals of %s cannot be seen", name)
+
+    def step(self) -> bool:
+        """Take what has come; tell whether the answer to a request to cancel is due."""
+        for action in self._actions.values():
+            action.take()
+        for goal_id, cancelling in list(self._cancelling.items()):
+            action_of = self._actions.get(cancelling.action)
+            error = cancelling.step(None if action_of is None else action_of.status_of(goal_id))
+            if error is not None:
+                self._errors[goal_id] = error
+                self._cancelling.pop(goal_id).close()
+        return bool(self._cancelling)
+
+    def rows(self) -> tuple[SeenGoal, ...]:
+        """Return the goals of others."""
+        return tuple(
+            row
+            for _name, action in sorted(self._actions.items())
+            for row in action.rows(self._is_own, self._errors)
+        )
+
+    def cancel(self, action: str, goal_id: str) -> None:
+        """Ask for a goal that has not ended to be cancelled, if its action is looked at."""
+        seen = self._actions.get(action)
+        status = None if seen is None else seen.status_of(goal_id)
+        if seen is None or status is None or status.ended or goal_id in self._cancelling:
+            return
+        self._errors.pop(goal_id, None)
+        try:
+            self._cancelling[goal_id] = Cancelling(self._node, action, seen.type_name, goal_id)
+        except Exception as error:  # noqa: BLE001 - an unknown type, or what rclpy raises
+            self._errors[goal_id] = say("it cannot be cancelled: {error}", error=str(error))
+
+    def close(self) -> None:
+        """Leave the graph."""
+        for action in self._actions.values():
+            action.close()
+        for cancelling in self._cancelling.values():
+            cancelling.close()
+        self._actions.clear()
+        self._cancelling.clear()
+
+
+def _subscribe(node: Node, kind: Any, topic: str, qos: Any) -> Subscription:  # noqa: ANN401
+    return node.create_subscription(kind, topic, _never_called, qos)
+
+
+def _taken(subscription: Subscription) -> Iterable[Any]:
+    """Yield what lies in the queue, as it was when this began at most."""
+    with subscription.handle:
+        for _ in range(2 * FEEDBACKS):
+            taken = subscription.handle.take_message(subscription.msg_type, False)
+            if taken is None:
+                return
+            yield taken[0]
+
+
+def _never_called(message: Any) -> None:  # noqa: ANN401
+    """Stand in for the callback that rclpy insists on; no executor ever spins the node."""

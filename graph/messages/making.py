@@ -1,0 +1,230 @@
+"""Trees of plain values, as a person types them, into messages; what does not fit is named."""
+
+from __future__ import annotations
+
+import array
+import math
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from graph.messages.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
+from graph.messages.types import load_message
+from graph.messages.values import fields_of
+from graph.words import no_number, say
+
+if TYPE_CHECKING:
+    from graph.data import Value
+
+SHOWN = 40
+"""Characters of a wrong value that an error repeats."""
+ROUNDED = 1 + 2**-26
+"""The greatest float32 in its shortest form, 3.4028235e+38, is a little more than it is."""
+
+
+class FieldError(ValueError):
+    """A value does not fit its field; str() is `field: what was expected, and what was got`."""
+
+    def __init__(self, field: str, message: str) -> None:
+        """Say what is wrong with the field of this path: `header.stamp.sec`, `points[2].x`."""
+        super().__init__(f"{field}: {message}" if field else message)
+        self.field = field
+        self.message = message
+        """Made by `graph.words.say`, so that it can be translated."""
+        self.line: int | None = None
+        """Where it stands in a text, counted from 1, as far as there is one. So with the next."""
+        self.column: int | None = None
+
+
+class NoSuchFieldError(FieldError):
+    """There is no field of this name."""
+
+
+def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> Any:  # noqa: ANN401
+    """Return a message of the class with these fields, the others at their defaults.
+
+    Takes what `to_tree` returns, and what YAML or JSON give: lists for arrays, integers for
+    floats, a text for the UTF-8 bytes of it in an array of bytes. Raises FieldError.
+    """
+    if not isinstance(tree, Mapping):
+        raise FieldError(field, say("expected fields by name, got {value}", value=_shown(tree)))
+    fields = dict(fields_of(cls))
+    message = cls()
+    before: tuple[str, object] = ("", None)
+    for name, value in tree.items():
+        path = f"{field}.{name}" if field else str(name)
+        if name not in fields:
+            _check_comma(before, name, value)
+            raise NoSuchFieldError(path, no_such_field(str(name), list(fields)))
+        setattr(message, name, _made(parse(fields[name]), value, path))
+        before = path, value
+    return message
+
+
+def _check_comma(before: tuple[str, object], name: object, value: object) -> None:
+    """Of `{x: 0,5}`, which YAML takes for `x: 0` and a field `5`, say what is meant."""
+    path, whole = before
+    if value is None and type(whole) is int and str(name).isdigit():
+        raise FieldError(path, no_number(f"{whole},{name}", ""))
+
+
+def no_such_field(name: str, names: list[str]) -> str:
+    """Say that there is none of this name among these, or which one may be meant."""
+    near = get_close_matches(name, names, n=1)
+    if near:
+        return say("no such field; did you mean {name}?", name=near[0])
+    if not names:
+        return say("it has no fields at all")
+    return say("no such field; there is {names}", names=", ".join(names))
+
+
+def _made(kind: FieldType, value: Value, path: str) -> object:
+    if kind.is_many:
+        return _many(kind, value, path)
+    if kind.element == "octet":
+        return bytes([_octet(value, path)])
+    return _one(kind, value, path)
+
+
+def _one(kind: FieldType, value: Value, path: str) -> object:
+    if kind.is_message:
+        return to_message(load_message(kind.message_type), value, path)  # type: ignore[arg-type]
+    if kind.element in STRINGS:
+        return _text(kind, value, path)
+    if kind.element == "boolean":
+        return _boolean(value, path)
+    if kind.element in FLOATS:
+        return _float(kind.element, value, path)
+    return _integer(kind.element, value, path)
+
+
+def _many(kind: FieldType, value: Value, path: str) -> object:
+    if isinstance(value, str) and kind.element in BYTES:
+        value = _encoded(value, path)
+    if isinstance(value, (bytes, bytearray, memoryview)) and kind.element in BYTES:
+        _check_length(kind, len(value), path)
+        return _packed(kind, value)
+    if not hasattr(value, "__len__") or isinstance(value, (str, bytes, Mapping)):
+        raise FieldError(path, say("expected a list, got {value}", value=_shown(value)))
+    elements: Sequence[Value] = value  # type: ignore[assignment]
+    _check_length(kind, len(elements), path)
+    if kind.is_number and _fits_as_it_is(kind, elements):
+        return elements
+    made = [_one(kind, _plain(each), f"{path}[{i}]") for i, each in enumerate(elements)]
+    return _packed(kind, bytes(made)) if kind.element == "octet" else made  # type: ignore[arg-type]
+
+
+def _fits_as_it_is(kind: FieldType, elements: object) -> bool:
+    """Tell whether this is the very array that rclpy itself would hold, so no look is needed."""
+    dtype = getattr(elements, "dtype", None)
+    return kind.size is not None and dtype is not None and dtype.name == _DTYPES.get(kind.element)
+
+
+_DTYPES = {"float": "float32", "double": "float64"} | {
+    name: name for name in INTEGERS if name not in {"octet", "char"}
+}
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401 - a number of numpy's, or a value
+    return value.item() if hasattr(value, "item") else value
+
+
+def _packed(kind: FieldType, value: bytes | bytearray | memoryview) -> object:
+    if kind.element == "octet":
+        return [bytes([each]) for each in value]
+    return array.array("B", value) if kind.size is None else list(value)
+
+
+def _check_length(kind: FieldType, length: int, path: str) -> None:
+    if kind.size is not None and length != kind.size:
+        raise FieldError(
+            path, say("expected {n} elements, got {length}", n=kind.size, length=length)
+        )
+    if kind.limit is not None and length > kind.limit:
+        raise FieldError(
+            path, say("expected at most {n} elements, got {length}", n=kind.limit, length=length)
+        )
+
+
+def _text(kind: FieldType, value: Value, path: str) -> str:
+    if isinstance(value, (bool, int, float)):
+        words = say("expected text, got {value}: put it in quotes", value=_shown(value))
+        raise FieldError(path, words)
+    if not isinstance(value, str):
+        raise FieldError(path, say("expected text, got {value}", value=_shown(value)))
+    if kind.text_limit is not None and len(value) > kind.text_limit:
+        raise FieldError(
+            path,
+            say(
+                "expected at most {n} characters, got {length}",
+                n=kind.text_limit,
+                length=len(value),
+            ),
+        )
+    if "\0" in value:
+        raise FieldError(path, say("a ROS string cannot hold the character NUL"))
+    _encoded(value, path)
+    return value
+
+
+def _encoded(value: str, path: str) -> bytes:
+    try:
+        return value.encode()
+    except UnicodeEncodeError as error:
+        raise FieldError(path, say("{value} is not valid Unicode", value=_shown(value))) from error
+
+
+def _boolean(value: Value, path: str) -> bool:
+    if not isinstance(value, bool):
+        raise FieldError(path, say("expected true or false, got {value}", value=_shown(value)))
+    return value
+
+
+def _float(element: str, value: Value, path: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise FieldError(path, no_number(value, _shown(value)))
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    greatest = FLOATS[element]
+    if (isinstance(value, int) and math.isinf(number)) or (
+        math.isfinite(number) and 0 < greatest * ROUNDED < abs(number)
+    ):
+        raise FieldError(
+            path, say("{value} is too large for a {type}", value=_shown(value), type=element)
+        )
+    is_rounded = math.isfinite(number) and 0 < greatest < abs(number)
+    return math.copysign(greatest, number) if is_rounded else number
+
+
+def _integer(element: str, value: Value, path: str) -> int:
+    least, greatest = INTEGERS[element]
+    whole = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
+    if isinstance(value, bool) or not whole:
+        raise FieldError(path, say("expected a whole number, got {value}", value=_shown(value)))
+    number = int(value)  # type: ignore[arg-type]
+    if not least <= number <= greatest:
+        raise FieldError(
+            path,
+            say(
+                "expected {least} to {greatest}, got {value}",
+                least=least,
+                greatest=greatest,
+                value=_shown(value),
+            ),
+        )
+    return number
+
+
+def _octet(value: Value, path: str) -> int:
+    if isinstance(value, bytes) and len(value) == 1:
+        return value[0]
+    return _integer("octet", value, path)
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return say("nothing")
+    text = repr(value)
+    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"

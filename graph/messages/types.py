@@ -1,0 +1,147 @@
+"""Message and service types by their names, of whatever is installed."""
+
+from __future__ import annotations
+
+import importlib
+from difflib import get_close_matches
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from graph.messages.packages import how_to_install, install_names
+from graph.words import Words, say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+FEEDBACK = "_FeedbackMessage"
+"""How the type of the messages on an action's feedback topic ends."""
+EVENT = "_Event"
+"""How the type of the messages ends that tell of a service's calls, where it tells of them."""
+NAME_PARTS = 3
+"""`std_msgs/msg/Float32`."""
+
+
+class UnknownTypeError(Exception):
+    """No such type is installed here; str() says what to do about it."""
+
+    def __init__(
+        self, type_name: str, package: str, reason: str, install: Mapping[str, str] | None = None
+    ) -> None:
+        """Say why `type_name` cannot be had; `package` is where it should have come from.
+
+        `install` has the names that would bring it, by `pip`, `apt` and `pixi`.
+        """
+        super().__init__(reason)
+        self.install = install or {}
+        self.type_name = type_name
+        self.package = package
+        self.reason = reason
+
+
+@lru_cache(maxsize=512)
+def load_message(type_name: str) -> type[Any]:
+    """Return the class of a message such as `std_msgs/msg/Float32`.
+
+    So it does for the feedback of an action, `package/action/Name_FeedbackMessage`, and for what
+    a service tells of its calls, `package/srv/Name_Event`. Raises UnknownTypeError, also when the
+    package is there and its import fails.
+    """
+    found: type[Any]
+    if "/action/" in type_name and type_name.endswith(FEEDBACK):
+        found = load_action(type_name.removesuffix(FEEDBACK)).Impl.FeedbackMessage
+    elif "/srv/" in type_name and type_name.endswith(EVENT):
+        found = load_service(type_name.removesuffix(EVENT)).Event
+    else:
+        return _load(type_name, "msg")
+    _import_type_support(found)
+    return found
+
+
+@lru_cache(maxsize=128)
+def load_service(type_name: str) -> type[Any]:
+    """Return the class of a service such as `example_interfaces/srv/AddTwoInts`.
+
+    It has the classes Request and Response. Raises UnknownTypeError.
+    """
+    return _load(type_name, "srv")
+
+
+@lru_cache(maxsize=128)
+def load_action(type_name: str) -> type[Any]:
+    """Return the class of an action such as `deck_interfaces/action/DriveToPoint`.
+
+    It has the classes Goal, Result and Feedback. Raises UnknownTypeError.
+    """
+    return _load(type_name, "action")
+
+
+def _load(type_name: str, kind: str) -> type[Any]:
+    parts = type_name.split("/")
+    if len(parts) != NAME_PARTS or parts[1] != kind or not all(p.isidentifier() for p in parts):
+        raise UnknownTypeError(
+            type_name,
+            parts[0],
+            say(
+                "'{type}' is not the name of a type; write it as package/{kind}/Name",
+                type=type_name,
+                kind=kind,
+            ),
+        )
+    package, _, name = parts
+    try:
+        importlib.import_module(package)
+        module = importlib.import_module(f"{package}.{kind}")
+        found: type[Any] | None = getattr(module, name, None)
+        if found is not None:
+            _import_type_support(found)
+    except ModuleNotFoundError as error:
+        if error.name == package:
+            words, names = how_to_install(package), install_names(package)
+            raise UnknownTypeError(type_name, package, words, names) from error
+        raise UnknownTypeError(type_name, package, _missing(error, package, kind)) from error
+    except Exception as error:
+        # A broken package may raise anything, and must not take the observer along.
+        reason = _broken(package, error)
+        raise UnknownTypeError(type_name, package, reason) from error
+    if found is None:
+        raise UnknownTypeError(type_name, package, _no_such_name(module, package, kind, name))
+    return found
+
+
+def _import_type_support(found: Any) -> None:  # noqa: ANN401 - generated, without a base class
+    """Load the C library behind a class now, where its failure can be named."""
+    if getattr(found, "_TYPE_SUPPORT", None) is None:
+        found.__import_type_support__()
+
+
+def _missing(error: ModuleNotFoundError, package: str, kind: str) -> Words:
+    if error.name == f"{package}.{kind}":
+        return {
+            "msg": say("package {package} is installed and has no messages", package=package),
+            "srv": say("package {package} is installed and has no services", package=package),
+            "action": say("package {package} is installed and has no actions", package=package),
+        }[kind]
+    return _broken(package, error)
+
+
+def _broken(package: str, error: Exception) -> Words:
+    return say(
+        "package {package} is installed and cannot be used: {error}", package=package, error=error
+    )
+
+
+def _no_such_name(module: object, package: str, kind: str, name: str) -> Words:
+    wanted = f"{kind}/{name}"
+    near = get_close_matches(name, [n for n in dir(module) if n[0].isupper()], n=1)
+    if not near:
+        return say(
+            "package {package} is installed in a version without {name}",
+            package=package,
+            name=wanted,
+        )
+    return say(
+        "package {package} is installed in a version without {name}; did you mean {near}?",
+        package=package,
+        name=wanted,
+        near=f"{package}/{kind}/{near[0]}",
+    )

@@ -1,0 +1,126 @@
+"""A message to be filled in as YAML: every field at its default, its type in a comment."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from graph.messages.dated import draft, with_words
+from graph.messages.fields import parse, ros_name
+from graph.messages.making import FieldError, NoSuchFieldError
+from graph.messages.types import (
+    NAME_PARTS,
+    UnknownTypeError,
+    load_action,
+    load_message,
+    load_service,
+)
+from graph.messages.values import fields_of, to_tree
+from graph.messages.yaml_reading import read
+from graph.messages.yaml_text import to_yaml
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from graph.data import Value
+
+
+MOST_NAMES = 6
+"""Fields of an element that are named where a list of messages is empty."""
+
+
+def form_class(type_name: str) -> type[Any]:
+    """Return the class of a message, of a service's request or of an action's goal.
+
+    Raises UnknownTypeError.
+    """
+    parts = type_name.split("/")
+    if len(parts) != NAME_PARTS or parts[1] not in {"msg", "srv", "action"}:
+        reason = f"'{type_name}' is not the name of a type; write it as package/msg/Name"
+        raise UnknownTypeError(type_name, parts[0], reason)
+    found: type[Any]
+    if parts[1] == "srv":
+        found = load_service(type_name).Request
+    elif parts[1] == "action":
+        found = load_action(type_name).Goal
+    else:
+        found = load_message(type_name)
+    return found
+
+
+@lru_cache(maxsize=128)
+def prefilled(type_name: str) -> str:
+    """Return YAML with every field at its default, and its type in a comment; `{}` for none.
+
+    The stamp of a header is the word `now`, the time of sending.
+
+    For `pkg/msg/X`, for the request of `pkg/srv/X`, for the goal of `pkg/action/X`. Raises
+    UnknownTypeError.
+    """
+    return filled(type_name, to_tree(form_class(type_name)()))
+
+
+def filled(type_name: str, tree: Mapping[str, Value], most: int | None = None) -> str:
+    """Return YAML of a whole message to be sent, with the type of each field in a comment.
+
+    The stamp of a header is the word `now`: the one it had is no longer true. Arrays are cut at
+    `most` elements; a comment tells. Raises UnknownTypeError.
+    """
+    cls = form_class(type_name)
+    tree = with_words(cls, tree)
+    remarks = dict(_remarks(cls, tree, "", most))
+    return to_yaml(tree, most, lambda path: remarks.get(path, ""))
+
+
+def check(type_name: str, text: str) -> Mapping[str, Value]:
+    """Return the fields that were filled in; those left out are at their defaults.
+
+    Raises YamlError, FieldError with the field's line and column, or UnknownTypeError.
+    """
+    cls = form_class(type_name)
+    root = read(text)
+    tree: Mapping[str, Value] = root.plain()
+    try:
+        draft(cls, tree)
+    except FieldError as error:
+        node = root.find(error.field)
+        at_key = isinstance(error, NoSuchFieldError) or isinstance(node.value, (dict, list))
+        is_named = at_key and node.key_line > 0
+        error.line = node.key_line if is_named else node.line
+        error.column = node.key_column if is_named else node.column
+        raise
+    return tree
+
+
+def _remarks(
+    cls: type[Any],
+    tree: Any,  # noqa: ANN401 - a message's tree
+    prefix: str,
+    most: int | None,
+) -> Iterator[tuple[str, str]]:
+    """Yield paths and types of all that is no message in a message itself."""
+    for name, text in fields_of(cls):
+        kind = parse(text)
+        path = f"{prefix}{name}"
+        value = tree[name]
+        if kind.is_message and isinstance(value, str):
+            yield path, ros_name(text)
+        elif kind.is_message and len(value):
+            nested = load_message(kind.message_type)
+            parts = [("", value)]
+            if kind.is_many:
+                parts = [(f"[{index}]", each) for index, each in enumerate(value[:most])]
+                yield path, _many(text, nested)
+            for index, each in parts:
+                yield from _remarks(nested, each, f"{path}{index}.", most)
+        elif kind.is_message:
+            yield path, _many(text, load_message(kind.message_type))
+        else:
+            yield path, ros_name(text)
+
+
+def _many(text: str, element: type[Any]) -> str:
+    """Say what a list of messages holds: `geometry_msgs/Point32[] of {x, y, z}`."""
+    names = [name for name, _kind in fields_of(element)]
+    shown = ", ".join(names[:MOST_NAMES]) + (", …" if len(names) > MOST_NAMES else "")
+    return f"{ros_name(text)} of {{{shown}}}"

@@ -1,0 +1,137 @@
+"""How fast a topic is and how evenly it comes, from messages looked at a few times a second."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from graph.observer.timing import Arrival, Intervals, Spread
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+WINDOW_S = 4.0
+"""Long enough that the jitter of two stamps is below 0.5 % of it, short enough to follow."""
+FEW = 3
+"""Points that are kept whatever their age, so that a slow topic has a rate too."""
+QUIET_S = 3.0
+QUIET_PERIODS = 3.0
+
+
+@dataclass(frozen=True)
+class _Point:
+    """How many messages had come by the stamp of the newest one of a batch."""
+
+    stamp_s: float
+    messages: int
+    bytes: float
+
+
+class RateMeter:
+    """Rate, bandwidth, age, jitter and latency of one topic, from the stamps of the middleware.
+
+    A batch is what lay in the queue at one look. Only its newest stamp is kept: between two such
+    stamps the number of messages is exact, whenever the looks were.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.mean_size_bytes = 0.0
+        self.lost: int | None = None
+        """Messages that the middleware knows to be lost; None while it tells nothing."""
+        self._bytes = 0.0
+        self._points: deque[_Point] = deque()
+        self._sequence: int | None = None
+        self._intervals = Intervals()
+        self._delays = Spread()
+
+    def add(
+        self,
+        batch: list[Arrival],
+        *,
+        overflowed: bool = False,
+        one_publisher: bool = True,
+        lost: int = 0,
+    ) -> None:
+        """Take a batch in order of arrival.
+
+        `overflowed` says that the queue was full. With one publisher a gap in the sequence before
+        the batch was ours then, and its messages did come, save those `lost` on the way.
+        """
+        if not batch:
+            return
+        skipped = self._skipped(batch, lost) if overflowed and one_publisher else 0
+        size = sum(arrival.size_bytes for arrival in batch)
+        self.count += len(batch) + skipped
+        self._bytes += size * (1 + skipped / len(batch))
+        self.mean_size_bytes = size / len(batch)
+        self._sequence = batch[-1].sequence
+        stamp_s = batch[-1].stamp_s
+        if self._is_another_story(stamp_s):
+            self._points.clear()
+            self._intervals.clear()
+            self._delays.clear()
+        self._intervals.add(batch, overflowed=overflowed, numbered=one_publisher)
+        self._delays.add(stamp_s, [a.delay_s for a in batch if a.delay_s is not None])
+        self._points.append(_Point(stamp_s, self.count, self._bytes))
+        while len(self._points) > FEW and stamp_s - self._points[0].stamp_s > WINDOW_S:
+            self._points.popleft()
+
+    def _is_another_story(self, stamp_s: float) -> bool:
+        """Tell whether the clock was set back, or a topic with a known rate was quiet till now."""
+        if not self._points:
+            return False
+        return stamp_s < self._points[-1].stamp_s or (
+            len(self._points) > 1 and self.is_quiet(stamp_s)
+        )
+
+    def _skipped(self, batch: list[Arrival], lost: int) -> int:
+        first, last = batch[0].sequence, batch[-1].sequence
+        if self._sequence is None or first is None or last is None:
+            return 0
+        if first <= self._sequence or last <= self._sequence:
+            return 0
+        missing = last - self._sequence - len(batch)
+        return max(0, min(first - self._sequence - 1, missing - lost))
+
+    def hz(self, now_s: float) -> float | None:
+        """Messages a second; 0 when it has gone quiet, None before the second message."""
+        return self._rate(now_s, lambda point: point.messages)
+
+    def bytes_per_s(self, now_s: float) -> float | None:
+        """Bytes a second, by the same rule as `hz`."""
+        return self._rate(now_s, lambda point: point.bytes)
+
+    def age_s(self, now_s: float) -> float | None:
+        """Seconds since the newest message came, None if none did."""
+        return max(0.0, now_s - self._points[-1].stamp_s) if self._points else None
+
+    def jitter_s(self, now_s: float) -> float | None:
+        """Standard deviation of the time between messages; None while quiet or too few came."""
+        return None if self.is_quiet(now_s) else self._intervals.deviation_s
+
+    def latency_s(self, now_s: float) -> float | None:
+        """Mean of arrival less stamp; None while quiet, or without stamps of this clock."""
+        return None if self.is_quiet(now_s) else self._delays.mean_s
+
+    def is_quiet(self, now_s: float) -> bool:
+        """Tell whether nothing has come for longer than is usual for this topic."""
+        age_s = self.age_s(now_s)
+        return age_s is not None and age_s > self._patience_s()
+
+    def _rate(self, now_s: float, of: Callable[[_Point], float]) -> float | None:
+        if len(self._points) < 2:
+            return None
+        if self.is_quiet(now_s):
+            return 0.0
+        first, last = self._points[0], self._points[-1]
+        span_s = last.stamp_s - first.stamp_s
+        return (of(last) - of(first)) / span_s if span_s > 0 else None
+
+    def _patience_s(self) -> float:
+        if len(self._points) < 2:
+            return QUIET_S
+        first, last = self._points[0], self._points[-1]
+        period_s = (last.stamp_s - first.stamp_s) / (last.messages - first.messages)
+        return max(QUIET_S, QUIET_PERIODS * period_s)

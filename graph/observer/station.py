@@ -1,0 +1,158 @@
+"""All that the observer's thread owns: the node, the graph as last seen, the subscriptions."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from graph.calls.goals import Goals
+from graph.calls.goals_seen import SeenGoals
+from graph.calls.parameters import Parameters
+from graph.calls.services import Calls
+from graph.data import GraphUpdate
+from graph.observer.interest import Interest
+from graph.observer.taps import Taps
+from graph.publishing.dead_man_switch import Held
+from graph.publishing.outbox import Outbox
+from graph.publishing.publications import Publications
+from graph.scan.scan import Scan, Signature, is_complete, scan, signature
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from graph.data import ActionRow, NodeRow, Sample, ServiceRow
+    from graph.ros import Ros
+    from graph.scan.endpoints import TopicEnds
+
+LOOK_AT_GRAPH_S = 0.25
+PENDING_S = 0.01
+"""How often a call or a message under way is looked at."""
+RESCAN_S = 3.0
+"""A node that was replaced by its like between two looks is noticed after this long."""
+
+
+class Station:
+    """One open node at work; every method returns soon."""
+
+    def __init__(self, ros: Ros) -> None:
+        self.calls = Calls(ros.node)
+        self.outbox = Outbox(ros.node)
+        self.goals = Goals(ros.node)
+        self.seen_goals = SeenGoals(ros.node, self.goals.has_sent)
+        self.publications = Publications(ros.node)
+        self.held = Held(ros.node)
+        self.parameters = Parameters(self.calls, self._known_node, self._known_service)
+        self.breathe: Callable[[], object] = _nothing
+        """Called again and again by what takes its time, for what cannot wait."""
+        self._ros = ros
+        self._taps = Taps(ros.node)
+        self._scan = Scan()
+        self._signature: Signature | None = None
+        self._looked_s = 0.0
+        self._scanned_s = 0.0
+        self._tuned = (self._scan, Interest())
+        self._told: tuple[object, ...] = ()
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether only the graph itself is to be looked at."""
+        return not (self._taps.any_open or self.goals.under_way)
+
+    def ends(self, topic: str) -> TopicEnds | None:
+        """Return what is known of a topic now."""
+        self._look_at_graph()
+        return self._scan.topics.get(topic)
+
+    def service(self, name: str) -> ServiceRow | None:
+        """Return what is known of a service now."""
+        self._look_at_graph()
+        return self._known_service(name)
+
+    def action(self, name: str) -> ActionRow | None:
+        """Return what is known of an action now."""
+        self._look_at_graph()
+        return next((row for row in self._scan.actions if row.name == name), None)
+
+    def look(self, interest: Interest) -> GraphUpdate | None:
+        """Look at the graph and at the queues; return what is new, None if nothing is."""
+        if time.monotonic() - self._looked_s >= LOOK_AT_GRAPH_S:
+            self._look_at_graph()
+        tuned = (self._scan, interest)
+        if tuned != self._tuned or self._taps.need_tuning():
+            self._tuned = tuned
+            self._taps.tune(*tuned)
+            self.seen_goals.tune(interest.actions, self._scan.actions)
+        return self._update(self._taps.drain(self.breathe))
+
+    def step(self) -> float | None:
+        """Go on with what is under way; return when to go on with it, on the monotonic clock.
+
+        None if nothing needs it before the next look.
+        """
+        # What is held may have to rest, before all else; then what is due.
+        due_s = _sooner(self.held.step(), self.publications.step())
+        calling = self.calls.step()
+        # What has just been answered leads to the next question.
+        talking = self.parameters.step()
+        pursuing = self.goals.step()
+        canceling = self.seen_goals.step()
+        sending = self.outbox.step()
+        if not (calling or talking or pursuing or canceling or sending):
+            return due_s
+        return _sooner(due_s, time.monotonic() + PENDING_S)
+
+    def close(self, error: Exception) -> None:
+        """Have goals cancelled, let everything else that is under way fail, and leave the graph."""
+        try:
+            self.held.close()
+            self.publications.close()
+            self.goals.close()
+            self.seen_goals.close()
+        finally:
+            self.parameters.fail(error)
+            self.calls.fail(error)
+            self.outbox.fail(error)
+            self._taps.close()
+            self._ros.close()
+
+    def _known_service(self, name: str) -> ServiceRow | None:
+        return next((row for row in self._scan.services if row.name == name), None)
+
+    def _known_node(self, name: str) -> NodeRow | None:
+        return next((row for row in self._scan.nodes if row.name == name), None)
+
+    def _look_at_graph(self) -> None:
+        now_s = time.monotonic()
+        self._looked_s = now_s
+        found = signature(self._ros.node)
+        is_news = found != self._signature or not is_complete(self._scan)
+        if not is_news and now_s - self._scanned_s < RESCAN_S:
+            return
+        self._signature, self._scanned_s = found, now_s
+        seen = scan(self._ros.node, self._ros.name, self.breathe)
+        # Also if only the onlookers are others.
+        self.publications.tune(seen.topics)
+        if seen != self._scan:
+            self._scan = seen
+            self.held.tune(seen.topics)
+
+    def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
+        rows = self._taps.rows()
+        seen = self._scan
+        doing = (self.goals.rows(), self.seen_goals.rows(), self.publications.rows())
+        told = (rows, seen.nodes, seen.services, seen.actions, *doing)
+        if not samples and told == self._told:
+            return None
+        self._told = told
+        return GraphUpdate(
+            time.time(), rows, samples, seen.nodes, seen.services, seen.actions, *doing
+        )
+
+
+def _nothing() -> None:
+    """Breathe for nobody."""
+
+
+def _sooner(one_s: float | None, other_s: float | None) -> float | None:
+    times_s = [each_s for each_s in (one_s, other_s) if each_s is not None]
+    return min(times_s, default=None)

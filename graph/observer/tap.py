@@ -1,0 +1,195 @@
+"""One subscription, looked at a few times a second instead of woken for every message."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from graph.data import Sample
+from graph.messages.decoding import decoder
+from graph.messages.stamps import delay_reader
+from graph.messages.stand_in import stand_in
+from graph.messages.types import UnknownTypeError, load_message
+from graph.observer.losses import Losses
+from graph.observer.rates import RateMeter
+from graph.observer.timing import Arrival
+from graph.qos import Qos, profile
+from graph.words import say
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.subscription import Subscription
+
+DEEP = 200
+SHALLOW = 4
+"""A fragmented message takes a place while it is being put together, so 1 would starve."""
+QUEUE_BYTES = 4_000_000
+"""What may wait in one queue."""
+LARGE_TYPES = frozenset(
+    {
+        "sensor_msgs/msg/Image",
+        "sensor_msgs/msg/PointCloud2",
+        "nav_msgs/msg/OccupancyGrid",
+    }
+)
+FOLLOWED = 200
+"""Messages of one look that a follower gets; older ones of the same look are only counted."""
+NANOSECONDS = 1e-9
+
+
+class Tap:
+    """A subscription of Deck's with its rates; make it, drain it, close it."""
+
+    def __init__(
+        self,
+        node: Node,
+        topic: str,
+        type_name: str,
+        qos: Qos,
+        depth: int,
+        meter: RateMeter | None = None,
+    ) -> None:
+        """Subscribe; `meter` goes on where an earlier tap ended.
+
+        A type that is not installed is measured where the middleware lets us, and not decoded.
+        Raises UnknownTypeError, and what rclpy raises.
+        """
+        from rclpy.event_handler import SubscriptionEventCallbacks
+
+        self.topic = topic
+        self.type_name = type_name
+        self.qos = qos
+        self.depth = depth
+        self.meter = meter or RateMeter()
+        self.since_s = time.time()
+        self.broken = ""
+        """Why the newest message could not be decoded."""
+        self.unknown: UnknownTypeError | None
+        """Why none ever will be."""
+        self._cls, self.unknown = _class_for(type_name)
+        self._decode = decoder(type_name) if self.unknown is None else None
+        self._delay = delay_reader(self._cls) if self.unknown is None else None
+        self._node = node
+        self._last: tuple[bytes, float, float] | None = None
+        self._numbered = True
+        self._hears = False
+        """Whether a message has come since this subscription was made."""
+        self._subscription: Subscription = node.create_subscription(
+            self._cls,
+            topic,
+            _never_called,
+            profile(qos, depth),
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            raw=True,
+        )
+        self._losses = Losses(self._subscription)
+
+    def drain(self, *, one_publisher: bool, decode: int) -> tuple[Sample, ...]:
+        """Take all that lies in the queue, and return the newest `decode` messages as samples.
+
+        `one_publisher` says that the sequence numbers are of one writer.
+        """
+        batch, kept = self._take_all(decode)
+        lost = self._take_losses()
+        if not batch:
+            return ()
+        self._hears = True
+        # One less than the depth: see SHALLOW.
+        full = len(batch) >= self.depth - 1
+        self._numbered = batch[-1].sequence is not None
+        self.meter.add(batch, overflowed=full, one_publisher=one_publisher, lost=lost)
+        now_s = time.time()
+        return tuple(sample for one in kept if (sample := self._sample(*one, now_s)))
+
+    def newest(self) -> tuple[Sample, ...]:
+        """Return the newest message that ever came, for somebody who begins to look now."""
+        if self._last is None:
+            return ()
+        sample = self._sample(*self._last, time.time())
+        return (sample,) if sample else ()
+
+    def better_depth(self, *, one_publisher: bool) -> int:
+        """Return how deep the queue should be for messages of this size.
+
+        It may be shallow where a single publisher numbers its messages: the rate comes from the
+        numbers then, and only the newest message is of use.
+        """
+        size = self.meter.mean_size_bytes
+        if not size:
+            return self.depth
+        least = SHALLOW if one_publisher and self._numbered else 8 * SHALLOW
+        wanted = max(least, min(DEEP, int(QUEUE_BYTES / size)))
+        # Sizes vary: a new subscription for every small difference would cost more than it saves.
+        return wanted if not self.depth / 2 <= wanted <= self.depth * 2 else self.depth
+
+    def close(self) -> None:
+        """End the subscription."""
+        self._losses.close()
+        self._node.destroy_subscription(self._subscription)
+
+    def _take_all(self, decode: int) -> tuple[list[Arrival], deque[tuple[bytes, float, float]]]:
+        batch: list[Arrival] = []
+        kept: deque[tuple[bytes, float, float]] = deque(maxlen=decode)
+        handle = self._subscription.handle
+        with handle:
+            # A publisher faster than this loop must not hold it for ever.
+            for _ in range(2 * self.depth):
+                taken = handle.take_message(self._cls, True)
+                if taken is None:
+                    break
+                raw, info = taken
+                stamp_s = info["received_timestamp"] * NANOSECONDS or time.time()
+                delay_s = self._delay(raw, stamp_s) if self._delay else None
+                number = info["publication_sequence_number"]
+                batch.append(Arrival(stamp_s, len(raw), number, delay_s))
+                self._last = (raw, stamp_s, info["source_timestamp"] * NANOSECONDS)
+                kept.append(self._last)
+        return batch, kept
+
+    def _take_losses(self) -> int:
+        """Return how many messages were lost since the look before, and add them up."""
+        lost = self._losses.take()
+        if lost is None:
+            return 0
+        # A late joiner may be told of what left a latched publisher's memory before it came.
+        lost = lost if self._hears else 0
+        self.meter.lost = (self.meter.lost or 0) + lost
+        return lost
+
+    def _sample(self, raw: bytes, stamp_s: float, sent_s: float, now_s: float) -> Sample | None:
+        if self._decode is None:
+            return None
+        try:
+            value = self._decode(raw)
+        except Exception as error:  # noqa: BLE001
+            # Whatever a stranger publishes under this name must not end the observer.
+            self.broken = say(
+                "a message of {type} cannot be decoded: {reason}",
+                type=self.type_name,
+                reason=error,
+            )
+            return None
+        self.broken = ""
+        age_s = max(0.0, now_s - stamp_s)
+        return Sample(self.topic, self.type_name, now_s, age_s, len(raw), value, sent_s or None)
+
+
+def first_depth(type_name: str) -> int:
+    """Return the depth for a topic whose messages have not been seen yet."""
+    return SHALLOW if type_name in LARGE_TYPES else DEEP
+
+
+def _class_for(type_name: str) -> tuple[type[Any], UnknownTypeError | None]:
+    """Return what to subscribe with, and why its messages cannot be decoded if so."""
+    try:
+        return load_message(type_name), None
+    except UnknownTypeError as error:
+        cls = stand_in(type_name)
+        if cls is None:
+            raise
+        return cls, error
+
+
+def _never_called(message: Any) -> None:  # noqa: ANN401
+    """Stand in for the callback that rclpy insists on; no executor ever spins the node."""

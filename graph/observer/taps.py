@@ -1,0 +1,209 @@
+"""Which topics Deck is subscribed to, and the rows and samples that come of it."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from graph.data import Sample, TopicRow, Trouble
+from graph.messages.types import UnknownTypeError
+from graph.observer.interest import Interest
+from graph.observer.rates import QUIET_S
+from graph.observer.tap import FOLLOWED, Tap, first_depth
+from graph.observer.troubles import Finding, quiet, structural
+from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
+from graph.scan.endpoints import TopicEnds
+from graph.scan.scan import Scan
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.node import Node
+
+
+class Taps:
+    """All subscriptions of Deck's, kept in step with the graph and with what is wanted."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._taps: dict[str, Tap] = {}
+        self._refused: dict[tuple[str, str, Qos], UnknownTypeError] = {}
+        self._rows: dict[str, TopicRow] = {}
+        """What is known without a message, by topic."""
+        self._scan = Scan()
+        self._interest = Interest()
+        self._fresh: set[str] = set()
+        """Topics whose newest message is owed to somebody who has just begun to look."""
+
+    @property
+    def any_open(self) -> bool:
+        """Whether there is anything to drain."""
+        return bool(self._taps)
+
+    def tune(self, scan: Scan, interest: Interest) -> None:
+        """Open, reopen and close subscriptions, for this graph and this interest."""
+        self._fresh |= interest.watched - self._interest.watched
+        self._fresh |= {
+            topic
+            for topic in interest.followed - self._interest.followed
+            if topic in self._taps and self._taps[topic].qos.durability == TRANSIENT_LOCAL
+        }
+        self._fresh &= interest.named
+        self._scan, self._interest = scan, interest
+        self._rows = {}
+        for topic in set(self._taps) - scan.topics.keys():
+            self._close(topic)
+        for topic, ends in scan.topics.items():
+            unknown = self._tune_one(topic, ends)
+            if topic in interest.named or not ends.is_deserted:
+                self._rows[topic] = self._still_row(topic, ends, unknown)
+        for topic in interest.named - scan.topics.keys():
+            self._rows[topic] = self._still_row(topic, TopicEnds(topic, ()), None)
+        self._rows = dict(sorted(self._rows.items()))
+
+    def drain(self, breathe: Callable[[], object]) -> dict[str, tuple[Sample, ...]]:
+        """Take what has come, and return the samples that somebody looks at.
+
+        `breathe` is called between two topics.
+        """
+        samples = {}
+        for topic, tap in self._taps.items():
+            breathe()
+            found = tap.drain(
+                one_publisher=self._one_publisher(topic), decode=self._how_many(topic)
+            )
+            if topic in self._fresh:
+                found = found or tap.newest()
+                if found:
+                    self._fresh.discard(topic)
+            if found:
+                samples[topic] = found
+        return samples
+
+    def need_tuning(self) -> bool:
+        """Tell whether a queue turned out to be of the wrong depth."""
+        return any(
+            tap.better_depth(one_publisher=self._one_publisher(topic)) != tap.depth
+            for topic, tap in self._taps.items()
+        )
+
+    def rows(self) -> tuple[TopicRow, ...]:
+        """Return a row for each topic there is and each that is wanted, sorted by name."""
+        now_s = time.time()
+        return tuple(
+            _measured(row, self._taps[topic], now_s) if topic in self._taps else row
+            for topic, row in self._rows.items()
+        )
+
+    def close(self) -> None:
+        """End all subscriptions."""
+        for topic in list(self._taps):
+            self._close(topic)
+
+    def _tune_one(self, topic: str, ends: TopicEnds) -> UnknownTypeError | None:
+        heard = bool(ends.everyone_publishing)
+        wanted = topic in self._interest.named or (self._interest.all_topics and heard)
+        if not wanted:
+            self._close(topic)
+            return None
+        tap = self._taps.get(topic)
+        if tap and not heard:
+            tap.since_s = time.time()
+            return None
+        return self._open(topic, ends)
+
+    def _open(self, topic: str, ends: TopicEnds) -> UnknownTypeError | None:
+        type_name, qos = _type_to_show(ends), to_hear(ends.everyone_publishing)
+        depth, meter = first_depth(type_name), None
+        tap = self._taps.get(topic)
+        if tap and tap.type_name == type_name:
+            depth = tap.better_depth(one_publisher=self._one_publisher(topic))
+            if tap.qos == qos and tap.depth == depth:
+                return tap.unknown
+            meter = tap.meter
+        self._close(topic)
+        key = (topic, type_name, qos)
+        if key not in self._refused:
+            # Asked twice, rcl would write its complaint on the terminal twice.
+            try:
+                self._taps[topic] = Tap(self._node, topic, type_name, qos, depth, meter)
+            except UnknownTypeError as error:
+                self._refused[key] = error
+            except Exception as error:  # noqa: BLE001 - a second type under one name, for one
+                reason = f"{topic} cannot be subscribed as {type_name}: {error}"
+                self._refused[key] = UnknownTypeError(type_name, type_name.split("/")[0], reason)
+        made = self._taps.get(topic)
+        return made.unknown if made else self._refused[key]
+
+    def _close(self, topic: str) -> None:
+        tap = self._taps.pop(topic, None)
+        if tap:
+            tap.close()
+
+    def _one_publisher(self, topic: str) -> bool:
+        ends = self._scan.topics.get(topic)
+        return ends is not None and len(ends.everyone_publishing) == 1
+
+    def _how_many(self, topic: str) -> int:
+        if topic in self._interest.followed:
+            return FOLLOWED
+        return 1 if topic in self._interest.watched else 0
+
+    def _still_row(self, topic: str, ends: TopicEnds, unknown: UnknownTypeError | None) -> TopicRow:
+        finding = structural(ends, _type_to_show(ends), unknown)
+        return TopicRow(
+            topic,
+            ends.type_names,
+            len(ends.publishers),
+            len(ends.subscribers),
+            trouble=finding.trouble,
+            detail=finding.detail,
+            facts=finding.facts,
+            published_by=ends.publishers,
+            subscribed_by=ends.subscribers,
+            own_publishers=len(ends.own_publishers),
+        )
+
+
+def _measured(row: TopicRow, tap: Tap, now_s: float) -> TopicRow:
+    """Return the row with what the tap has measured."""
+    finding = _finding(row, tap, now_s)
+    return replace(
+        row,
+        hz=tap.meter.hz(now_s),
+        bytes_per_s=tap.meter.bytes_per_s(now_s),
+        age_s=tap.meter.age_s(now_s),
+        jitter_s=tap.meter.jitter_s(now_s),
+        latency_s=tap.meter.latency_s(now_s),
+        lost=tap.meter.lost,
+        count=tap.meter.count,
+        measured=True,
+        trouble=finding.trouble,
+        detail=finding.detail,
+        facts=finding.facts,
+    )
+
+
+def _finding(row: TopicRow, tap: Tap, now_s: float) -> Finding:
+    if row.trouble is not None:
+        return Finding(row.trouble, row.detail, row.facts)
+    if tap.broken:
+        facts = {"type": tap.type_name, "package": "", "reason": tap.broken}
+        return Finding(Trouble.UNKNOWN_TYPE, tap.broken, facts)
+    age_s = tap.meter.age_s(now_s)
+    if age_s is None and now_s - tap.since_s > QUIET_S:
+        return quiet(now_s - tap.since_s, ever=False)
+    # A latched topic has said what it has to say.
+    if age_s is not None and tap.meter.is_quiet(now_s) and tap.qos.durability != TRANSIENT_LOCAL:
+        return quiet(age_s, ever=True)
+    return Finding(row.trouble, row.detail, row.facts)
+
+
+def _type_to_show(ends: TopicEnds) -> str:
+    """Return the type most publishers have, without publishers the first that anybody has."""
+    if ends.everyone_publishing:
+        counted = Counter(end.type_name for end in ends.everyone_publishing)
+        return counted.most_common(1)[0][0]
+    return ends.type_names[0] if ends.type_names else ""

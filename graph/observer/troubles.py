@@ -1,0 +1,78 @@
+"""Why a topic shows nothing, in words: four different troubles, never an empty panel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from graph.data import Trouble
+from graph.qos_fit import mismatches
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from graph.messages.types import UnknownTypeError
+    from graph.qos_fit import Mismatch
+    from graph.scan.endpoints import TopicEnds
+
+MOST_PAIRS = 5
+"""Pairs that are told in words; the rest are counted."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A trouble, or a remark where there is none, and what it is made of."""
+
+    trouble: Trouble | None = None
+    detail: str = ""
+    facts: Mapping[str, str] = field(default_factory=dict)
+
+
+def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> Finding:
+    """Return what is wrong with the topic however its messages come.
+
+    `shown_type` is the one that Deck decodes, `unknown` why it cannot.
+    """
+    if unknown is not None:
+        return Finding(
+            Trouble.UNKNOWN_TYPE,
+            unknown.reason,
+            {
+                "type": unknown.type_name,
+                "package": unknown.package,
+                "reason": unknown.reason,
+                **unknown.install,
+            },
+        )
+    if not ends.everyone_publishing:
+        return Finding(Trouble.NO_PUBLISHER, "nobody publishes this topic")
+    found = mismatches(ends.everyone_publishing, ends.subscribers)
+    if found:
+        return _misfit(found)
+    if len(ends.type_names) > 1:
+        types = ", ".join(ends.type_names)
+        return Finding(
+            None,
+            f"peers disagree about the type: {types}; shown is {shown_type}",
+            {"types": types, "shown": shown_type},
+        )
+    return Finding()
+
+
+def _misfit(found: Sequence[Mismatch]) -> Finding:
+    """Return all that does not fit in words, and the first of it as facts."""
+    # Two endpoints alike of one node read the same.
+    told = list(dict.fromkeys(found))
+    more = len(told) - MOST_PAIRS
+    words = [pair.in_words() for pair in told[:MOST_PAIRS]]
+    words += [f"(and {more} more pairs)"] if more > 0 else []
+    others = {"more": str(len(told) - 1)} if len(told) > 1 else {}
+    return Finding(Trouble.QOS_MISMATCH, " ".join(words), told[0].facts() | others)
+
+
+def quiet(seconds: float, *, ever: bool) -> Finding:
+    """Return that nothing has come for `seconds`, and whether anything `ever` did."""
+    since = "" if ever else ", and never before"
+    return Finding(
+        Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"}
+    )

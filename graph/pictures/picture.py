@@ -1,0 +1,98 @@
+"""Camera messages as pictures of the size that is shown: thinned out first, coloured after.
+
+A picture of 1280x720 has thirty times the pixels that a terminal shows: to look at no others is
+what makes ten of them a second cheap. numpy is imported in the functions, see
+`graph.pictures.images`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from graph.pictures.pixels import grey
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from graph.pictures.pixels import Rgb
+
+Fit: TypeAlias = "Callable[[int, int], tuple[int, int]]"
+"""From width and height of a picture to those that are wanted of it, in pixels."""
+IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+METRES = {"16UC1": 1e-3, "32FC1": 1.0}
+"""Metres of one unit of the depth encodings (source: REP-118)."""
+FARTHEST = 99.0
+"""Percent of the readings between `near` and `far`: a stray one must not take all colours."""
+RAMP = ((253, 231, 37), (94, 201, 98), (33, 145, 140), (59, 82, 139), (68, 1, 84))
+"""From near to far: it grows darker steadily, so that it is read without colours too (viridis)."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture at the size that was wanted."""
+
+    rgb: Rgb
+    width: int
+    height: int
+    """Of the message's own picture, in pixels."""
+    encoding: str
+    range_m: tuple[float, float] | None = None
+    """Of depth: what the first and the last colour of the ramp stand for."""
+
+
+def numbers_picture(
+    numbers: NDArray[np.generic], width: int, height: int, encoding: str
+) -> Picture:
+    """Return numbers of shape (height, width) as a picture: depth by the ramp, others in grey."""
+    if encoding not in METRES:
+        return Picture(grey(numbers), width, height, encoding)
+    import numpy as np
+
+    metres = numbers.astype(np.float64) * METRES[encoding]
+    valid = np.isfinite(metres) & (metres > 0)
+    if not valid.any():
+        return Picture(np.zeros((*metres.shape, 3), np.uint8), width, height, encoding)
+    near, far = rounded(*np.percentile(metres[valid], (100 - FARTHEST, FARTHEST)).tolist())
+    share = np.clip((np.where(valid, metres, near) - near) / (far - near), 0.0, 1.0)
+    rgb = ramp_colours()[(share * 255).astype(np.uint8)]
+    rgb[~valid] = 0
+    return Picture(rgb, width, height, encoding, (near, far))
+
+
+def ramp_colours(steps: int = 256) -> Rgb:
+    """Return the ramp of depth from near to far, shape (steps, 3)."""
+    import numpy as np
+
+    at = np.linspace(0, len(RAMP) - 1, steps)
+    channels = [np.interp(at, range(len(RAMP)), channel) for channel in zip(*RAMP, strict=True)]
+    colours: Rgb = np.stack(channels, axis=1).astype(np.uint8)
+    return colours
+
+
+def rounded(near: float, far: float) -> tuple[float, float]:
+    """Return the range a little wider and round: it must not sway with every picture."""
+    import math
+
+    span = max(far - near, 0.01 * far, 1e-3)
+    step = 10.0 ** math.floor(math.log10(span))
+    step = step / 2 if span < 5 * step else step
+    low, high = math.floor(near / step + 1e-9) * step, math.ceil(far / step - 1e-9) * step
+    return low, high if high > low else low + step
+
+
+def thinned(pixels: NDArray[np.uint8], fit: Fit) -> NDArray[np.uint8]:
+    """Return every so many-th pixel of shape (height, width, bytes); all where fewer are there."""
+    import numpy as np
+
+    height, width = pixels.shape[:2]
+    wide, high = fit(width, height)
+    if wide >= width and high >= height:
+        return pixels
+    wide, high = max(1, min(wide, width)), max(1, min(high, height))
+    rows = (np.arange(high) * height + height // 2) // high
+    columns = (np.arange(wide) * width + width // 2) // wide
+    fewer: NDArray[np.uint8] = pixels[rows[:, None], columns]
+    return fewer

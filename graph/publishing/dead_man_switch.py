@@ -1,0 +1,200 @@
+"""Messages that are repeated only while somebody holds them: a dead-man's switch.
+
+Each word of whoever holds carries the moment until which it is good. When that moment has passed
+without another word, the message of rest goes out a few times, and then nothing. The moment is
+kept here, on the observer's thread: whoever holds may hang or go without a word.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from graph.messages.making import to_message
+from graph.messages.types import load_message
+from graph.publishing.outbox import PublishError, open_publisher, refuse_other_type
+from graph.qos import Qos, to_be_heard
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.node import Node
+    from rclpy.publisher import Publisher
+
+    from graph.data import Value
+    from graph.scan.endpoints import TopicEnds
+
+logger = logging.getLogger(__name__)
+
+RESTS = 3
+"""How often the message of rest goes out: a subscriber may be best effort."""
+DEPTH = 1
+"""An older message must not reach anybody after a newer one was made, however slow the line."""
+LONGEST_S = 2.0
+"""No word is good for longer than this, whoever says so."""
+
+
+class Holding(NamedTuple):
+    """One word of whoever holds."""
+
+    value: Mapping[str, Value]
+    """What is published again and again while it is good."""
+    rest: Mapping[str, Value]
+    """What is published when it is good no more."""
+    hz: float
+    until_s: float
+    """On the monotonic clock."""
+
+
+class Grip:
+    """One topic: when what goes out. `send` publishes, and may raise anything."""
+
+    def __init__(self, send: Callable[[Mapping[str, Value]], object]) -> None:
+        self._send = send
+        self._word: Holding | None = None
+        self._rest: Mapping[str, Value] = {}
+        self._rests = 0
+        self._period_s = 0.0
+        self._due_s = 0.0
+
+    @property
+    def is_held(self) -> bool:
+        """Whether something else than rest goes out."""
+        return self._word is not None
+
+    def hold(self, word: Holding, now_s: float) -> None:
+        """Go on with this word; one that is good no more changes nothing."""
+        until_s = min(word.until_s, now_s + LONGEST_S)
+        if until_s <= now_s:
+            return
+        if self._word is None or self._word.value != word.value:
+            self._due_s = now_s
+        self._word, self._rests = word._replace(until_s=until_s), 0
+        self._rest, self._period_s = word.rest, 1.0 / word.hz
+        self.step(now_s)
+
+    def let_go(self, now_s: float) -> None:
+        """Rest from now on."""
+        if self._word is not None:
+            self._word = self._word._replace(until_s=now_s)
+            self.step(now_s)
+
+    def step(self, now_s: float) -> float | None:
+        """Publish what is due; return when to come again, None if nothing is to come."""
+        word = self._word
+        if word is not None and now_s >= word.until_s:
+            self._word, self._rests, self._due_s = None, RESTS, now_s
+        if self._word is None and not self._rests:
+            return None
+        if now_s >= self._due_s:
+            self._due_s += self._period_s
+            if self._due_s <= now_s:
+                # What was slept through is not made up for.
+                self._due_s = now_s + self._period_s
+            self._publish()
+        if self._word is not None:
+            return min(self._due_s, self._word.until_s)
+        return self._due_s if self._rests else None
+
+    def _publish(self) -> None:
+        value = self._rest if self._word is None else self._word.value
+        self._rests -= 1 if self._word is None else 0
+        try:
+            self._send(value)
+        except Exception:
+            # What cannot be published is not tried again and again.
+            self._word, self._rests = None, 0
+            raise
+
+
+@dataclass
+class _Line:
+    """One topic with its publisher."""
+
+    publisher: Publisher
+    type_name: str
+    cls: type[Any]
+    qos: Qos
+    grip: Grip
+
+
+class Held:
+    """All that is held; each topic has a publisher, made when first asked for and kept."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._lines: dict[str, _Line] = {}
+
+    def knows(self, topic: str) -> bool:
+        """Whether there is a publisher already."""
+        return topic in self._lines
+
+    def prepare(self, topic: str, type_name: str, ends: TopicEnds | None) -> None:
+        """Make the publisher, and publish nothing. Raises PublishError or UnknownTypeError."""
+        if topic in self._lines:
+            return
+        refuse_other_type(topic, type_name, ends)
+        cls = load_message(type_name)
+        qos = to_be_heard(ends.subscribers if ends else ())
+        publisher = open_publisher(self._node, topic, cls, qos, DEPTH)
+        grip = Grip(lambda value: self._send(topic, value))
+        self._lines[topic] = _Line(publisher, type_name, cls, qos, grip)
+
+    def hold(self, topic: str, word: Holding) -> int:
+        """Publish until the word is good no more; return how many are matched now.
+
+        The topic has been prepared. Raises PublishError, UnknownTypeError or FieldError.
+        """
+        line = self._lines[topic]
+        line.grip.hold(word, time.monotonic())
+        return line.publisher.get_subscription_count()
+
+    def let_go(self, topic: str) -> None:
+        """Rest at once."""
+        if topic in self._lines:
+            self._lines[topic].grip.let_go(time.monotonic())
+
+    def tune(self, topics: Mapping[str, TopicEnds]) -> None:
+        """Offer what those who have come to listen ask for; never while something is held."""
+        for topic, line in self._lines.items():
+            ends = topics.get(topic)
+            qos = to_be_heard(ends.subscribers if ends else ())
+            if qos == line.qos or line.grip.is_held:
+                continue
+            with contextlib.suppress(PublishError):
+                publisher = open_publisher(self._node, topic, line.cls, qos, DEPTH)
+                self._node.destroy_publisher(line.publisher)
+                line.publisher, line.qos = publisher, qos
+
+    def step(self) -> float | None:
+        """Publish what is due; return when the next is, on the monotonic clock."""
+        dues_s = [self._step(line) for line in self._lines.values()]
+        return min((due_s for due_s in dues_s if due_s is not None), default=None)
+
+    def _step(self, line: _Line) -> float | None:
+        try:
+            return line.grip.step(time.monotonic())
+        except Exception:
+            # It is held no more; the next word tells whoever holds it.
+            logger.exception("what is held cannot be published")
+            return None
+
+    def close(self) -> None:
+        """Let go of everything, with a last word."""
+        for topic in self._lines:
+            with contextlib.suppress(PublishError):
+                self.let_go(topic)
+
+    def _send(self, topic: str, value: Mapping[str, Value]) -> None:
+        line = self._lines[topic]
+        message = to_message(line.cls, value)
+        if hasattr(message, "header"):
+            message.header.stamp = self._node.get_clock().now().to_msg()
+        try:
+            line.publisher.publish(message)
+        except Exception as error:
+            raise PublishError(f"{topic}: {error}") from error

@@ -1,0 +1,208 @@
+"""Publishing once, without losing the message to a subscriber that is still being matched."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from graph.messages.dated import Draft, draft
+from graph.messages.types import load_message
+from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
+from graph.ros import ONLY_LISTENING
+from graph.scan.endpoints import subscriptions
+from graph.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from concurrent.futures import Future
+
+    from rclpy.node import Node
+    from rclpy.publisher import Publisher
+
+    from graph.data import Value
+    from graph.scan.endpoints import TopicEnds
+
+MATCH_WITHIN_S = 1.0
+"""How long a new publisher waits for its subscribers."""
+DISCOVERY_S = 4.0
+"""How long after its start Deck may not have found everybody yet."""
+SETTLE_S = 0.2
+"""A subscriber is matched here a little before the publisher is matched there."""
+DEPTH = 200
+"""Of messages on their way: a burst must not overwrite what a subscriber has not acknowledged."""
+
+
+class PublishError(Exception):
+    """The message cannot be published; str() says why, `words` so that it can be translated."""
+
+    def __init__(self, words: str) -> None:
+        """Say why, as `graph.words.say` makes it."""
+        super().__init__(words)
+        self.words = words
+
+
+@dataclass
+class _Line:
+    """One publisher and what waits for its subscribers."""
+
+    node: Node
+    publisher: Publisher
+    cls: type[Any]
+    qos: Qos
+    expected: int
+    """Subscribers that the graph knew when it was made, Deck's own among them."""
+    patience_ends_s: float
+    waiting: deque[tuple[Draft | None, Future[int]]] = field(default_factory=deque)
+    """A message, None if it has gone out, and who wants to know how many it went to."""
+    matched_since_s: float | None = None
+    is_settled: bool = False
+    """Whether all that listen do hear it, so that nothing needs to wait any more."""
+
+    def advance(self) -> None:
+        """Send what can be sent, and tell those who wait how many it went to."""
+        now_s = time.monotonic()
+        matched = self.publisher.get_subscription_count()
+        if not self.is_settled:
+            self._settle(matched >= max(1, self.expected), now_s)
+        all_matched = self.matched_since_s is not None
+        while self.waiting and (self.is_settled or (all_matched and self.waiting[0][0] is None)):
+            message, future = self.waiting.popleft()
+            if message is None or self.publish(message, future):
+                future.set_result(max(0, matched - self._onlookers()))
+
+    def publish(self, message: Draft, future: Future[int]) -> bool:
+        """Publish; tell whether that went well, and the future if it did not."""
+        try:
+            self.publisher.publish(message.dated())
+        except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+            failure = PublishError(f"{self.publisher.topic}: {error}")
+            failure.__cause__ = error
+            future.set_exception(failure)
+            return False
+        return True
+
+    def _onlookers(self) -> int:
+        """Deck's own subscribers, who do not count as somebody who heard it, as of this moment."""
+        subscribed = subscriptions(self.node, self.publisher.topic)
+        return sum(end.node.startswith(ONLY_LISTENING) for end in subscribed)
+
+    def _settle(self, all_matched: bool, now_s: float) -> None:
+        if not all_matched:
+            self.matched_since_s = None
+        elif self.matched_since_s is None:
+            self.matched_since_s = now_s
+        since_s = self.matched_since_s
+        heard = since_s is not None and now_s - since_s >= SETTLE_S
+        self.is_settled = heard or now_s >= self.patience_ends_s
+
+
+class Outbox:
+    """Deck's publishers, one for each topic, type and latching; made once and kept."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._born_s = time.monotonic()
+        self._lines: dict[tuple[str, str, bool], _Line] = {}
+
+    def knows_latched(self, topic: str, type_name: str) -> bool:
+        """Whether there is a latched publisher already."""
+        return (topic, type_name, True) in self._lines
+
+    def prepare(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> None:
+        """Make the publisher now, so that the first message need not wait for it.
+
+        Raises PublishError or UnknownTypeError.
+        """
+        self._line(topic, type_name, ends, latched=latched)
+
+    def publish(
+        self,
+        topic: str,
+        type_name: str,
+        value: Mapping[str, Value],
+        ends: TopicEnds | None,
+        future: Future[int],
+        *,
+        latched: bool,
+    ) -> None:
+        """Publish as soon as the subscribers that are there are matched, and then tell how many.
+
+        Raises PublishError, UnknownTypeError or FieldError.
+        """
+        line = self._line(topic, type_name, ends, latched=latched)
+        message = draft(line.cls, value)
+        if latched:
+            # The middleware hands it to those who are matched later: a stop must not wait.
+            if line.publish(message, future):
+                line.waiting.append((None, future))
+        else:
+            line.waiting.append((message, future))
+        line.advance()
+
+    def step(self) -> bool:
+        """Send what can be sent now; tell whether anything still waits."""
+        for line in self._lines.values():
+            if line.waiting or not line.is_settled:
+                line.advance()
+        return any(line.waiting for line in self._lines.values())
+
+    def fail(self, error: Exception) -> None:
+        """Let everything that waits fail."""
+        for line in self._lines.values():
+            while line.waiting:
+                line.waiting.popleft()[1].set_exception(error)
+
+    def _line(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> _Line:
+        refuse_other_type(topic, type_name, ends)
+        subscribers = ends.subscribers if ends else ()
+        qos = Qos(RELIABLE, TRANSIENT_LOCAL) if latched else to_be_heard(subscribers)
+        key = (topic, type_name, latched)
+        line = self._lines.get(key)
+        if line is None or (line.qos != qos and not line.waiting):
+            if line is not None:
+                self._node.destroy_publisher(line.publisher)
+            onlookers = ends.onlookers if ends else 0
+            line = self._open(topic, type_name, qos, len(subscribers) + onlookers)
+            self._lines[key] = line
+        return line
+
+    def _open(self, topic: str, type_name: str, qos: Qos, expected: int) -> _Line:
+        cls = load_message(type_name)
+        publisher = open_publisher(self._node, topic, cls, qos)
+        now_s = time.monotonic()
+        patience_ends_s = max(now_s + MATCH_WITHIN_S, self._born_s + DISCOVERY_S)
+        return _Line(self._node, publisher, cls, qos, expected, patience_ends_s)
+
+
+def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> None:
+    """Raise PublishError if others know the topic, and none of them by this type."""
+    others = ends.type_names if ends and not ends.is_deserted else ()
+    if others and type_name not in others:
+        raise PublishError(
+            say(
+                "{topic} carries {types}, not {type}",
+                topic=topic,
+                types=", ".join(others),
+                type=type_name,
+            )
+        )
+
+
+def open_publisher(
+    node: Node, topic: str, cls: type[Any], qos: Qos, depth: int = DEPTH
+) -> Publisher:
+    """Make a publisher. Raises PublishError for a name that is none."""
+    from rclpy.event_handler import PublisherEventCallbacks
+
+    try:
+        return node.create_publisher(
+            cls,
+            topic,
+            profile(qos, 1 if qos.durability == TRANSIENT_LOCAL else depth),
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+        )
+    except Exception as error:
+        words = say("{topic} cannot be published: {error}", topic=topic, error=str(error))
+        raise PublishError(words) from error

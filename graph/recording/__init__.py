@@ -1,0 +1,1 @@
+"""Recording: a node of its own, raw messages, one rosbag2 directory."""

@@ -1,0 +1,217 @@
+"""The recorder: a ROS node and a thread of its own that put raw messages into a rosbag2 directory.
+
+Queues are emptied in turns and nothing is decoded; the disk has another thread. What is lost on
+the way, by the middleware or by a disk that is too slow, is counted and told.
+"""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import threading
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from graph.recording.disk_room import RESERVE_BYTES, Room
+from graph.recording.topics import Choice, RecordingTopics
+from graph.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from graph.recording.file import BagFile
+    from graph.recording.writer import RecordingWriter
+
+logger = logging.getLogger(__name__)
+
+TURN_S = 0.05
+LOOK_S = 0.25
+"""How often queues are emptied, and how often new topics are looked for."""
+FINISH_WITHIN_S = 30.0
+SLOW_BYTES = 64_000_000
+"""From so much waiting on, the disk is called slow."""
+
+
+@dataclass(frozen=True)
+class RecordedTopic:
+    """One topic of a recording."""
+
+    name: str
+    type_name: str
+    messages: int
+    bytes: int
+    lost: int = 0
+    """Published and not recorded."""
+
+
+@dataclass(frozen=True)
+class RecordingStatus:
+    """How a recording stands."""
+
+    folder: str
+    since_s: float
+    """Unix time."""
+    seconds: float
+    messages: int = 0
+    bytes: int = 0
+    """Of the messages, as they were serialized."""
+    topics: tuple[RecordedTopic, ...] = ()
+    lost: int = 0
+    """Messages that are missing, for whatever reason."""
+    dropped: int = 0
+    """Those of them for which the disk was too slow, or full."""
+    bytes_per_s: float = 0.0
+    """How fast it grows, over the last seconds."""
+    left_s: float | None = None
+    """How long the disk has room at this rate; None if nobody can tell."""
+    slow: bool = False
+    """Whether the disk does not keep up."""
+    error: str = ""
+    """Why nothing is recorded any more, in words that can be translated."""
+    skipped: Mapping[str, str] = field(default_factory=dict)
+    """Topic to why it cannot be recorded."""
+    absent: tuple[str, ...] = ()
+    """Topics that were asked for and that nobody has published so far."""
+    ended: bool = False
+
+
+class Recorder:
+    """Records topics of one domain from `start` to `stop`. `status` may be read at any time."""
+
+    def __init__(
+        self,
+        domain: int,
+        discovery: str | tuple[str, ...],
+        folder: Path,
+        topics: Sequence[str] | None = None,
+        *,
+        hidden: bool = False,
+        images: bool = True,
+        reserve_bytes: int = RESERVE_BYTES,
+    ) -> None:
+        """`topics`: None for all, also those that appear later.
+
+        With `hidden`, all has the inner topics of actions in it; without `images`, no pictures.
+        It ends by itself when no more than `reserve_bytes` are free on the disk.
+        """
+        self._domain = domain
+        self._discovery = discovery
+        self._folder = folder
+        self._choice = Choice(None if topics is None else frozenset(topics), hidden, images)
+        self._room = Room(folder, reserve_bytes)
+        self._error = ""
+        self._since_s = time.time()
+        self._begun_s = time.monotonic()
+        self._ended_s: float | None = None
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._writer: RecordingWriter | None = None
+        self._topics: RecordingTopics | None = None
+
+    def start(self) -> None:
+        """Make the folder and begin. Raises BagError if it cannot be made or the disk is full."""
+        from graph.recording.file import BagFile
+
+        self._room.check()
+        file = BagFile(self._folder)
+        self._thread = threading.Thread(
+            target=self._run, args=(file,), name="deck-recorder", daemon=True
+        )
+        # DDS threads must be gone before the interpreter is.
+        atexit.register(self.stop)
+        self._thread.start()
+
+    def stop(self) -> RecordingStatus:
+        """End the bag in order; returns within half a minute, whatever the disk does."""
+        self._stopping.set()
+        atexit.unregister(self.stop)
+        if self._thread is not None:
+            self._thread.join(FINISH_WITHIN_S + 5)
+        return self.status
+
+    @property
+    def status(self) -> RecordingStatus:
+        """How it stands now."""
+        until_s = time.monotonic() if self._ended_s is None else self._ended_s
+        writer, topics = self._writer, self._topics
+        common = (str(self._folder), self._since_s, until_s - self._begun_s)
+        if writer is None or topics is None:
+            return RecordingStatus(*common, error=self._error, ended=self._ended_s is not None)
+        rows = tuple(
+            RecordedTopic(
+                tap.topic.name,
+                tap.topic.type_name,
+                tap.topic.messages,
+                tap.topic.bytes,
+                tap.lost + writer.dropped[tap.topic.name],
+            )
+            for tap in topics.all()
+        )
+        return RecordingStatus(
+            *common,
+            messages=sum(row.messages for row in rows),
+            bytes=sum(row.bytes for row in rows),
+            topics=rows,
+            lost=sum(row.lost for row in rows),
+            dropped=sum(writer.dropped.values()),
+            bytes_per_s=self._room.bytes_per_s,
+            left_s=self._room.left_s,
+            slow=writer.waiting_bytes > SLOW_BYTES,
+            error=writer.error or self._error,
+            skipped=dict(topics.skipped),
+            absent=topics.absent(),
+            ended=self._ended_s is not None,
+        )
+
+    def _run(self, file: BagFile) -> None:
+        from graph.recording.writer import RecordingWriter
+
+        writer = RecordingWriter(file)
+        try:
+            self._record(writer)
+        except Exception as error:
+            logger.exception("the recorder failed")
+            self._error = say("ROS cannot be used: {reason}", reason=error)
+        finally:
+            if not writer.finish(FINISH_WITHIN_S) and not writer.error:
+                self._error = say(
+                    "{path}: the disk does not take what was recorded; the bag may be cut short",
+                    path=file.path,
+                )
+            self._ended_s = time.monotonic()
+
+    def _record(self, writer: RecordingWriter) -> None:
+        # This imports rclpy; whoever records need not wait for it.
+        from graph.ros import open_ros
+
+        ros = open_ros(self._domain, self._discovery, "recorder")
+        try:
+            topics = RecordingTopics(ros.node, ros.name, self._choice, writer)
+            self._topics, self._writer = topics, writer
+            self._take_turns(topics, writer)
+            topics.close()
+        finally:
+            ros.close()
+
+    def _take_turns(self, topics: RecordingTopics, writer: RecordingWriter) -> None:
+        look_at_s = 0.0
+        # Where the disk takes no more, what comes until somebody stops it is counted as dropped.
+        while True:
+            ending = self._stopping.is_set() or bool(self._error)
+            if time.monotonic() >= look_at_s:
+                topics.look()
+                self._look_at_room(topics)
+                look_at_s = time.monotonic() + LOOK_S
+            messages = topics.drain()
+            if messages:
+                writer.put(messages)
+            if ending:
+                return
+            self._stopping.wait(TURN_S)
+
+    def _look_at_room(self, topics: RecordingTopics) -> None:
+        self._room.look(time.monotonic(), sum(tap.topic.bytes for tap in topics.all()))
+        if self._room.end is not None:
+            self._error = self._room.end

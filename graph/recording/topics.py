@@ -1,0 +1,143 @@
+"""Which topics a recording has: those there are, those that appear, those that cannot be had."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from graph.bag.metadata import BagTopic, qos_offer
+from graph.bag.types import definition, hash_of
+from graph.data import EndpointInfo
+from graph.housekeeping import is_hidden
+from graph.messages.types import UnknownTypeError
+from graph.qos import to_hear
+from graph.recording.tap import RecordingTap
+from graph.scan.endpoints import full_name
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rclpy.node import Node
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+    from graph.recording.writer import Message, RecordingWriter
+
+
+IMAGES = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"})
+
+
+class Choice(NamedTuple):
+    """Which topics are to be recorded."""
+
+    topics: frozenset[str] | None = None
+    """None for all."""
+    hidden: bool = False
+    """Whether all are those with a name that begins with an underscore, too."""
+    images: bool = True
+    """Whether all are pictures, too."""
+
+    def takes(self, name: str, types: Sequence[str]) -> bool:
+        """Tell whether a topic is to be recorded."""
+        if self.topics is not None:
+            return name in self.topics
+        return (self.hidden or not is_hidden(name)) and (self.images or IMAGES.isdisjoint(types))
+
+
+class RecordingTopics:
+    """All subscriptions of a recording; used by the recorder's thread alone."""
+
+    def __init__(self, node: Node, own_name: str, choice: Choice, writer: RecordingWriter) -> None:
+        """`own_name` is that of the node."""
+        self.skipped: dict[str, str] = {}
+        """Topic to why it cannot be recorded."""
+        self._node = node
+        self._own_name = own_name
+        self._choice = choice
+        self._writer = writer
+        self._taps: dict[str, RecordingTap] = {}
+        self._publishers: dict[str, int] = {}
+
+    def all(self) -> list[RecordingTap]:
+        """Return every subscription so far, also those that are quiet now."""
+        return list(self._taps.values())
+
+    def absent(self) -> tuple[str, ...]:
+        """Return what was asked for by name and is neither recorded nor skipped."""
+        known = self._taps.keys() | self.skipped.keys()
+        return tuple(sorted((self._choice.topics or frozenset()) - known))
+
+    def look(self) -> None:
+        """Take up new topics, and follow publishers whose quality of service has changed."""
+        for name, types in self._node.get_topic_names_and_types():
+            if self._choice.takes(name, types):
+                count = self._node.handle.get_count_publishers(name)
+                if count and count != self._publishers.get(name):
+                    self._publishers[name] = count
+                    self._tune(name, types)
+
+    def drain(self) -> list[Message]:
+        """Take what has come on all topics, in the order in which it came."""
+        found = [message for tap in self._taps.values() for message in tap.drain()]
+        found.sort(key=lambda message: message.stamp_ns)
+        return found
+
+    def close(self) -> None:
+        """End all subscriptions."""
+        for tap in self._taps.values():
+            tap.close()
+
+    def _tune(self, name: str, types: Sequence[str]) -> None:
+        found = self._node.get_publishers_info_by_topic(name)
+        if not found:
+            self._publishers.pop(name, None)
+            return
+        qos = to_hear([_end(info) for info in found])
+        tap = self._taps.get(name)
+        if tap is None:
+            tap = self._open(name, types, found)
+        elif tap.qos != qos:
+            self._writer.put(tap.drain())
+            tap.reopen(qos)
+        if tap is not None:
+            tap.know(found)
+
+    def _open(
+        self, name: str, types: Sequence[str], found: Sequence[TopicEndpointInfo]
+    ) -> RecordingTap | None:
+        """Subscribe, and tell the bag of the topic; None if it cannot be had."""
+        named = [info.topic_type for info in found]
+        # The one that most publishers have.
+        type_name = max(types, key=named.count)
+        qos = to_hear([_end(info) for info in found])
+        digest = next((str(i.topic_type_hash) for i in found if i.topic_type == type_name), "")
+        digest = digest if digest.startswith("RIHS") else ""
+        topic = BagTopic(
+            len(self._taps) + 1,
+            name,
+            type_name,
+            # rosbags refuses a whole bag for the hash of a service's type, which it does not know.
+            "" if "/srv/" in type_name else digest or hash_of(type_name),
+            [qos_offer(info.qos_profile) for info in found],
+        )
+        try:
+            text = definition(type_name, digest)
+            tap = RecordingTap(self._node, topic, qos)
+        except UnknownTypeError as error:
+            self.skipped[name] = error.reason
+            return None
+        except Exception as error:  # noqa: BLE001 - a second type under one name, for one
+            self.skipped[name] = f"{name} cannot be subscribed as {type_name}: {error}"
+            return None
+        self.skipped.pop(name, None)
+        self._writer.add_topic(topic, text)
+        self._taps[name] = tap
+        return tap
+
+
+def _end(info: TopicEndpointInfo) -> EndpointInfo:
+    qos = info.qos_profile
+    return EndpointInfo(
+        full_name(info.node_name, info.node_namespace),
+        info.topic_type,
+        qos.reliability.name.lower(),
+        qos.durability.name.lower(),
+    )

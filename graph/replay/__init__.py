@@ -1,0 +1,1 @@
+"""A bag in place of a robot: the same answers as the observer's, with no ROS at hand."""

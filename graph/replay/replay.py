@@ -1,0 +1,224 @@
+"""A bag played back as if it were a live graph, with no ROS at hand.
+
+`Replay` fits the screen's seam for a graph. It has a thread of its own, which reads, counts and
+decodes; what the screen asks is done there, in order.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from graph.bag.errors import BagError
+from graph.bag.reading import open_bag
+from graph.data import GraphUpdate
+from graph.observer.interest import Interest
+from graph.replay.player import Player
+from graph.replay.refusals import Refusals
+from graph.replay.state import RATES, ReplayState, next_rate
+from graph.replay.topics import NANOSECONDS
+from graph.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+logger = logging.getLogger(__name__)
+
+STOP_WITHIN_S = 5.0
+
+
+class Replay(Refusals):
+    """A bag as a graph. All methods may be called from any thread; none waits for the bag."""
+
+    def __init__(
+        self, path: Path, *, rate: float = 1.0, loop: bool = False, start_s: float = 0.0
+    ) -> None:
+        """Open the bag and play it from `start_s` once it is started. Raises BagError."""
+        self.period_s = 0.1
+        self.bag = open_bag(path)
+        """What there is; its messages are for this replay's thread."""
+        self._state = ReplayState(
+            length_s=self.bag.length_s,
+            start_s=self.bag.start_ns * NANOSECONDS,
+            rate=min(max(rate, RATES[0]), RATES[-1]),
+            loop=loop,
+            messages=self.bag.messages_count,
+            cut=self.bag.cut or "",
+        )
+        self._start_s = start_s
+        self._interest = Interest()
+        self._shown = Interest()
+        self._orders: deque[Callable[[Player], None]] = deque()
+        self._lock = threading.Lock()
+        self._wake = threading.Event()
+        self._stopping = False
+        self._thread: threading.Thread | None = None
+
+    @property
+    def state(self) -> ReplayState:
+        """How it stands now."""
+        return self._state
+
+    def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
+        """Begin to play; `on_update` is called on the replay's own thread."""
+        self._thread = threading.Thread(
+            target=self._run, args=(on_update,), name="deck-replay", daemon=True
+        )
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End it and let go of the bag."""
+        self._stopping = True
+        self._wake.set()
+        if self._thread is None:
+            self.bag.close()
+        elif self._thread is not threading.current_thread():
+            self._thread.join(STOP_WITHIN_S)
+
+    def watch(self, topics: Iterable[str]) -> None:
+        """Decode the newest message of exactly these topics each period."""
+        self._look_at(replace(self._interest, watched=frozenset(topics)))
+
+    def follow(self, topics: Iterable[str]) -> None:
+        """Decode every message of exactly these topics."""
+        self._look_at(replace(self._interest, followed=frozenset(topics)))
+
+    def measure(self, all_topics: bool) -> None:
+        """Do nothing: every topic of a bag is measured."""
+
+    def watch_goals(self, actions: Iterable[str]) -> None:
+        """Do nothing: a bag has no actions."""
+
+    def toggle(self) -> None:
+        """Pause, or go on; at the end begin anew."""
+
+        def do(player: Player) -> None:
+            if player.ended:
+                player.seek(0.0)
+                self._set(paused=False)
+            else:
+                self._set(paused=not self._state.paused)
+
+        self._order(do)
+
+    def pause(self) -> None:
+        """Stand still."""
+        self._order(lambda _player: self._set(paused=True))
+
+    def play(self) -> None:
+        """Go on."""
+        self._order(lambda _player: self._set(paused=False))
+
+    def step(self) -> None:
+        """Pause, and take the next message: of the topics that are looked at, if any are."""
+
+        def do(player: Player) -> None:
+            self._set(paused=True)
+            player.step(self._interest.watched)
+
+        self._order(do)
+
+    def seek(self, position_s: float) -> None:
+        """Jump to so many seconds after the first message."""
+        self._order(lambda player: self._jump(player, position_s))
+
+    def skip(self, seconds: float) -> None:
+        """Jump forward by so many seconds, back if negative."""
+        self._order(lambda player: self._jump(player, player.position_s + seconds))
+
+    def set_rate(self, rate: float) -> None:
+        """Play so many times as fast as it was, 0.1 to 10."""
+        self._order(lambda _player: self._set(rate=min(max(rate, RATES[0]), RATES[-1])))
+
+    def change_rate(self, *, faster: bool) -> None:
+        """Take the next rate above or below."""
+        self._order(lambda _: self._set(rate=next_rate(self._state.rate, faster=faster)))
+
+    def set_loop(self, loop: bool) -> None:
+        """Begin anew at the end, or stay there."""
+        self._order(lambda _player: self._set(loop=loop))
+
+    def _order(self, order: Callable[[Player], None]) -> None:
+        self._orders.append(order)
+        self._wake.set()
+
+    def _look_at(self, interest: Interest) -> None:
+        with self._lock:
+            self._interest = interest
+        self._wake.set()
+
+    def _set(self, **changes: float | bool | str) -> None:
+        self._state = replace(self._state, **changes)  # type: ignore[arg-type]
+
+    def _jump(self, player: Player, position_s: float) -> None:
+        player.seek(position_s)
+        # Whoever looks sees the place that was jumped to.
+        self._shown = Interest()
+
+    def _run(self, on_update: Callable[[GraphUpdate], None]) -> None:
+        bag = self.bag
+        try:
+            bag = bag.on_this_thread()
+            player = Player(bag, lambda: self._stopping)
+            if self._start_s:
+                player.seek(self._start_s)
+            self._play(player, on_update)
+        except BagError as error:
+            self._fail(error.words, on_update)
+        except Exception as error:
+            logger.exception("the replay failed")
+            self._fail(say("the recording cannot be played: {reason}", reason=error), on_update)
+        finally:
+            bag.close()
+
+    def _play(self, player: Player, on_update: Callable[[GraphUpdate], None]) -> None:
+        before_s = time.monotonic()
+        told: tuple[object, ...] = ()
+        while not self._stopping:
+            self._wake.clear()
+            ordered = self._carry_out(player)
+            now_s = time.monotonic()
+            if not self._state.paused:
+                self._advance(player, now_s - before_s)
+            before_s = now_s
+            self._set(position_s=player.position_s, ended=player.ended, damage=player.damage or "")
+            update = self._update(player)
+            if update.samples or ordered or update.topics != told:
+                told = update.topics
+                on_update(update)
+            self._wake.wait(self.period_s)
+
+    def _advance(self, player: Player, seconds: float) -> None:
+        if player.ended and self._state.loop:
+            # Not at once: the last messages have been handed over by now.
+            self._jump(player, 0.0)
+            return
+        player.advance(seconds * self._state.rate)
+        if player.ended and not self._state.loop:
+            self._set(paused=True)
+
+    def _carry_out(self, player: Player) -> bool:
+        """Do what was asked for; tell whether anything was."""
+        found = bool(self._orders)
+        while self._orders:
+            self._orders.popleft()(player)
+        return found
+
+    def _update(self, player: Player) -> GraphUpdate:
+        interest, shown = self._interest, self._shown
+        self._shown = interest
+        wall_s = time.time()
+        fresh = interest.named - shown.named
+        samples = player.topics.samples(interest, fresh, wall_s, player.now_ns)
+        now_s = player.now_ns * NANOSECONDS
+        rows = player.topics.rows(interest, now_s, self._state.start_s)
+        return GraphUpdate(wall_s, rows, samples, nodes=(player.topics.node,))
+
+    def _fail(self, words: str, on_update: Callable[[GraphUpdate], None]) -> None:
+        self._set(error=words, paused=True)
+        on_update(GraphUpdate(time.time(), error=words))
