@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.discovery import set_discovery
-from launcher.profile import load_profile
+from launcher.domain.discovery import set_discovery
+from launcher.profile.load import load_profile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

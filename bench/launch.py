@@ -23,15 +23,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.processes import cpu_s, pss_mb
-from launcher.discovery import set_discovery
-from launcher.process_table import processes
-from launcher.profile import load_profile
+from launcher.domain.discovery import set_discovery
+from launcher.processes.table import processes
+from launcher.profile.load import load_profile
 from tests.e2e.terminal import Terminal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from launcher.profile import Profile
+    from launcher.profile.load import Profile
 
 DOMAIN = int(os.environ.get("BENCH_DOMAIN", "79"))
 ROUNDS = int(os.environ.get("BENCH_ROUNDS", "7"))

@@ -8,8 +8,8 @@ import re
 import socket
 from pathlib import Path
 
-from launcher.process_shm import SHARED_MEMORY, names, port_numbers, sweep
-from launcher.process_shm_unfinished import discard_unfinished
+from launcher.processes.shared_memory import SHARED_MEMORY, names, port_numbers, sweep
+from launcher.processes.shared_memory_unfinished import discard_unfinished
 
 DOMAINS = range(1, 102)
 """Linux's ephemeral ports leave these domains free (ROS 2 documentation, "The ROS_DOMAIN_ID")."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher.process_shm import SHARED_MEMORY
+from launcher.processes.shared_memory import SHARED_MEMORY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -1,15 +1,15 @@
 """Ports of nodes that a test has killed or that hung, kept from those that are started next.
 
-Whoever has talked to a killed node goes on talking to it: see `launcher.process_ports`. A launcher
-sees to that for the nodes that it starts anew; here it is a test that does.
+Whoever has talked to a killed node goes on talking to it: see `launcher.processes.ports`. A
+launcher sees to that for the nodes that it starts anew; here it is a test that does.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from launcher.process_ports import BurntPorts
-from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers, sweep
+from launcher.processes.ports import BurntPorts
+from launcher.processes.shared_memory import SHARED_MEMORY, held_segments, port_numbers, sweep
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

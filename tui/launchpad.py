@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from graph.replay.replay import Replay
-    from launcher.catalog import ProfileEntry
-    from launcher.client import SupervisorClient
-    from launcher.client_start import StartingSupervisor
-    from launcher.profile import Profile
+    from launcher.client.client import SupervisorClient
+    from launcher.client.start import StartingSupervisor
+    from launcher.profile.catalog import ProfileEntry
+    from launcher.profile.load import Profile
     from launcher.status import SessionInfo
     from tui.orders import Order, ReplayOrder
     from tui.replay import ReplayLink
@@ -52,21 +52,21 @@ class LivePad:
 
     async def running(self) -> list[SessionInfo]:
         """Return the sessions that run in the background."""
-        await _imported("launcher.client")
-        from launcher.client import running
+        await _imported("launcher.client.client")
+        from launcher.client.client import running
 
         return await asyncio.to_thread(running)
 
     def domain(self, asked: int | None) -> int:
         """The ROS domain to look at: the one asked for, ROS_DOMAIN_ID, or the user's own."""
-        from launcher.domain import choose_domain
+        from launcher.domain.domain import choose_domain
 
         return choose_domain(asked, None, os.environ)
 
     async def prepare(self) -> None:
         """Import, here and in a supervisor, what is the same for every profile."""
         await self._start_ahead()
-        await _imported("launcher.client", "launcher.supervisor_beside", "graph.observer.observer")
+        await _imported("launcher.client.client", "launcher.runs.beside", "graph.observer.observer")
         # Without ROS there is a word for it, later: the nodes' own and the observer's.
         with contextlib.suppress(ImportError):
             await _imported(*OF_ROS)
@@ -76,7 +76,7 @@ class LivePad:
     async def _start_ahead(self) -> None:
         async with self._starting:
             if self._ahead is None or not self._ahead.waits:
-                from launcher.client_start import StartingSupervisor
+                from launcher.client.start import StartingSupervisor
 
                 self._ahead = await asyncio.to_thread(StartingSupervisor)
 
@@ -92,8 +92,8 @@ class LivePad:
             return watched(*order.watch)
         if order.profile is not None:
             await self._start_ahead()
-        await _imported("launcher.client")
-        from launcher import client
+        await _imported("launcher.client.client")
+        from launcher.client import client
 
         if order.profile is None:
             link = await client.attach(order.attach)
@@ -103,7 +103,7 @@ class LivePad:
         return link
 
     async def _launch(self, profile: Path, order: Order) -> SupervisorClient:
-        from launcher import client
+        from launcher.client import client
 
         read = await asyncio.to_thread(_read, profile, order)
         ahead, self._ahead = self._ahead, None
@@ -125,9 +125,9 @@ class LivePad:
 
 def _read(path: Path, order: Order) -> Profile:
     """Read the profile, and see that nobody else is in its domain."""
-    from launcher.profile import load_profile
+    from launcher.profile.load import load_profile
+    from launcher.runs.beside import refuse_company
     from launcher.serial_ports import serial_ports
-    from launcher.supervisor_beside import refuse_company
 
     profile = load_profile(
         path,
@@ -161,7 +161,7 @@ async def _imported(*modules: str) -> None:
 
 
 def _lessons() -> list[Lesson]:
-    from launcher.catalog import list_profiles
+    from launcher.profile.catalog import list_profiles
 
     return [_lesson(entry) for entry in list_profiles()]
 

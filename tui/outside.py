@@ -120,7 +120,7 @@ class Outside:
 
 def _owner(number: int, run_id: str) -> _Owner:
     """Return whose process of this machine has this number, as far as the middleware tells it."""
-    from launcher.process_table import RUN_MARK, process_numbers, read_marks
+    from launcher.processes.table import RUN_MARK, process_numbers, read_marks
 
     found = [pid for pid in process_numbers() if pid % PROCESS_NUMBERS == number]
     if any((read_marks(pid) or {}).get(RUN_MARK) == run_id for pid in found):

@@ -1,8 +1,8 @@
 """The two seams of the screen: what it needs of the supervisor and of the ROS graph.
 
-`launcher.client.SupervisorClient` and `graph.observer.observer.Observer` fit them, and so do the
-recorded ones of the tests. A `Launchpad` lists what can be opened and opens it. For type checkers
-only: whoever runs needs none of it.
+`launcher.client.client.SupervisorClient` and `graph.observer.observer.Observer` fit them, and so do
+the recorded ones of the tests. A `Launchpad` lists what can be opened and opens it. For type
+checkers only: whoever runs needs none of it.
 """
 
 from __future__ import annotations

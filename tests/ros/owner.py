@@ -11,7 +11,7 @@ import signal
 import sys
 from dataclasses import asdict
 
-from launcher.client import launch
+from launcher.client.client import launch
 
 
 async def main(profile: str, domain: str, mode: str) -> None:

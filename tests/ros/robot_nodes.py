@@ -7,7 +7,7 @@ import signal
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from launcher.profile import load_profile
+from launcher.profile.load import load_profile
 from tests.ros.devices import mock_robot
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import ROOT, Peer

@@ -15,9 +15,9 @@ from typing import Any
 
 import pytest
 
-from launcher.client import SupervisorClient, attach, launch, running
+from launcher.client.client import SupervisorClient, attach, launch, running
 from launcher.errors import ConnectionLostError, NotRunningError
-from launcher.process_table import read_process
+from launcher.processes.table import read_process
 from launcher.status import NodeState, NodeStatus
 from tests.waiting import until
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.client import running
+from launcher.client.client import running
 from nodes._stop_memory import Stop, StopMemory
 from tests.deck_process import DeckProcess, alive, deck
 from tests.ros.supervised import end_sessions

@@ -14,7 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from launcher.client import running
+from launcher.client.client import running
 from tests.deck_process import DeckProcess, alive, deck
 from tests.unit.profile_files import written
 from tests.waiting import wait_until

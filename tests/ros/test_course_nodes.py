@@ -18,7 +18,7 @@ from example_interfaces.srv import AddTwoInts
 from sensor_msgs.msg import JointState
 from std_msgs.msg import ByteMultiArray, String
 
-from launcher.client import SupervisorClient, launch
+from launcher.client.client import SupervisorClient, launch
 from launcher.status import NodeState
 from tests.ros.peer import Peer
 from tests.ros.supervised import said, until_state

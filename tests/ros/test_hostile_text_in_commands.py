@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.client import running
+from launcher.client.client import running
 from tests.hostile import EVIL, EVIL_NAME, WORST, harm_in, quoted
 from tests.ros.supervised import end_sessions
 from tests.unit.bags import write_bag

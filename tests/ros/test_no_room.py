@@ -88,7 +88,7 @@ def test_shared_memory_without_room_is_told_of_once(small: Path) -> None:
     script = """
 import sys
 from pathlib import Path
-from launcher.supervisor_shm import SharedMemory
+from launcher.supervisor.shared_memory import SharedMemory
 
 folder = Path(sys.argv[1])
 memory = SharedMemory(lambda severity, words: print(severity.name, words), folder)

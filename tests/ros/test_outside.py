@@ -11,7 +11,7 @@ from tests.waiting import until
 from tui.outside import Outside
 
 if TYPE_CHECKING:
-    from launcher.client import SupervisorClient
+    from launcher.client.client import SupervisorClient
     from tests.ros.observing import Watcher
     from tests.ros.supervised import Launch
 

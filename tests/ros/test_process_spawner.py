@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from launcher.process_signal import lives, send
-from launcher.process_spawner import Born, Spawner, SpawnError, SpawnRequest
-from launcher.process_table import RUN_MARK, Process, processes, read_marks, read_process
-from launcher.process_ties import become_subreaper
-from launcher.spawn_server_start import start_spawn_server
-from launcher.spawn_server_warm import IDLE_AFTER_S
+from launcher.processes.signal import lives, send
+from launcher.processes.table import RUN_MARK, Process, processes, read_marks, read_process
+from launcher.processes.ties import become_subreaper
+from launcher.spawn_server.preload import IDLE_AFTER_S
+from launcher.spawn_server.spawner import Born, Spawner, SpawnError, SpawnRequest
+from launcher.spawn_server.start import start_spawn_server
 from tests.waiting import until
 
 Make = Callable[..., Spawner]
@@ -103,7 +103,7 @@ async def test_two_that_do_not_answer_are_a_reason(
         stop(server.pid)
         return server
 
-    monkeypatch.setattr("launcher.process_spawner.start_spawn_server", start_a_stopped_one)
+    monkeypatch.setattr("launcher.spawn_server.spawner.start_spawn_server", start_a_stopped_one)
     spawner = make(told, 0.5)
     stop(spawner.server_pid)
     with pytest.raises(SpawnError, match="the spawn server does not answer"):
@@ -161,7 +161,7 @@ async def test_where_no_spawn_server_can_be_started_it_is_said(
         raise BlockingIOError(11, "Resource temporarily unavailable")
 
     with monkeypatch.context() as patch:
-        patch.setattr("launcher.process_spawner.start_spawn_server", refuse)
+        patch.setattr("launcher.spawn_server.spawner.start_spawn_server", refuse)
         assert spawner.server_pid is not None
         os.kill(spawner.server_pid, signal.SIGKILL)
         await until(lambda: spawner.server_pid is None, "its end")

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher.client import attach, running
+from launcher.client.client import attach, running
 from launcher.errors import AlreadyRunningError, NotRunningError
 from launcher.rundir import run_dir
-from launcher.supervisor_found import supervisors
+from launcher.runs.found import supervisors
 from tests.deck_process import alive, deck
 from tests.ros.supervised import SLEEPER, Launch, running_pid, until_state
 from tests.waiting import until, wait_until
 
 if TYPE_CHECKING:
-    from launcher.client import SupervisorClient
+    from launcher.client.client import SupervisorClient
 
 NODE = {"node": {"exec": SLEEPER}}
 

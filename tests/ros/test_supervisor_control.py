@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher import control_server
-from launcher.client import attach, launch, running
-from launcher.control_protocol import VERSION
-from launcher.control_socket import connect
+from launcher.client.client import attach, launch, running
+from launcher.control import server as control_server
+from launcher.control.protocol import VERSION
+from launcher.control.socket import connect
 from launcher.errors import (
     AlreadyRunningError,
     ConnectionLostError,
@@ -37,7 +37,7 @@ from tests.waiting import until
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from launcher.client import SupervisorClient
+    from launcher.client.client import SupervisorClient
 
 NODE = {"node": {"exec": SLEEPER}}
 
@@ -150,7 +150,7 @@ async def test_a_supervisor_of_another_version_is_told_apart(
     start: Launch, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     await start(NODE)
-    monkeypatch.setattr("launcher.client.VERSION", VERSION + 1)
+    monkeypatch.setattr("launcher.client.client.VERSION", VERSION + 1)
     with pytest.raises(ProtocolError, match="another version"):
         await attach()
 

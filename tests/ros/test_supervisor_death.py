@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.client import attach, running
-from launcher.process_table import (
+from launcher.client.client import attach, running
+from launcher.processes.table import (
     NODE_MARK,
     RUN_MARK,
     command_line,
@@ -22,8 +22,8 @@ from launcher.process_table import (
     read_process,
 )
 from launcher.rundir import OWN_RUN_DIR
+from launcher.runs.strays import find_strays
 from launcher.status import NodeState, Stray
-from launcher.strays import find_strays
 from tests.ros.supervised import (
     DEAF,
     SLEEPER,

@@ -6,10 +6,10 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.client import attach
+from launcher.client.client import attach
 from launcher.events import LogEvent
-from launcher.logs_lines import MAX_LINE_BYTES
-from launcher.process_usage import proportional_memory
+from launcher.logs.lines import MAX_LINE_BYTES
+from launcher.processes.usage import proportional_memory
 from launcher.status import NodeState, Severity
 from tests.ros.supervised import (
     Launch,
@@ -21,7 +21,7 @@ from tests.ros.supervised import (
 from tests.waiting import until
 
 if TYPE_CHECKING:
-    from launcher.client import SupervisorClient
+    from launcher.client.client import SupervisorClient
     from launcher.status import LogLine
 
 FLOOD_LINES = 30_000

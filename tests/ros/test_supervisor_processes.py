@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher.process_table import read_marks, read_process
+from launcher.processes.table import read_marks, read_process
 from launcher.status import NodeState
 from tests.ros.supervised import (
     DEAF,
@@ -29,7 +29,7 @@ from tests.waiting import until
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from launcher.client import SupervisorClient
+    from launcher.client.client import SupervisorClient
 
 
 async def pid_of(client: SupervisorClient, name: str) -> int:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.process_shm import SHARED_MEMORY, held_segments, port_numbers, sweep
-from launcher.process_table import (
+from launcher.processes.shared_memory import SHARED_MEMORY, held_segments, port_numbers, sweep
+from launcher.processes.table import (
     NODE_MARK,
     RUN_MARK,
     command_line,
@@ -21,7 +21,7 @@ from launcher.process_table import (
     read_marks,
     read_process,
 )
-from launcher.process_usage import proportional_memory
+from launcher.processes.usage import proportional_memory
 from launcher.status import NodeState, Severity
 from tests.domains import domain_of
 from tests.ros.supervised import (
@@ -38,7 +38,7 @@ from tests.waiting import until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from launcher.client import SupervisorClient
+    from launcher.client.client import SupervisorClient
 
 TALKER = """
 import signal, sys, time

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from launcher.client import attach
+from launcher.client.client import attach
 from launcher.errors import SilentSupervisorError
-from launcher.process_table import NODE_MARK, RUN_MARK, processes, read_marks
+from launcher.processes.table import NODE_MARK, RUN_MARK, processes, read_marks
 from launcher.status import NodeState
 from tests.ros.supervised import (
     SLEEPER,
@@ -29,7 +29,7 @@ from tests.waiting import until
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from launcher.client import SupervisorClient
+    from launcher.client.client import SupervisorClient
 
 SOON_S = 15.0
 """Much less than what a spawn server is given to answer, much more than a stop takes."""
@@ -125,7 +125,7 @@ async def stopped(
     start: Launch, monkeypatch: pytest.MonkeyPatch
 ) -> AsyncIterator[SupervisorClient]:
     """A session whose supervisor has been suspended."""
-    monkeypatch.setattr("launcher.client.HEARD_IN_A_HURRY_S", 0.5)
+    monkeypatch.setattr("launcher.client.client.HEARD_IN_A_HURRY_S", 0.5)
     client = await start({"node": {"exec": SLEEPER}})
     await running_pid(client, "node")
     kill(client.session.supervisor_pid, signal.SIGSTOP)
@@ -155,7 +155,7 @@ async def test_a_supervisor_that_hangs_is_killed_with_all_its_nodes(
 async def test_what_a_killed_supervisor_has_left_is_named(
     stopped: SupervisorClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("launcher.client_parting.GONE_WITHIN_S", 0.5)
+    monkeypatch.setattr("launcher.client.parting.GONE_WITHIN_S", 0.5)
     mark = {**os.environ, RUN_MARK: stopped.session.run_id}
     # One that nobody can find by its parents: it stands for another user's.
     left = await asyncio.create_subprocess_exec("sleep", "1000", env=mark, start_new_session=True)
@@ -180,7 +180,7 @@ async def test_anothers_supervisor_that_hangs_is_left_alone(stopped: SupervisorC
 async def test_whoever_attaches_to_one_that_hangs_is_told_how_to_end_it(
     stopped: SupervisorClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("launcher.client.HELLO_WITHIN_S", 0.5)
+    monkeypatch.setattr("launcher.client.client.HELLO_WITHIN_S", 0.5)
     pid = stopped.session.supervisor_pid
     with pytest.raises(SilentSupervisorError, match=f"kill -9 {pid} ends it"):
         await soon(attach())

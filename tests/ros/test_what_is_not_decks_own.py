@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.client import running
+from launcher.client.client import running
 from launcher.rundir import run_dir
 from tests.ros.supervised import SLEEPER, Launch, running_pid, script, start
 from tests.waiting import until

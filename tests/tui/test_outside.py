@@ -152,8 +152,8 @@ def test_a_process_that_deck_has_started_is_its_own_under_any_name(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     marks = {STARTED_HERE: {"DECK_RUN_ID": "run"}, 8: {}, 9: {"DECK_RUN_ID": "another"}}
-    monkeypatch.setattr("launcher.process_table.process_numbers", lambda: [*marks, 65536 + 8])
-    monkeypatch.setattr("launcher.process_table.read_marks", marks.get)
+    monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [*marks, 65536 + 8])
+    monkeypatch.setattr("launcher.processes.table.read_marks", marks.get)
     # `exec: [rviz2]` under the key `viewer`.
     assert outside(NodeRow("/rviz", processes=(STARTED_HERE,))) == ()
     # A second one of the name of a node of Deck's.
@@ -170,8 +170,8 @@ def test_a_process_that_deck_has_started_is_its_own_under_any_name(
 def test_of_two_by_one_name_it_is_heard_only_when_it_is_alone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("launcher.process_table.process_numbers", lambda: [8])
-    monkeypatch.setattr("launcher.process_table.read_marks", lambda _pid: {})
+    monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [8])
+    monkeypatch.setattr("launcher.processes.table.read_marks", lambda _pid: {})
     here = Outside()
     here.see(lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)), NODES, "run")
     assert here.lines((said("whose?", "camera"),), NODES) == ()
@@ -183,8 +183,8 @@ def test_of_two_by_one_name_it_is_heard_only_when_it_is_alone(
 async def test_one_in_place_of_a_node_that_was_stopped_is_not_told_to_be_decks(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("launcher.process_table.process_numbers", lambda: [8])
-    monkeypatch.setattr("launcher.process_table.read_marks", lambda _pid: {})
+    monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [8])
+    monkeypatch.setattr("launcher.processes.table.read_marks", lambda _pid: {})
     pad = RecordedPad()
     async with opened(pad, "graph") as (app, pilot):
         pad.link.set_state("camera", NodeState.EXITED, pid=None)

@@ -6,7 +6,7 @@ import asyncio
 
 
 class ManualClock:
-    """Fits `launcher.supervisor_clock.Clock`."""
+    """Fits `launcher.clock.Clock`."""
 
     def __init__(self) -> None:
         self._now = 1000.0

@@ -7,7 +7,7 @@ from textwrap import dedent
 from typing import Any
 
 from launcher.errors import ProfileError, ProfileProblem
-from launcher.profile import Profile, load_profile
+from launcher.profile.load import Profile, load_profile
 
 
 def written(folder: Path, text: str, name: str = "lesson.yaml") -> Path:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from launcher.catalog import find_profile, list_profiles
 from launcher.errors import ProfileNotFoundError, UsageError
+from launcher.profile.catalog import find_profile, list_profiles
 from tests.unit.profile_files import written
 
 

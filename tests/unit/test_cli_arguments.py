@@ -208,7 +208,8 @@ def test_list_is_quick_because_it_imports_neither_textual_nor_ros(tmp_path: Path
 
 def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
     modules = _imported_by(
-        "import tui.cli.screen; from launcher.catalog import find_profile; find_profile('9')",
+        "import tui.cli.screen;"
+        "from launcher.profile.catalog import find_profile; find_profile('9')",
         tmp_path,
     )
     assert not modules & {"textual", "rclpy", "pydantic", "yaml", "numpy", "asyncio"}

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from launcher.readiness import Condition, Seen
 from launcher.status import NodeState, NodeStatus
-from launcher.supervisor_words import instead, what
+from launcher.supervisor.readiness import Condition, Seen
+from launcher.supervisor.words import instead, what
 from tui.cli.health import over, settled, well
 
 

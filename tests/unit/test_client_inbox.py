@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from launcher import client_inbox
-from launcher.client_inbox import Inbox
+from launcher.client import inbox as client_inbox
+from launcher.client.inbox import Inbox
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
 

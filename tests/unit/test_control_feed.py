@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from launcher.control_feed import MAX_LINES, ClientFeed
-from launcher.logs_ring import LogRing
+from launcher.control.feed import MAX_LINES, ClientFeed
+from launcher.logs.ring import LogRing
 from launcher.status import LogLine, NodeState, NodeStatus, Severity
 
 

@@ -7,7 +7,13 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from launcher.discovery import ONLY_THESE, VARIABLES, set_discovery, settings_of_discovery, why_open
+from launcher.domain.discovery import (
+    ONLY_THESE,
+    VARIABLES,
+    set_discovery,
+    settings_of_discovery,
+    why_open,
+)
 
 
 def test_on_one_machine_both_names_lead_to_the_file() -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from launcher.discovery import PROFILES
+from launcher.domain.discovery import PROFILES
 from launcher.serial_ports import SerialPort
 from tui.cli import main
 from tui.doctor import Finding, Level

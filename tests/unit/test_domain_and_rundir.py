@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.domain import default_domain, ros_environment
+from launcher.domain.domain import default_domain, ros_environment
 from launcher.errors import RunDirError
 from launcher.rundir import found_run_dir, log_dir, run_dir
 

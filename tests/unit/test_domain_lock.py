@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from launcher import supervisor_record
-from launcher.supervisor_record import exclusively, lock_path
+from launcher.runs import record as supervisor_record
+from launcher.runs.record import exclusively, lock_path
 
 ROOT = Path(__file__).resolve().parents[2]
 DOMAIN = 42
@@ -42,7 +42,7 @@ def test_where_somebody_else_has_planted_the_lock_starts_still_wait_for_each_oth
 
 def test_who_is_root_in_a_namespace_of_his_own_takes_no_roots_lock() -> None:
     """Else an ordinary user's file would lie where root's Deck looks for its own."""
-    shown = "from launcher.supervisor_record import lock_path; print(lock_path())"
+    shown = "from launcher.runs.record import lock_path; print(lock_path())"
     inside = ("unshare", "--user", "--map-user=4321", sys.executable, "-c", shown)
     done = subprocess.run(inside, cwd=ROOT, capture_output=True, text=True, check=True, timeout=50)
     assert done.stdout.strip() == str(lock_path())

@@ -6,7 +6,7 @@ import os
 import pwd
 import socket
 
-from launcher.domain_ports import other_users, owners
+from launcher.domain.ports import other_users, owners
 
 TABLE = [
     "  512: 0100007F:1CF2 00000000:0000 07 00000000:00000000 00:00000000 00000000  1000 0 7 2 0 0",

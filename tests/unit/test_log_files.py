@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher import logs_files
-from launcher.logs_files import LogFiles
+from launcher.logs import files as logs_files
+from launcher.logs.files import LogFiles
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher.logs_folder import MARK, make_log_folder, prune_runs
-from launcher.supervisor_id import new_run_id
+from launcher.logs.folder import MARK, make_log_folder, prune_runs
+from launcher.run_id import new_run_id
 
 if TYPE_CHECKING:
     from pathlib import Path

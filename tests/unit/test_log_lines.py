@@ -7,7 +7,7 @@ import re
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from launcher.logs_lines import IDLE_S, MAX_LINE_BYTES, LineAssembler, RawLine
+from launcher.logs.lines import IDLE_S, MAX_LINE_BYTES, LineAssembler, RawLine
 
 
 def texts(lines: list[RawLine]) -> list[bytes]:

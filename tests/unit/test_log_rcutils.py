@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from launcher.logs_rcutils import AT_ONCE_S, SeverityParser
+from launcher.logs.rcutils import AT_ONCE_S, SeverityParser
 from launcher.status import Severity
 
 NOW = 1_700_000_500.0

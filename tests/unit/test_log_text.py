@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from launcher.logs_text import plain_text
+from launcher.logs.text import plain_text
 from launcher.status import Severity
 
 

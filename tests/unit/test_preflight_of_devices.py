@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.profile import Profile
+from launcher.profile.load import Profile
 from launcher.serial_ports import SerialPort
 from tui.cli import main
 from tui.doctor import Finding, Level

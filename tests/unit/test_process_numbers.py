@@ -10,8 +10,8 @@ def test_an_end_that_is_kept_is_not_that_of_whoever_gets_the_number() -> None:
     told = run_with_own_numbers(
         """
         import asyncio, os, signal
-        from launcher.process_exit import Reaper
-        from launcher.process_table import read_process
+        from launcher.processes.exit import Reaper
+        from launcher.processes.table import read_process
 
         async def main():
             reaper = Reaper()
@@ -53,8 +53,8 @@ def test_a_signal_is_not_for_whoever_has_got_the_number() -> None:
     told = run_with_own_numbers(
         """
         import os, signal, time
-        from launcher.process_signal import lives, send
-        from launcher.process_table import read_process
+        from launcher.processes.signal import lives, send
+        from launcher.processes.table import read_process
 
         def sleeper():
             pid = os.fork()
@@ -83,8 +83,8 @@ def test_a_signal_goes_out_where_there_is_nothing_to_hold_a_process_by() -> None
     told = run_with_own_numbers(
         """
         import errno, os, signal
-        from launcher.process_signal import send
-        from launcher.process_table import read_process
+        from launcher.processes.signal import send
+        from launcher.processes.table import read_process
 
         def refuse(pid):
             raise OSError(errno.ENOSYS, "no such call")
@@ -104,8 +104,8 @@ def test_whoever_gets_the_number_of_a_node_is_not_one_of_it() -> None:
     told = run_with_own_numbers(
         """
         import os, signal, time
-        from launcher.process_members import Members
-        from launcher.process_table import read_process
+        from launcher.processes.members import Members
+        from launcher.processes.table import read_process
 
         def leader():
             pid = os.fork()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.process_ports import BurntPorts
+from launcher.processes.ports import BurntPorts
 
 
 def free_ports(count: int) -> list[int]:
@@ -62,7 +62,7 @@ def test_nobody_gets_a_number_whose_shared_memory_is_another_users(tmp_path: Pat
 
 
 def test_the_oldest_are_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("launcher.process_ports._MOST", 2)
+    monkeypatch.setattr("launcher.processes.ports._MOST", 2)
     burnt, ports = BurntPorts(), free_ports(3)
     for port in ports:
         burnt.keep([port + 1])

@@ -6,7 +6,7 @@ import fcntl
 import os
 from typing import TYPE_CHECKING
 
-from launcher.process_shm import port_numbers, sweep, sweep_abandoned
+from launcher.processes.shared_memory import port_numbers, sweep, sweep_abandoned
 from tests.half_made import make_old
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher.process_shm_unfinished import (
+from launcher.processes.shared_memory_unfinished import (
     UNFINISHED_S,
     Discarded,
     discard_unfinished,
     unfinished,
 )
 from launcher.status import Severity
-from launcher.supervisor_shm import SharedMemory
+from launcher.supervisor.shared_memory import SharedMemory
 from tests.unit.test_process_shm import DEAD, made
 
 if TYPE_CHECKING:

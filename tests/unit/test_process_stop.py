@@ -5,9 +5,9 @@ from __future__ import annotations
 import signal
 from collections.abc import Sequence
 
-from launcher.process_stop import end_all
-from launcher.process_table import Process
-from launcher.supervisor_clock import MonotonicClock
+from launcher.clock import MonotonicClock
+from launcher.processes.stop import end_all
+from launcher.processes.table import Process
 
 PROCESS = Process(4711, "python", "S", 1, 4711, 4711, 0, 0)
 

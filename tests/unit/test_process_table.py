@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 
-from launcher.process_table import RUN_MARK, read_marks
+from launcher.processes.table import RUN_MARK, read_marks
 
 
 def test_a_process_that_is_just_being_executed_has_its_marks() -> None:

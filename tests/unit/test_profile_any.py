@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from launcher.errors import ProfileError
-from launcher.profile import load_profile
-from launcher.profile_model import NodeDocument, ProfileDocument, ReadyDocument
+from launcher.profile.load import load_profile
+from launcher.profile.model import NodeDocument, ProfileDocument, ReadyDocument
 
 KEYS = sorted(
     {

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from launcher.errors import ProfileError
-from launcher.profile import load_profile
+from launcher.profile.load import load_profile
 from tests.unit.profile_files import told, written
 
 BAD = {

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from launcher.catalog import list_profiles
-from launcher.profile import load_profile
-from launcher.profile_schema import render
+from launcher.profile.catalog import list_profiles
+from launcher.profile.load import load_profile
+from launcher.profile.schema import render
 from tests.unit.profile_files import written
 
 PROFILES = Path(__file__).parents[2] / "profiles"
@@ -48,7 +48,7 @@ def test_a_lesson_can_be_extended_from_any_folder(path: Path, tmp_path: Path) ->
 
 def test_the_schema_is_true() -> None:
     assert (PROFILES / "schema.json").read_text() == render(), (
-        "python -m launcher.profile_schema > profiles/schema.json"
+        "python -m launcher.profile.schema > profiles/schema.json"
     )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from launcher.errors import ProfileError
-from launcher.profile import Profile, load_profile
+from launcher.profile.load import Profile, load_profile
 from launcher.serial_ports import SerialPort
 from tests.unit.profile_files import loaded, told, written
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.profile import load_profile
+from launcher.profile.load import load_profile
 from tests.unit.profile_files import loaded, problems, told, written
 
 NEVER = "raise SystemExit('never imported')"

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from launcher.errors import DomainError, ProfileError
-from launcher.profile import Profile, load_profile
+from launcher.profile.load import Profile, load_profile
 from tests.unit.profile_files import loaded, told, written
 
 BASE = """\

@@ -12,9 +12,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from launcher import node_program
-from launcher.profile_params import NAME, flatten, written
-from launcher.profile_tree import Branch, Entry, Place, Problems, Scalar
-from launcher.profile_yaml import EXPONENT, read_value
+from launcher.profile.params import NAME, flatten, written
+from launcher.profile.tree import Branch, Entry, Place, Problems, Scalar
+from launcher.profile.yaml_tree import EXPONENT, read_value
 from tests.unit.profile_files import loaded
 
 TEXTS = st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=40)
@@ -101,7 +101,7 @@ def test_any_text_after_set_is_a_value_or_a_problem_and_never_a_crash(text: str)
 
 @given(st.text(max_size=200))
 def test_any_text_in_a_file_is_a_profile_or_problems_and_never_a_crash(text: str) -> None:
-    from launcher.profile_yaml import read_yaml
+    from launcher.profile.yaml_tree import read_yaml
 
     problems = Problems()
     tree = read_yaml(text, "test", problems)

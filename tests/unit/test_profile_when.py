@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from launcher.profile_when import WhenError, holds
+from launcher.profile.when import WhenError, holds
 from tests.unit.profile_files import loaded, told
 
 MOCK = {"hardware": "mock"}

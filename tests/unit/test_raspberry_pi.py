@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from launcher.profile import load_profile
-from launcher.profile_devices import variable
+from launcher.profile.device_variables import variable
+from launcher.profile.load import load_profile
 from launcher.rundir import OWN_RUN_DIR
 from tui.cli.arguments import COMMANDS, parser_of, split
 

@@ -8,9 +8,9 @@ from typing import get_args
 
 import pytest
 
-from launcher.catalog import list_profiles
-from launcher.profile import load_profile
-from launcher.profile_model import NodeDocument, Panel, ProfileDocument
+from launcher.profile.catalog import list_profiles
+from launcher.profile.load import load_profile
+from launcher.profile.model import NodeDocument, Panel, ProfileDocument
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.cli.arguments import COMMANDS

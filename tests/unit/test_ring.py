@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from launcher.logs_ring import LINE_COST, LogRing
+from launcher.logs.ring import LINE_COST, LogRing
 from launcher.status import LogLine, Severity
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from launcher.client.running import find_running
 from launcher.errors import NotRunningError
-from launcher.running import find_running
 
 
 def test_a_link_to_itself_is_no_session(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.serial_choice import KINDS, Unclear, Wanted, choose
+from launcher.profile.serial_choice import KINDS, Unclear, Wanted, choose
 from launcher.serial_ports import SerialPort, lasting_names
 
 PICO = SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython-if00", "2e8a:0005", "Board")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher.spawn_server_shared import SharedModules
+from launcher.spawn_server.shared_modules import SharedModules
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from launcher.process_exit import Exit
-from launcher.process_spawner import SpawnError
-from launcher.process_table import Process
-from launcher.process_usage import Usage
-from launcher.readiness import Condition, Seen, UnwatchableError
+from launcher.processes.exit import Exit
+from launcher.processes.table import Process
+from launcher.processes.usage import Usage
+from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeState, Severity
-from launcher.supervisor_node import LATE_S, Node
-from launcher.supervisor_plan import NodePlan
+from launcher.supervisor.node import LATE_S, Node
+from launcher.supervisor.plan import NodePlan
+from launcher.supervisor.readiness import Condition, Seen, UnwatchableError
 from tests.unit.manual_clock import ManualClock, settle
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class FakeProcess:
 
 
 class FakeSession:
-    """Fits `launcher.supervisor_node.Surroundings`."""
+    """Fits `launcher.supervisor.node.Surroundings`."""
 
     def __init__(self) -> None:
         self.clock = ManualClock()
@@ -99,8 +99,8 @@ class FakeSession:
         self.lines.append(words)
         self.gravest = max(self.gravest, severity, key=lambda each: each.rank)
 
-    def changed(self, node: Node) -> None:
-        self.states.append(node.state)
+    def changed(self, _name: str, state: NodeState) -> None:
+        self.states.append(state)
 
 
 @pytest.fixture
@@ -476,7 +476,7 @@ async def test_a_program_that_is_not_installed_is_told_and_no_alarm_if_optional(
 
 
 def test_words_can_be_translated() -> None:
-    from launcher.control_protocol import pack_text, unpack_text
+    from launcher.control.protocol import pack_text, unpack_text
     from launcher.words import say
 
     words = say("{why}; again in {seconds:g} s", why=say("exit code {code}", code=1), seconds=2.0)

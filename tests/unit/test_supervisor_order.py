@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from launcher.supervisor_order import needed_by, stop_waves
+from launcher.supervisor.order import needed_by, stop_waves
 
 NEEDS = {
     "sonar": (),

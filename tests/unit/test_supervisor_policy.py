@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from launcher.supervisor_policy import (
+from launcher.supervisor.restart_policy import (
     CRASH_WINDOW_S,
     LAST_DELAY_S,
     MAX_CRASHES,

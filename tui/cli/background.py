@@ -7,9 +7,8 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from launcher import client
-from launcher.catalog import find_profile
-from launcher.client_past import newer
+from launcher.client import client
+from launcher.client.past import newer
 from launcher.errors import (
     AlreadyRunningError,
     ConnectionLostError,
@@ -18,6 +17,7 @@ from launcher.errors import (
     UnknownNodeError,
 )
 from launcher.events import LogEvent
+from launcher.profile.catalog import find_profile
 from text.plain import plain
 from tui.cli.company import warn_of_company
 from tui.cli.health import settled, well
@@ -62,7 +62,7 @@ def down_command(options: Namespace) -> int:
 
 async def _up(options: Namespace) -> int:
     # Validation takes pydantic along, which the other commands do without.
-    from launcher.profile import load_profile
+    from launcher.profile.load import load_profile
     from launcher.serial_ports import serial_ports
 
     profile = load_profile(

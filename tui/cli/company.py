@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from launcher.errors import DomainTakenError
-from launcher.supervisor_beside import refuse_company
+from launcher.runs.beside import refuse_company
 from tui.cli.output import say_error
 from tui.i18n import _, said
 
 if TYPE_CHECKING:
-    from launcher.profile import Profile
+    from launcher.profile.load import Profile
 
 
 def warn_of_company(profile: Profile) -> None:

@@ -6,10 +6,10 @@ import sys
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from launcher.catalog import find_profile, list_profiles
 from launcher.errors import ProfileError
-from launcher.profile import load_profile
-from launcher.profile_text import shown
+from launcher.profile.catalog import find_profile, list_profiles
+from launcher.profile.load import load_profile
+from launcher.profile.text import shown
 from text.plain import plain
 from tui.cli.output import DIM, RED, YELLOW, Paint, json_text, write
 from tui.i18n import _, ngettext, pick, said
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from pathlib import Path
 
-    from launcher.catalog import ProfileEntry
     from launcher.errors import ProfileProblem
-    from launcher.profile import Profile
+    from launcher.profile.catalog import ProfileEntry
+    from launcher.profile.load import Profile
 
 
 def list_command(options: Namespace) -> int:

@@ -109,7 +109,7 @@ def complain(error: LauncherError) -> int:
 def _run(command: str, options: Namespace) -> int:
     if command not in STARTERS:
         return _handle(command, options)
-    from launcher.client_start import StartingSupervisor
+    from launcher.client.start import StartingSupervisor
 
     # It has more to import than this process has, and may begin at once.
     with StartingSupervisor() as options.supervisor:

@@ -6,9 +6,9 @@ import sys
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from launcher.catalog import find_profile
 from launcher.errors import UsageError
-from launcher.profile import load_profile
+from launcher.profile.catalog import find_profile
+from launcher.profile.load import load_profile
 from launcher.words import say
 from text.plain import plain
 from tui.cli.doctor import show

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from graph.bag.errors import BagError
 from launcher.errors import UsageError
-from launcher.process_shm_unfinished import discard_unfinished
+from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.rundir import new_recording
 from launcher.words import say
 from text.plain import plain

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from graph.bag.listing import bags_in
 from launcher.errors import UsageError
-from launcher.profile_tree import did_you_mean
+from launcher.profile.tree import did_you_mean
 from launcher.rundir import recordings_path
 from launcher.words import say
 from text.plain import plain

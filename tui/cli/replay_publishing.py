@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from graph.bag.errors import BagError
 from launcher.errors import UsageError
-from launcher.process_shm_unfinished import discard_unfinished
+from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.words import say
 from robot.moving_topics import EMERGENCY_STOP, STOPPED_BY_ZEROS, moves
 from text.plain import plain

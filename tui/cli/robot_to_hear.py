@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from launcher.domain import choose_domain
+from launcher.domain.domain import choose_domain
 from launcher.errors import UsageError
 from launcher.words import say
 
@@ -15,7 +15,7 @@ def robot_to_hear(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
     Raises:
         UsageError: if robots run in several domains.
     """
-    from launcher.client import running
+    from launcher.client.client import running
 
     sessions = [one for one in running() if asked is None or one.domain == asked]
     domains = sorted({one.domain for one in sessions})

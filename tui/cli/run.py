@@ -8,10 +8,10 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from launcher.catalog import find_profile
 from launcher.errors import SilentSupervisorError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
-from launcher.profile import load_profile
+from launcher.profile.catalog import find_profile
+from launcher.profile.load import load_profile
 from launcher.serial_ports import serial_ports
 from launcher.status import NodeState
 from tui.cli.company import warn_of_company
@@ -25,10 +25,10 @@ from tui.i18n import _, language, ngettext, said
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from launcher.client import SupervisorClient
-    from launcher.client_start import StartingSupervisor
+    from launcher.client.client import SupervisorClient
+    from launcher.client.start import StartingSupervisor
     from launcher.events import Event
-    from launcher.profile import Profile
+    from launcher.profile.load import Profile
     from launcher.status import NodeStatus
     from tui.cli.report import Report
 
@@ -158,7 +158,7 @@ class Run:
         self._stopping.append(asyncio.ensure_future(shutdown))
 
     async def _start(self) -> SupervisorClient:
-        from launcher.client import launch
+        from launcher.client.client import launch
 
         self._starting = asyncio.ensure_future(
             launch(

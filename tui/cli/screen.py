@@ -6,8 +6,8 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from launcher.catalog import find_profile
 from launcher.errors import ProfileNotFoundError, UsageError
+from launcher.profile.catalog import find_profile
 from launcher.words import say
 from tui.cli.arguments import COMMANDS, HELP
 from tui.cli.output import say_error, write
@@ -68,7 +68,7 @@ def attach_command(options: Namespace) -> int:
     if not has_terminal():
         say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
         return 2
-    from launcher.running import find_running
+    from launcher.client.running import find_running
 
     # What is wrong with the name is told before there is a screen.
     session = find_running(options.name).session
@@ -96,7 +96,7 @@ def _without_screen(options: Namespace) -> int:
             _("there is no terminal to draw on; name a profile: deck run 09-brain (deck list)")
         )
         return 2
-    from launcher.client_start import StartingSupervisor
+    from launcher.client.start import StartingSupervisor
 
     with StartingSupervisor() as options.supervisor:
         from tui.cli.run import run_command

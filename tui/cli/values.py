@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 
-from launcher.domain import parse_domain
+from launcher.domain.domain import parse_domain
 from launcher.errors import DomainError
 from tui.i18n import _, said
 

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 def watch_command(options: Namespace) -> int:
     """Show the screen until it is left."""
-    from launcher.domain import choose_domain
+    from launcher.domain.domain import choose_domain
 
     domain = choose_domain(options.domain, None, os.environ)
     if not has_terminal():
         say_error(_("watch needs a terminal; `deck record` works without one"))
         return 2
-    from launcher.process_shm_unfinished import discard_unfinished
+    from launcher.processes.shared_memory_unfinished import discard_unfinished
     from tui.live import run_live
 
     # There may be no supervisor here that does it.

@@ -6,9 +6,9 @@ import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from launcher.discovery import RMW, why_open
-from launcher.discovery import VARIABLES as FAST_DDS_VARIABLES
-from launcher.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
+from launcher.domain.discovery import RMW, why_open
+from launcher.domain.discovery import VARIABLES as FAST_DDS_VARIABLES
+from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
 from launcher.errors import DomainError
 from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _, said

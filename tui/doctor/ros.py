@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
-from launcher.discovery import set_discovery
+from launcher.domain.discovery import set_discovery
 from tui.child_python import python
 from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _

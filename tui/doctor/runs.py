@@ -35,8 +35,8 @@ class RunFacts:
 
 def look() -> RunFacts:
     """Find out."""
-    from launcher.client import running
-    from launcher.strays import find_strays
+    from launcher.client.client import running
+    from launcher.runs.strays import find_strays
 
     try:
         here, logs = found_run_dir() or run_path(os.environ), log_path()

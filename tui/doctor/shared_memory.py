@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.process_shm import SHARED_MEMORY
-from launcher.process_shm_unfinished import unfinished
+from launcher.processes.shared_memory import SHARED_MEMORY
+from launcher.processes.shared_memory_unfinished import unfinished
 from tui.doctor.finding import fail, ok, warn
 from tui.i18n import _, ngettext
 
@@ -31,7 +31,7 @@ class SharedMemoryFacts:
     """Segments of Fast DDS that are this user's and that no process has mapped."""
     stale_bytes: int = 0
     unfinished: tuple[str, ...] = ()
-    """Paths of files that hold up every node, see `launcher.process_shm_unfinished`."""
+    """Paths of files that hold up every node, see `launcher.processes.shared_memory_unfinished`."""
     foreign: tuple[str, ...] = ()
     """Those of them that are another user's."""
 

@@ -17,7 +17,7 @@ from tui.preflight.ports import ask_ports
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from launcher.profile import Profile
+    from launcher.profile.load import Profile
     from launcher.serial_ports import SerialPort
     from tui.preflight.answers import Answer
 

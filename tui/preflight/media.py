@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from launcher.profile_devices import variable
+from launcher.profile.device_variables import variable
 from tui.child_python import python
 from tui.doctor.finding import Level
 from tui.doctor.serial_ports import permission_mend

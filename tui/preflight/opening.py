@@ -7,7 +7,7 @@ import os
 import termios
 from typing import TYPE_CHECKING
 
-from launcher.serial_choice import how_to_choose
+from launcher.profile.serial_choice import how_to_choose
 from launcher.serial_ports import lasting_names
 from tui.doctor.finding import Level
 from tui.doctor.serial_ports import permission_mend

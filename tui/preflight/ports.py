@@ -7,8 +7,8 @@ from contextlib import closing
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from launcher.profile_devices import wanted
-from launcher.serial_choice import AUTO, Unclear, choose
+from launcher.profile.devices import wanted
+from launcher.profile.serial_choice import AUTO, Unclear, choose
 from tui.doctor.finding import Level
 from tui.i18n import _, said
 from tui.preflight.answers import Answer, ask

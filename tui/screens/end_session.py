@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual.content import Content
 
-from launcher.who import who_words
+from launcher.processes.owner import who_words
 from text.plain import plain
 from tui.actions import Action, bindings
 from tui.i18n import N_, _, ngettext, said

@@ -111,9 +111,9 @@ async def lessons_with_drivers() -> tuple[str, ...]:
 
 
 def _lessons_with_drivers() -> tuple[str, ...]:
-    from launcher.catalog import list_profiles
     from launcher.errors import LauncherError
-    from launcher.profile import load_profile
+    from launcher.profile.catalog import list_profiles
+    from launcher.profile.load import load_profile
 
     found: list[str] = []
     for entry in list_profiles():

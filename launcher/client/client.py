@@ -1,0 +1,368 @@
+"""The launcher for those who use it: start a profile, attach to a session, ask and listen."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+from launcher.client.inbox import Inbox
+from launcher.client.parting import kill_supervisor
+from launcher.client.past import newer
+from launcher.client.running import find_running, running_records
+from launcher.client.start import StartingSupervisor
+from launcher.control.protocol import (
+    MAX_MESSAGE_BYTES,
+    VERSION,
+    encode,
+    pack_stray,
+    unpack_line,
+    unpack_session,
+    unpack_status,
+    unpack_stray,
+    unpack_text,
+)
+from launcher.control.socket import connect
+from launcher.errors import (
+    ConnectionLostError,
+    ProtocolError,
+    SilentSupervisorError,
+    UnknownNodeError,
+)
+from launcher.events import LogEvent
+from launcher.run_id import supervisor_of
+from launcher.rundir import log_dir, run_dir
+from launcher.serial_ports import serial_ports
+from launcher.supervisor.plan import plan_of
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Iterable
+    from pathlib import Path
+
+    from launcher.events import Event
+    from launcher.profile.load import Profile
+    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from launcher.words import Words
+
+HELLO_WITHIN_S = 10.0
+HEARD_WITHIN_S = 30.0
+"""A supervisor that does not say for so long that it has heard of its end hangs."""
+HEARD_IN_A_HURRY_S = 5.0
+ENDED_IN_A_HURRY_S = 20.0
+"""The supervisor's own limits, together with what it takes to say goodbye."""
+UNSENT_WITHIN_S = 1.0
+
+
+async def launch(
+    profile: Path | str | Profile,
+    *,
+    hardware: str = "mock",
+    overrides: Iterable[str] = (),
+    domain: int | None = None,
+    foreground: bool = True,
+    node_lang: str = "",
+    supervisor: StartingSupervisor | None = None,
+) -> SupervisorClient:
+    """Start a profile and connect to its supervisor.
+
+    Args:
+        profile: its file, or the profile as already read (then the next three are not used)
+        hardware: `mock` or `real`
+        overrides: `node.param=value`
+        domain: the ROS domain, over what the profile and the environment say
+        foreground: whether the nodes end with this process, or with `aclose`
+        node_lang: `en` or `ru`, what the nodes log in; empty: as the environment says
+        supervisor: one that has been started ahead, for this call alone
+
+    Raises:
+        ProfileError, DomainError: if it cannot be used; nothing was started.
+        AlreadyRunningError: if one of its nodes runs in that domain already.
+        RunDirError: if there is no place for sockets or logs.
+        StartError: if the supervisor did not start.
+    """
+    supervisor = supervisor or StartingSupervisor()
+    try:
+        folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
+        read = await asyncio.to_thread(_read, profile, hardware, tuple(overrides), domain)
+        plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang)
+    except BaseException:
+        supervisor.give_up()
+        raise
+    folder, lifeline = await supervisor.begin(plan)
+    if not foreground:
+        os.close(lifeline)
+        lifeline = -1
+    try:
+        return await _connect(folder, lifeline)
+    except BaseException as problem:
+        if lifeline >= 0:
+            os.close(lifeline)
+            if isinstance(problem, SilentSupervisorError):
+                raise SilentSupervisorError(await kill_supervisor(folder.name)) from None
+        raise
+
+
+async def attach(name: str | None = None) -> SupervisorClient:
+    """Connect to a session that runs: the only one, or the one that `find_running` finds.
+
+    Raises:
+        NotRunningError: if there is none.
+        SeveralRunningError: if there are several to choose from.
+        ConnectionLostError: if it has ended just now.
+        SilentSupervisorError: if it hangs.
+        ProtocolError: if it is of another version.
+    """
+    record = await asyncio.to_thread(find_running, name)
+    return await _connect(record.folder)
+
+
+def running() -> list[SessionInfo]:
+    """Return every session that runs, oldest first."""
+    return [record.session for record in running_records()]
+
+
+def _read(
+    profile: Path | str | Profile, hardware: str, overrides: tuple[str, ...], domain: int | None
+) -> Profile:
+    from launcher.profile.load import Profile, load_profile
+
+    if isinstance(profile, Profile):
+        return profile
+    return load_profile(
+        profile, hardware=hardware, overrides=overrides, domain=domain, ports=serial_ports
+    )
+
+
+def _silent(pid: int) -> Words:
+    return say("the supervisor (pid {pid}) does not answer; kill -9 {pid} ends it", pid=pid)
+
+
+async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
+    try:
+        connection = await asyncio.to_thread(connect, folder)
+        reader, writer = await asyncio.open_unix_connection(
+            sock=connection, limit=MAX_MESSAGE_BYTES
+        )
+    except asyncio.TimeoutError as problem:
+        raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
+    except OSError as problem:
+        raise ConnectionLostError(say("the supervisor does not answer")) from problem
+    try:
+        hello = await _greeted(reader, writer, folder)
+    except BaseException:
+        writer.close()
+        raise
+    return SupervisorClient(hello, reader, writer, lifeline)
+
+
+async def _greeted(
+    reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path
+) -> dict[str, Any]:
+    """Say which version this is, and return the answer of a supervisor of the same one."""
+    try:
+        writer.write(encode({"deck": VERSION}))
+        hello: dict[str, Any] = json.loads(
+            await asyncio.wait_for(reader.readline(), HELLO_WITHIN_S)
+        )
+    except asyncio.TimeoutError as problem:
+        raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
+    except (OSError, ValueError) as problem:
+        raise ConnectionLostError(say("the supervisor does not answer")) from problem
+    if hello.get("deck") != VERSION:
+        raise ProtocolError(
+            say(
+                "the running session is of another version of Deck ({theirs}, this is {ours});"
+                " use that version to stop it",
+                theirs=hello.get("deck"),
+                ours=VERSION,
+            )
+        )
+    return hello
+
+
+class SupervisorClient:
+    """A connection to a supervisor; made by `launch` and `attach`."""
+
+    def __init__(
+        self,
+        hello: dict[str, Any],
+        reader: asyncio.StreamReader,
+        writer: asyncio.StreamWriter,
+        lifeline: int,
+    ) -> None:
+        """`lifeline` is a descriptor that holds a foreground session, or -1."""
+        self.session: SessionInfo = unpack_session(hello["session"])
+        self.own = lifeline >= 0
+        """Whether this client has started it in the foreground: it ends with it."""
+        self.nodes: dict[str, NodeStatus] = {}
+        """Every node in the profile's order, kept current."""
+        self.strays: tuple[Stray, ...] = ()
+        """What an earlier run has left behind, kept current."""
+        self._reader = reader
+        self._writer = writer
+        self._lifeline = lifeline
+        self._inbox = Inbox()
+        self._replies: dict[int, asyncio.Future[Any]] = {}
+        self._next_id = 1
+        self._closed = asyncio.Event()
+        self._parting: asyncio.Task[Words] | None = None
+        self._hear({"event": "status", "nodes": hello["nodes"]})
+        self._hear({"event": "strays", "strays": hello["strays"]})
+        self._listening = asyncio.create_task(self._listen())
+
+    async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
+        """Yield what happens, `ClosedEvent` last; for one listener.
+
+        It begins with the log of before, its newest `past` lines, and the statuses as they were
+        when the connection was made. News that nobody takes are merged: there is never more than
+        one event of a kind to catch up with.
+        """
+        known: dict[str, int] = {}
+        if past:
+            with contextlib.suppress(ConnectionLostError):
+                lines = await self.history(None, past)
+                known = {line.node: line.seq for line in lines}
+                yield LogEvent(tuple(lines))
+        async for event in self._inbox.events():
+            if isinstance(event, LogEvent):
+                event = newer(event, known)  # noqa: PLW2901
+                if not event.lines and not event.skipped:
+                    continue
+            yield event
+
+    async def start(self, *names: str) -> None:
+        """Start these nodes with all that they need, all if none is named.
+
+        One that waits for others, or for its next try, starts at once.
+        """
+        await self._ask("start", nodes=names)
+
+    async def stop(self, *names: str, now: bool = False) -> None:
+        """Stop these nodes, dependants first, all if none is named; return when they have ended.
+
+        `now`, or asking a second time, skips the waiting between the signals.
+        """
+        await self._ask("stop", nodes=names, now=now)
+
+    async def restart(self, *names: str) -> None:
+        """Begin to stop and start these nodes, all if none is named."""
+        await self._ask("restart", nodes=names)
+
+    async def history(self, node: str | None, limit: int) -> list[LogLine]:
+        """Return the newest lines, oldest first, of one node or of all in the order of time."""
+        lines = await self._ask("history", node=node, limit=limit)
+        return [unpack_line(line) for line in lines]
+
+    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+        """End what an earlier run has left behind; return when it has ended."""
+        await self._ask("stop_strays", strays=[pack_stray(stray) for stray in strays])
+
+    async def shutdown(self, now: bool = False) -> None:
+        """Stop all nodes, dependants first, and the supervisor; return when it has ended.
+
+        `now`, or asking a second time, skips the waiting, also that of a call under way.
+
+        Raises:
+            SilentSupervisorError: if it hangs. One that this client has started is no more then,
+                nor are its nodes.
+        """
+        if self._closed.is_set():
+            await self.aclose()
+            return
+        asked = self._ask("shutdown", now=now)
+        try:
+            with contextlib.suppress(ConnectionLostError):
+                await asyncio.wait_for(asked, HEARD_IN_A_HURRY_S if now else HEARD_WITHIN_S)
+            await asyncio.wait_for(self._closed.wait(), ENDED_IN_A_HURRY_S if now else None)
+        except asyncio.TimeoutError:
+            self._parting = self._parting or asyncio.create_task(self._part_with_silent())
+        if self._parting is not None:
+            # Whoever has asked before and still waits hears of it as well.
+            raise SilentSupervisorError(await asyncio.shield(self._parting))
+        await self.aclose()
+
+    async def _part_with_silent(self) -> Words:
+        """End a supervisor of our own that hangs, let go of another's; tell what is left."""
+        try:
+            if self._lifeline >= 0:
+                return await kill_supervisor(self.session.run_id)
+            return _silent(self.session.supervisor_pid)
+        finally:
+            self._end()
+            await self.aclose()
+
+    async def aclose(self) -> None:
+        """Disconnect. A foreground session ends if this is the client that started it."""
+        if self._lifeline >= 0:
+            os.close(self._lifeline)
+            self._lifeline = -1
+        self._listening.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await self._listening
+        self._writer.close()
+        try:
+            await asyncio.wait_for(self._writer.wait_closed(), UNSENT_WITHIN_S)
+        except (OSError, asyncio.TimeoutError):
+            self._writer.transport.abort()
+
+    async def _ask(self, op: str, **arguments: object) -> Any:  # noqa: ANN401 - JSON
+        if self._closed.is_set():
+            raise ConnectionLostError(say("the session has ended"))
+        request_id, self._next_id = self._next_id, self._next_id + 1
+        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self._replies[request_id] = future
+        self._writer.write(encode({"id": request_id, "op": op, **arguments}))
+        try:
+            return await future
+        finally:
+            del self._replies[request_id]
+
+    async def _listen(self) -> None:
+        try:
+            while True:
+                line = await self._reader.readline()
+                if not line:
+                    break
+                self._hear(json.loads(line))
+        except (OSError, ValueError):
+            pass
+        finally:
+            self._end()
+
+    def _end(self) -> None:
+        self._closed.set()
+        self._inbox.close(say("the supervisor is gone"))
+        for future in self._replies.values():
+            if not future.done():
+                future.set_exception(ConnectionLostError(say("the session has ended")))
+
+    def _hear(self, message: dict[str, Any]) -> None:
+        event = message.get("event")
+        if event == "status":
+            nodes = [unpack_status(fields) for fields in message["nodes"]]
+            self.nodes.update((node.name, node) for node in nodes)
+            self._inbox.put_nodes(nodes)
+        elif event == "log":
+            self._inbox.put_lines(map(unpack_line, message["lines"]), message["skipped"])
+        elif event == "strays":
+            self.strays = tuple(unpack_stray(fields) for fields in message["strays"])
+            self._inbox.put_strays(self.strays)
+        elif event == "closed":
+            self._inbox.close(unpack_text(message["reason"]))
+        elif "reply" in message:
+            self._take_reply(message)
+
+    def _take_reply(self, message: dict[str, Any]) -> None:
+        future = self._replies.get(message["reply"])
+        if future is None or future.done():
+            return
+        error = message.get("error")
+        if error is None:
+            future.set_result(message["result"])
+        elif error["kind"] == "unknown_node":
+            future.set_exception(UnknownNodeError(error["name"], error["known"]))
+        else:
+            future.set_exception(ProtocolError(error["message"]))

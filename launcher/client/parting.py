@@ -1,0 +1,44 @@
+"""Ending a supervisor that hangs: it is killed, and what it has started goes with it."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import time
+
+from launcher.processes.members import is_marked
+from launcher.processes.signal import send
+from launcher.processes.table import Process, processes
+from launcher.run_id import living_supervisor, supervisor_of
+from launcher.supervisor.words import who
+from launcher.words import Words, say
+
+GONE_WITHIN_S = 3.0
+"""All that it has started is gone 2 s after a supervisor that was killed."""
+_LOOK_EVERY_S = 0.05
+
+
+async def kill_supervisor(run_id: str) -> Words:
+    """Kill the supervisor of a run; return what to tell of it, once nothing is left or in 3 s."""
+    supervisor = living_supervisor(run_id)
+    if supervisor is not None:
+        send(supervisor, signal.SIGKILL)
+    deadline = time.monotonic() + GONE_WITHIN_S
+    while (left := _left_of(run_id)) and time.monotonic() < deadline:  # noqa: ASYNC110 - not ours
+        await asyncio.sleep(_LOOK_EVERY_S)
+    pid = supervisor_of(run_id)
+    if not left:
+        return say(
+            "the supervisor (pid {pid}) gave no answer; it was killed with all its nodes", pid=pid
+        )
+    return say(
+        "the supervisor (pid {pid}) gave no answer and was killed; still running: {who}",
+        pid=pid,
+        who=who(left),
+    )
+
+
+def _left_of(run_id: str) -> list[Process]:
+    supervisor = living_supervisor(run_id)
+    marked = [each for each in processes() if not each.zombie and is_marked(each, run_id)]
+    return marked if supervisor is None else [supervisor, *marked]

@@ -1,0 +1,201 @@
+"""Starting a supervisor: a process in a session of its own, which gets its plan on stdin.
+
+It begins to import what nodes need before it has a plan, so it is worth starting one as soon as
+it is known that there will be something to run, and reading the profile meanwhile. For that this
+module imports little itself.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import launcher
+from launcher.processes.marks import ROOM_ARGUMENT, room_for_marks
+from launcher.processes.signal import send
+from launcher.processes.table import processes
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from launcher.supervisor.plan import Plan
+
+LESSON_PACKAGES = ("nodes",)
+"""Most profiles' nodes are from it. A name and no more: nothing of it is imported here."""
+ANSWER_WITHIN_S = 30.0
+END_WITHIN_S = 4.0
+"""For so long one that is not wanted any more may stop what it has begun."""
+_LOOK_EVERY_S = 0.05
+
+
+class StartingSupervisor:
+    """A supervisor that waits for its plan; as a context, one that is let go of in the end."""
+
+    def __init__(self) -> None:
+        """Start it."""
+        self._begun = False
+        self._words = os.memfd_create("supervisor")
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "launcher.supervisor", *LESSON_PACKAGES, ROOM_ARGUMENT],
+            # There `launcher` is this package, whatever the user's folder has of that name.
+            cwd=Path(launcher.__file__).parent.parent,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._words,
+            env={**os.environ, **_without_current_folder(), **room_for_marks()},
+            start_new_session=True,
+        )
+        # It is collected when it ends, however long that takes.
+        threading.Thread(target=self._process.wait, name="supervisor", daemon=True).start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.give_up()
+
+    @property
+    def waits(self) -> bool:
+        """Whether it runs and can be given a plan."""
+        return self._words >= 0 and self._process.poll() is None
+
+    def give_up(self) -> None:
+        """Let go of it: if it has not begun anything, that is its end."""
+        if not self._begun:
+            self._kill()
+        if self._words >= 0:
+            os.close(self._words)
+            self._words = -1
+        for stream in (self._process.stdin, self._process.stdout):
+            if stream is not None:
+                stream.close()
+
+    async def begin(self, plan: Plan) -> tuple[Path, int]:
+        """Give it the plan, once.
+
+        Returns:
+            The folder of the run, and the descriptor that keeps a session in the foreground
+            alive: its end is the session's.
+
+        Raises:
+            AlreadyRunningError: if one of the nodes runs in that domain already.
+            RunDirError: if the run or log directory cannot be written.
+            StartError: if it ended before it answered.
+        """
+        import asyncio
+
+        from launcher.control.protocol import unpack_session, unpack_text
+        from launcher.errors import AlreadyRunningError, RunDirError, StartError
+        from launcher.words import say
+
+        stdin = self._process.stdin
+        assert stdin is not None
+        self._begun = True
+        try:
+            try:
+                answer = await asyncio.wait_for(self._give(plan), ANSWER_WITHIN_S)
+            except asyncio.TimeoutError:
+                await self._end()
+                words = say("the supervisor gave no answer for {s:g} s", s=ANSWER_WITHIN_S)
+                raise StartError(words) from None
+            except asyncio.CancelledError:
+                await self._end()
+                raise
+            except (OSError, ValueError) as problem:
+                raise StartError(self._last_words()) from problem
+            if "no_room" in answer:
+                raise RunDirError(unpack_text(answer["no_room"]))
+            if "running" in answer:
+                session = unpack_session(answer["running"])
+                raise AlreadyRunningError(
+                    session, answer["run_dir"], answer["down"], answer["free"]
+                )
+            return Path(answer["folder"]), os.dup(stdin.fileno())
+        finally:
+            self.give_up()
+
+    async def _end(self) -> None:
+        """Have it end, if need be by force: it got a plan that nobody wants any more."""
+        import asyncio
+
+        self.give_up()
+        try:
+            for _look in range(round(END_WITHIN_S / _LOOK_EVERY_S)):
+                if self._process.poll() is not None:
+                    return
+                await asyncio.sleep(_LOOK_EVERY_S)
+        finally:
+            self._kill()
+
+    def _kill(self) -> None:
+        """Kill the supervisor; its guardian, which is what was started here, ends the rest."""
+        supervisors = [each for each in processes() if each.parent == self._process.pid]
+        for supervisor in supervisors:
+            send(supervisor, signal.SIGKILL)
+        if supervisors:
+            self._process.send_signal(signal.SIGCONT)
+        else:
+            self._process.kill()
+
+    async def _give(self, plan: Plan) -> dict[str, Any]:
+        stdin = self._process.stdin
+        assert stdin is not None
+        await _write(stdin.fileno(), plan.to_json().encode() + b"\n")
+        return await self._answer()
+
+    async def _answer(self) -> dict[str, Any]:
+        import asyncio
+        import json
+
+        reader = asyncio.StreamReader()
+        transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(reader), self._process.stdout
+        )
+        try:
+            answer: dict[str, Any] = json.loads(await reader.readline())
+        finally:
+            transport.close()
+        return answer
+
+    def _last_words(self) -> str:
+        from launcher.words import say
+
+        words = os.pread(self._words, 1 << 16, 0).decode(errors="replace").strip()
+        if not words:
+            return say("the supervisor ended without saying why")
+        return say("the supervisor ended: {words}", words=words.splitlines()[-1])
+
+
+def _without_current_folder() -> dict[str, str]:
+    """Return Python's path as it is from here, for those in other folders.
+
+    An empty part, as `export PYTHONPATH=$PYTHONPATH:/more` leaves behind, would be whatever folder
+    a process is in; nobody means that.
+    """
+    written = os.environ.get("PYTHONPATH")
+    parts = [os.path.abspath(part) for part in (written or "").split(os.pathsep) if part]  # noqa: PTH100
+    return {} if written is None else {"PYTHONPATH": os.pathsep.join(parts)}
+
+
+async def _write(fd: int, data: bytes) -> None:
+    """Write to a pipe whose reader may hang; never a thread that would then hang as well."""
+    import asyncio
+
+    loop, room = asyncio.get_running_loop(), asyncio.Event()
+    os.set_blocking(fd, False)
+    loop.add_writer(fd, room.set)
+    try:
+        while data:
+            room.clear()
+            with contextlib.suppress(BlockingIOError):
+                data = data[os.write(fd, data) :]
+            if data:
+                await room.wait()
+    finally:
+        loop.remove_writer(fd)

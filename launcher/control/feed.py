@@ -1,0 +1,64 @@
+"""What one client has been told, and what it is to be told next.
+
+A client is told what there is now, not all that has been: statuses replace each other, and of the
+lines since the last batch it gets the newest of each node, with a count of those left out. So a
+client that is slow costs nothing, and one that catches up is right at once.
+"""
+
+from __future__ import annotations
+
+import heapq
+from typing import TYPE_CHECKING, Any
+
+from launcher.control.protocol import pack_line, pack_status
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from launcher.logs.ring import LogRing
+    from launcher.status import NodeStatus
+
+MAX_LINES = 200
+"""Lines of one node in one batch."""
+MAX_CHARS = 64 * 1024
+"""Length of the lines of one node in one batch, but for the first of them."""
+
+
+class ClientFeed:
+    """The news for one client."""
+
+    def __init__(self, rings: Mapping[str, LogRing]) -> None:
+        """Begin with lines that come from now on: older ones are history."""
+        self._rings = rings
+        self._seen = {name: ring.last_seq for name, ring in rings.items()}
+        self._changed: dict[str, None] = {}
+
+    def status_changed(self, names: Iterable[str]) -> None:
+        """These nodes are to be told of."""
+        self._changed.update(dict.fromkeys(names))
+
+    def status_news(self, statuses: Mapping[str, NodeStatus]) -> dict[str, Any] | None:
+        """Return the news of changed nodes, None if there are none."""
+        if not self._changed:
+            return None
+        nodes = [pack_status(statuses[name]) for name in self._changed]
+        self._changed.clear()
+        return {"event": "status", "nodes": nodes}
+
+    def log_news(self) -> dict[str, Any] | None:
+        """Return the next batch of lines, None if there are none."""
+        news = []
+        skipped = {}
+        for name, ring in self._rings.items():
+            missed = ring.last_seq - self._seen[name]
+            if missed:
+                lines = ring.after(self._seen[name], MAX_LINES, MAX_CHARS)
+                self._seen[name] = ring.last_seq
+                news.append(lines)
+                if missed > len(lines):
+                    skipped[name] = missed - len(lines)
+        if not news:
+            return None
+        # The order of a node's own lines is sacred, whatever they say of the time.
+        batch = heapq.merge(*news, key=lambda line: line.time_s)
+        return {"event": "log", "lines": [pack_line(line) for line in batch], "skipped": skipped}

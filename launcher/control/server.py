@@ -1,0 +1,370 @@
+"""The control socket: hears what clients ask, and tells them what happens."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+import struct
+import time
+from typing import TYPE_CHECKING, Any, Protocol
+
+from launcher.control.feed import ClientFeed
+from launcher.control.protocol import (
+    MAX_HISTORY_CHARS,
+    MAX_HISTORY_LINES,
+    MAX_REQUEST_BYTES,
+    VERSION,
+    encode,
+    pack_line,
+    pack_session,
+    pack_status,
+    pack_stray,
+    pack_text,
+    unpack_stray,
+)
+from launcher.errors import UnknownNodeError
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+
+    from launcher.logs.ring import LogRing
+    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+
+LOG_PERIOD_S = 0.1
+STATUS_DELAY_S = 0.01
+"""Changes at the same moment are told at once."""
+MAX_UNSENT_BYTES = 1 << 20
+"""A client with so much unsent is told nothing more for now."""
+STUCK_S = 30.0
+"""A client that has taken nothing for so long is let go of."""
+MAX_CLIENTS = 64
+MAX_SILENT = 128
+"""Connections that have not greeted yet; of more, the oldest are let go of.
+
+So many cannot come before the one that has greeted at once is heard: asyncio takes 100 at a time.
+"""
+GREETED_WITHIN_S = 10.0
+MAX_REQUESTS = 100
+"""Requests of one client that are served at the same time."""
+
+
+class Controlled(Protocol):
+    """What can be asked of the supervisor."""
+
+    info: SessionInfo
+    strays: tuple[Stray, ...]
+
+    def statuses(self) -> Mapping[str, NodeStatus]:
+        """Return every node as of now."""
+
+    def rings(self) -> Mapping[str, LogRing]:
+        """Return every node's log."""
+
+    def history(self, node: str | None, limit: int) -> Sequence[LogLine]:
+        """Return the newest lines of one node or of all."""
+
+    def start(self, names: Iterable[str]) -> None:
+        """Start nodes; raises `UnknownNodeError`."""
+
+    async def stop(self, names: Iterable[str], *, now: bool) -> None:
+        """Stop nodes; raises `UnknownNodeError`."""
+
+    def restart(self, names: Iterable[str]) -> None:
+        """Restart nodes; raises `UnknownNodeError`."""
+
+    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+        """End what an earlier run has left."""
+
+    def shut_down(self, asked_by: int, *, now: bool) -> None:
+        """Begin to stop everything, and then the supervisor, because this process asks for it."""
+
+
+class BadRequestError(Exception):
+    """What a client sent makes no sense; the text says why."""
+
+
+class ControlServer:
+    """Serves every client of one session."""
+
+    def __init__(self, controlled: Controlled) -> None:
+        self._controlled = controlled
+        self._clients: dict[_Client, None] = {}
+        """In the order in which they came."""
+        self._server: asyncio.AbstractServer | None = None
+        self._loop = asyncio.get_running_loop()
+        self._status_timer: asyncio.TimerHandle | None = None
+        self._log_timer: asyncio.TimerHandle | None = None
+        self._last_log = float("-inf")
+
+    async def serve(self, listening: socket.socket) -> None:
+        """Accept clients here from now on, and nowhere else; those that there are stay."""
+        if self._server is not None:
+            self._server.close()
+        self._server = await asyncio.start_unix_server(
+            self._welcome, sock=listening, limit=MAX_REQUEST_BYTES
+        )
+
+    def status_changed(self, name: str) -> None:
+        """A node's status has changed."""
+        for client in self._clients:
+            client.feed.status_changed([name])
+        if self._status_timer is None and self._clients:
+            self._status_timer = self._loop.call_later(STATUS_DELAY_S, self._tell_statuses)
+
+    def lines_came(self) -> None:
+        """There are new log lines."""
+        if self._log_timer is None and self._clients:
+            wait = max(self._last_log + LOG_PERIOD_S - self._loop.time(), STATUS_DELAY_S)
+            self._log_timer = self._loop.call_later(wait, self._tell_lines)
+
+    def strays_changed(self) -> None:
+        """The strays have changed."""
+        news = {"event": "strays", "strays": [pack_stray(one) for one in self._controlled.strays]}
+        for client in self._clients:
+            client.tell(news)
+
+    async def close(self, reason: str) -> None:
+        """Tell every client how it ended, and let go of them."""
+        if self._server is not None:
+            self._server.close()
+        self._tell_statuses()
+        self._tell_lines()
+        for client in tuple(self._clients):
+            client.tell({"event": "closed", "reason": pack_text(reason)})
+            client.writer.close()
+        pending = [client.task for client in self._clients if client.task is not None]
+        if pending:
+            await asyncio.wait(pending, timeout=1.0)
+
+    def _tell_statuses(self) -> None:
+        self._status_timer = None
+        statuses = self._controlled.statuses()
+        for client in self._clients:
+            if client.takes_more():
+                client.tell(client.feed.status_news(statuses))
+
+    def _tell_lines(self) -> None:
+        self._log_timer = None
+        self._last_log = self._loop.time()
+        behind = False
+        for client in tuple(self._clients):
+            if client.takes_more():
+                client.tell(client.feed.status_news(self._controlled.statuses()))
+                client.tell(client.feed.log_news())
+            else:
+                behind = True
+        if behind:
+            self._log_timer = self._loop.call_later(LOG_PERIOD_S, self._tell_lines)
+
+    async def _welcome(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        pid, uid = _peer(writer)
+        if uid != os.getuid() or not self._has_room():
+            writer.close()
+            return
+        client = _Client(writer, ClientFeed(self._controlled.rings()))
+        client.task = asyncio.current_task()
+        client.pid = pid
+        client.tell(
+            {
+                "deck": VERSION,
+                "session": pack_session(self._controlled.info),
+                "nodes": [pack_status(one) for one in self._controlled.statuses().values()],
+                "strays": [pack_stray(one) for one in self._controlled.strays],
+            }
+        )
+        self._clients[client] = None
+        try:
+            await self._converse(client, reader)
+        except ConnectionError:
+            pass
+        finally:
+            self._clients.pop(client, None)
+            writer.close()
+
+    def _has_room(self) -> bool:
+        """Whether one more may come; those who say nothing make way."""
+        silent = [client for client in self._clients if not client.greeted]
+        if len(self._clients) - len(silent) >= MAX_CLIENTS:
+            return False
+        for client in silent[: max(len(silent) - MAX_SILENT + 1, 0)]:
+            del self._clients[client]
+            client.writer.transport.abort()
+        return True
+
+    async def _converse(self, client: _Client, reader: asyncio.StreamReader) -> None:
+        while True:
+            try:
+                within_s = None if client.greeted else GREETED_WITHIN_S
+                line = await asyncio.wait_for(reader.readline(), within_s)
+            except asyncio.TimeoutError:
+                return
+            except ValueError:
+                client.refuse(None, "too_long", say("a request of more than 1 MiB"))
+                return
+            if not line:
+                return
+            try:
+                request = _read(line)
+                if client.greeted:
+                    client.begin(self._serve(client, request))
+                else:
+                    _check_version(request)
+                    client.greeted = True
+            except BadRequestError as error:
+                client.refuse(None, "bad_request", str(error))
+                if not client.greeted:
+                    return
+            # Who does not take answers need not ask more.
+            await client.writer.drain()
+
+    async def _serve(self, client: _Client, request: dict[str, Any]) -> None:
+        request_id = request.get("id")
+        try:
+            result = await self._answer(request, client.pid)
+        except UnknownNodeError as error:
+            client.refuse(
+                request_id, "unknown_node", str(error), name=error.name, known=error.known
+            )
+        except BadRequestError as error:
+            client.refuse(request_id, "bad_request", str(error))
+        except Exception as error:
+            # A fault of ours, to be found in the supervisor's log; who asked must not wait for it.
+            client.refuse(request_id, "fault", f"{type(error).__name__}: {error}")
+            raise
+        else:
+            # Whoever hears that it is done finds it done.
+            client.tell(client.feed.status_news(self._controlled.statuses()))
+            client.tell({"reply": request_id, "result": result})
+
+    async def _answer(self, request: dict[str, Any], asked_by: int) -> object:
+        controlled = self._controlled
+        op = request.get("op")
+        if op == "start":
+            controlled.start(_names(request))
+        elif op == "restart":
+            controlled.restart(_names(request))
+        elif op == "stop":
+            await controlled.stop(_names(request), now=request.get("now") is True)
+        elif op == "history":
+            return self._history(request)
+        elif op == "stop_strays":
+            await controlled.stop_strays(_strays(request))
+        elif op == "shutdown":
+            controlled.shut_down(asked_by, now=request.get("now") is True)
+        else:
+            raise BadRequestError(say("unknown request {op!r}", op=op))
+        return None
+
+    def _history(self, request: dict[str, Any]) -> list[Any]:
+        node, limit = request.get("node"), request.get("limit")
+        if not isinstance(node, (str, type(None))):
+            raise BadRequestError(say("node: expected a name, found {x!r}", x=node))
+        if node is not None and node not in self._controlled.rings():
+            raise UnknownNodeError(node, self._controlled.statuses())
+        if not isinstance(limit, int) or limit < 0:
+            raise BadRequestError(say("limit: expected a whole number, found {x!r}", x=limit))
+        lines = self._controlled.history(node, min(limit, MAX_HISTORY_LINES))
+        return [pack_line(line) for line in _newest(lines, MAX_HISTORY_CHARS)]
+
+
+class _Client:
+    """One connection."""
+
+    def __init__(
+        self,
+        writer: asyncio.StreamWriter,
+        feed: ClientFeed,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.writer = writer
+        self.feed = feed
+        self.task: asyncio.Task[Any] | None = None
+        self.pid = 0
+        """Its process."""
+        self.greeted = False
+        self._requests: set[asyncio.Task[None]] = set()
+        self._now = now
+        self._behind_since: float | None = None
+
+    def begin(self, serving: Coroutine[Any, Any, None]) -> None:
+        """Serve a request beside the others: one that stops a node takes its time."""
+        if len(self._requests) >= MAX_REQUESTS:
+            serving.close()
+            raise BadRequestError(say("too many requests at once"))
+        task = asyncio.create_task(serving)
+        self._requests.add(task)
+        task.add_done_callback(self._requests.discard)
+
+    def takes_more(self) -> bool:
+        """Whether to tell it more now; lets go of it if it has been stuck for too long."""
+        if self.writer.transport.get_write_buffer_size() < MAX_UNSENT_BYTES:
+            self._behind_since = None
+            return True
+        now = self._now()
+        if self._behind_since is None:
+            self._behind_since = now
+        elif now - self._behind_since > STUCK_S:
+            self.writer.transport.abort()
+        return False
+
+    def tell(self, message: dict[str, Any] | None) -> None:
+        """Send a message, if there is one."""
+        if message is not None and not self.writer.is_closing():
+            self.writer.write(encode(message))
+
+    def refuse(self, request_id: object, kind: str, message: str, **more: object) -> None:
+        """Say that a request was not served, and why."""
+        error = {"kind": kind, "message": message, **more}
+        self.tell({"reply": request_id, "error": error})
+
+
+def _peer(writer: asyncio.StreamWriter) -> tuple[int, int]:
+    """Return process and user at the other end of a connection."""
+    credentials = struct.Struct("3i")
+    connection = writer.get_extra_info("socket")
+    packed = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, credentials.size)
+    pid, uid, _gid = credentials.unpack(packed)
+    return pid, uid
+
+
+def _read(line: bytes) -> dict[str, Any]:
+    try:
+        request = json.loads(line)
+    except (ValueError, RecursionError):
+        raise BadRequestError(say("not a line of JSON")) from None
+    if not isinstance(request, dict):
+        raise BadRequestError(say("expected a JSON object"))
+    return request
+
+
+def _check_version(request: dict[str, Any]) -> None:
+    version = request.get("deck")
+    if version != VERSION:
+        raise BadRequestError(
+            say("this supervisor speaks version {ours}, not {theirs}", ours=VERSION, theirs=version)
+        )
+
+
+def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:
+    for position in range(len(lines) - 1, -1, -1):
+        max_chars -= len(lines[position].text)
+        if max_chars < 0:
+            return lines[position + 1 :]
+    return lines
+
+
+def _names(request: dict[str, Any]) -> list[str]:
+    names = request.get("nodes", [])
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise BadRequestError(say("nodes: expected a list of names"))
+    return names
+
+
+def _strays(request: dict[str, Any]) -> list[Stray]:
+    try:
+        return [unpack_stray(fields) for fields in request["strays"]]
+    except (TypeError, ValueError, KeyError):
+        raise BadRequestError(say("strays: expected a list of strays")) from None

@@ -1,0 +1,1 @@
+"""ROS domains: which one a profile runs in, who else is there, and who may hear it."""

@@ -1,0 +1,44 @@
+"""Who else of this machine is in a ROS domain, as far as its UDP ports tell.
+
+DDS takes its ports by the domain (RTPS 2.2, 9.6.1.1): 250 from 7400 + 250 * domain on. The kernel
+shows whose they are, also where nothing else of another user's processes can be seen.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.processes.owner import user_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_FIRST_PORT, _PORTS_OF_A_DOMAIN = 7400, 250
+_TABLES = ("/proc/net/udp", "/proc/net/udp6")
+
+
+def other_users(domain: int, us: int | None = None) -> tuple[str, ...]:
+    """Return the names of other users than `us`, by default this one, with ports of the domain."""
+    ours = os.getuid() if us is None else us
+    found: set[int] = set()
+    for table in _TABLES:
+        try:
+            lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
+        except OSError:
+            continue
+        found |= owners(lines, domain)
+    return tuple(sorted(user_name(uid) for uid in found - {ours}))
+
+
+def owners(lines: Iterable[str], domain: int) -> set[int]:
+    """Return the users who have ports of this domain, by lines of /proc/net/udp."""
+    first = _FIRST_PORT + _PORTS_OF_A_DOMAIN * domain
+    found = set()
+    for line in lines:
+        fields = line.split()
+        port = int(fields[1].rpartition(":")[2], 16)
+        if first <= port < first + _PORTS_OF_A_DOMAIN:
+            found.add(int(fields[7]))
+    return found

@@ -1,0 +1,1 @@
+"""What nodes write: read from their pipes, cut into lines, kept, and put into files."""

@@ -1,0 +1,90 @@
+"""The logs of one session: what every node has written, and what the supervisor says of it."""
+
+from __future__ import annotations
+
+import heapq
+import time
+from typing import TYPE_CHECKING
+
+from launcher.logs.rcutils import SeverityParser
+from launcher.logs.reader import PipeReader
+from launcher.logs.ring import LogRing
+from launcher.logs.text import plain_text
+from launcher.status import LogLine, Severity
+from launcher.words import say
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from launcher.logs.files import LogFiles
+    from launcher.logs.lines import RawLine
+
+DECK = "deck"
+"""Whose lines those are that the supervisor says of itself, and their `source`."""
+
+
+class LogBook:
+    """Rings and files of all nodes."""
+
+    def __init__(self, nodes: Iterable[str], files: LogFiles, on_line: Callable[[], None]) -> None:
+        """`on_line` is called whenever there is something new."""
+        self.rings = {name: LogRing() for name in (DECK, *nodes)}
+        self._files = files
+        self._on_line = on_line
+
+    def read(self, node: str, fd: int, source: str) -> PipeReader:
+        """Read a node's pipe to its end; `source` is `stdout` or `stderr`."""
+        parser = SeverityParser()
+
+        def take(lines: list[RawLine]) -> None:
+            self._take(node, source, parser, lines)
+
+        return PipeReader(fd, lambda data: self._files.write(node, data), take)
+
+    def say(self, node: str, severity: Severity, words: str) -> None:
+        """Add a line of the supervisor's own about a node, or about itself (`DECK`)."""
+        now = time.time()
+        ring = self.rings[node]
+        ring.append(LogLine(node, ring.last_seq + 1, now, severity, words, "", DECK))
+        stamped = f"[{severity.name}] [{now:.9f}] [{DECK}]: {plain(words)}\n"
+        self._files.write(node, stamped.encode(errors="backslashreplace"))
+        self._on_line()
+
+    def last_words(self, node: str) -> str:
+        """Return the last line of the node's own that tells why it ended, empty if there is none.
+
+        The last error of its newest lines, else its last line.
+        """
+        lines = [line for line in self.rings[node].newest(200) if line.source != DECK and line.text]
+        errors = [line for line in lines if line.severity.rank >= Severity.ERROR.rank]
+        return (errors or lines)[-1].text if lines else ""
+
+    def newest(self, node: str | None, limit: int) -> list[LogLine]:
+        """Return the newest lines of one node, or of all in the order of time; oldest first."""
+        if node is not None:
+            return self.rings[node].newest(limit)
+        newest = [ring.newest(limit) for ring in self.rings.values()]
+        return list(heapq.merge(*newest, key=lambda line: line.time_s))[-limit:] if limit else []
+
+    def _take(self, node: str, source: str, parser: SeverityParser, lines: list[RawLine]) -> None:
+        now = time.time()
+        ring = self.rings[node]
+        for raw in lines:
+            text, suggested = plain_text(raw.data)
+            parsed = parser.parse(text, now, suggested)
+            shown = parsed.text
+            if raw.lost:
+                shown += say(" … [{count} more bytes, see the log file]", count=raw.lost)
+            ring.append(
+                LogLine(
+                    node,
+                    ring.last_seq + 1,
+                    parsed.time_s,
+                    parsed.severity,
+                    shown,
+                    parsed.logger,
+                    source,
+                )
+            )
+        self._on_line()

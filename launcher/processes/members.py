@@ -1,0 +1,102 @@
+"""Which processes belong to which node: its group, its session, and whatever has left both."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from launcher.processes.table import NODE_MARK, RUN_MARK, TICKS_PER_S, processes, read_marks
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from launcher.processes.signal import Identified
+    from launcher.processes.table import Process
+
+_SETTLED_TICKS = 3 * TICKS_PER_S
+"""A process this old has its marks, if it gets any: it has exec'd, or has been named."""
+
+_NOBODY = ""
+
+
+class Members:
+    """Finds the processes of a run's nodes."""
+
+    def __init__(self, run_id: str) -> None:
+        """`run_id`: what their environment carries as `RUN_MARK`."""
+        self._run_id = run_id
+        self._leaders: dict[int, str] = {}
+        """Of a node: its process, hence its group and session too."""
+        self._starts: dict[int, int] = {}
+        """Of each leader, by which it is told from who has its number later."""
+        self._names: set[str] = set()
+        self._known: dict[tuple[int, int], str] = {}
+        """Process number and start to the node it belongs to, or to `_NOBODY`."""
+
+    def add(self, name: str, leader: Identified) -> None:
+        """A node has been started: `leader` is its process, group and session."""
+        self._leaders[leader.pid] = name
+        self._starts[leader.pid] = leader.started_ticks
+        self._names.add(name)
+
+    def remove(self, leader: int) -> None:
+        """Nothing is left of the group of this leader."""
+        self._leaders.pop(leader, None)
+        self._starts.pop(leader, None)
+
+    def scan(self) -> dict[str, list[Process]]:
+        """Return the living processes of each node, those that only wait to be reaped left out."""
+        everybody = {process.pid: process for process in processes()}
+        self._forget_replaced(everybody)
+        table = {pid: process for pid, process in everybody.items() if not process.zombie}
+        settled = time.clock_gettime(time.CLOCK_BOOTTIME) * TICKS_PER_S - _SETTLED_TICKS
+        found: dict[str, list[Process]] = {}
+        known = {}
+        for process in table.values():
+            key = (process.pid, process.started_ticks)
+            name = self._known.get(key)
+            if name is None:
+                name = self._by_descent(process, table) or self._by_marks(process)
+                if name is None and process.started_ticks < settled:
+                    name = _NOBODY
+            if name is not None:
+                known[key] = name
+            if name:
+                found.setdefault(name, []).append(process)
+        self._known = known
+        return found
+
+    def _forget_replaced(self, everybody: Mapping[int, Process]) -> None:
+        """Forget leaders whose number is another's now, and thereby the group's and session's.
+
+        As long as there is a group or a session of a number, the kernel gives it to nobody.
+        """
+        for leader, started_ticks in tuple(self._starts.items()):
+            process = everybody.get(leader)
+            if process is not None and process.started_ticks != started_ticks:
+                self.remove(leader)
+
+    def _by_descent(self, process: Process, table: Mapping[int, Process]) -> str | None:
+        leaders = self._leaders
+        at: Process | None = process
+        for _generation in range(64):
+            if at is None:
+                return None
+            name = leaders.get(at.group) or leaders.get(at.session) or leaders.get(at.pid)
+            if name is not None:
+                return name
+            at = table.get(at.parent)
+        return None
+
+    def _by_marks(self, process: Process) -> str | None:
+        marks = read_marks(process.pid)
+        if marks is None or marks.get(RUN_MARK) != self._run_id:
+            return None
+        name = marks.get(NODE_MARK)
+        return name if name in self._names else None
+
+
+def is_marked(process: Process, run_id: str) -> bool:
+    """Whether the environment of a process says that it is of this run."""
+    marks = read_marks(process.pid)
+    return marks is not None and marks.get(RUN_MARK) == run_id

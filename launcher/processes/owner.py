@@ -1,0 +1,56 @@
+"""Who a process belongs to, for people: user, terminal, and where they have come from."""
+
+from __future__ import annotations
+
+import os
+import pwd
+from typing import TYPE_CHECKING
+
+from launcher.processes.table import read_environment, stat_fields
+from launcher.status import Who
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from launcher.words import Words
+
+_PTS_MAJORS = range(136, 144)
+_VT_MAJOR = 4
+
+
+def who_words(who: Who) -> Words:
+    """Say who it is in a few words."""
+    if who.tty and who.host:
+        return say("{user} on {tty} from {host} (pid {pid})", **vars(who))
+    if who.tty:
+        return say("{user} on {tty} (pid {pid})", **vars(who))
+    if who.host:
+        return say("{user} from {host} (pid {pid}, no terminal)", **vars(who))
+    return say("{user} (pid {pid}, no terminal)", **vars(who))
+
+
+def who_runs(pid: int) -> Who:
+    """Return whose process this is, with what cannot be found out left empty."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as file:  # noqa: PTH123 - as all of /proc is read
+            tty = _terminal(int(stat_fields(file.read())[4]))
+            user = user_name(os.fstat(file.fileno()).st_uid)
+    except OSError:
+        return Who(pid)
+    host = read_environment(pid, "SSH_CONNECTION").split(" ")[0]
+    return Who(pid, user, tty, host)
+
+
+def _terminal(device: int) -> str:
+    """Return the name of a terminal by its number, tty(4) and pts(4)."""
+    major, minor = os.major(device), os.minor(device)
+    if major in _PTS_MAJORS:
+        return f"pts/{(major - _PTS_MAJORS.start) * 256 + minor}"
+    return f"tty{minor}" if major == _VT_MAJOR else ""
+
+
+def user_name(uid: int) -> str:
+    """Return what a user is called, the number if he has no name here."""
+    try:
+        return pwd.getpwuid(uid).pw_name
+    except KeyError:
+        return str(uid)

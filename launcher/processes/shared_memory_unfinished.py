@@ -1,0 +1,98 @@
+"""Files of shared memory whose maker was killed while it made them.
+
+Each file of Fast DDS begins with a word by which boost.interprocess tells how far its making is.
+Whoever opens one that is being made waits until it is made, and for ever if its maker is dead: one
+such file holds up every node of the machine that comes across it. Seen with Fast DDS 2.14: nodes
+stood for minutes where a killed one had begun /dev/shm/fastrtps_port7002.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.processes.shared_memory import (
+    NAME,
+    SHARED_MEMORY,
+    STATES,
+    age_s,
+    is_users_alone,
+    names,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_FILE = re.compile(NAME)
+UNFINISHED_S = 3.0
+"""Age at which a file that is still being made has no maker any more: it takes milliseconds."""
+_BEING_MADE = STATES[:3]
+_CORRUPTED = STATES[4]
+"""Whoever waits for this file gives up, and makes a new one."""
+
+
+@dataclass(frozen=True)
+class Discarded:
+    """What has become of the files that nobody will ever finish."""
+
+    removed: tuple[str, ...]
+    """Names of files."""
+    kept: tuple[str, ...]
+    """Those that belong to another user, or have another name as well."""
+
+
+def unfinished(folder: Path = SHARED_MEMORY) -> Iterator[Path]:
+    """Yield the files whose makers were killed while they made them."""
+    for name in filter(_FILE.fullmatch, names(folder)):
+        path = folder / name
+        if _begins(path) in _BEING_MADE and age_s(path) > UNFINISHED_S:
+            yield path
+
+
+def discard_unfinished(folder: Path = SHARED_MEMORY) -> Discarded:
+    """Remove the files that nobody will ever finish, and let go whoever waits for one."""
+    removed, kept = list[str](), list[str]()
+    for path in unfinished(folder):
+        (removed if _discard(path) else kept).append(path.name)
+    return Discarded(tuple(removed), tuple(kept))
+
+
+def _discard(path: Path) -> bool:
+    """Remove a file, or see another Deck do it; return False if it is another user's."""
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
+    except OSError as problem:
+        return not isinstance(problem, PermissionError)
+    try:
+        if not is_users_alone(descriptor):
+            return False
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if os.path.samestat(os.fstat(descriptor), path.lstat()):
+            # First of all: whoever is let go makes a new file of this name at once.
+            path.unlink()
+            os.pwrite(descriptor, _CORRUPTED, 0)
+    except PermissionError:
+        return False
+    except OSError:
+        return True
+    finally:
+        os.close(descriptor)
+    return True
+
+
+def _begins(path: Path) -> bytes | None:
+    """Return the first word of a file, less if it has no more; None if it cannot be read."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError:
+        return None
+    try:
+        return os.read(descriptor, len(_CORRUPTED))
+    except OSError:
+        return None
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,121 @@
+"""Stopping a node in stages: SIGINT, SIGTERM, SIGKILL, until none of its processes is left."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from launcher.clock import Clock
+    from launcher.processes.table import Process
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How long each stage is given."""
+
+    interrupt_s: float
+    """From SIGINT to SIGTERM."""
+    terminate_s: float
+    """From SIGTERM to SIGKILL."""
+
+    def stage(self, elapsed_s: float) -> int:
+        """Return the stage so long after the beginning: 0, 1 or 2."""
+        return (elapsed_s >= self.interrupt_s) + (elapsed_s >= self.interrupt_s + self.terminate_s)
+
+
+PATIENT = Pace(5.0, 5.0)
+QUICK = Pace(0.7, 0.4)
+"""For whoever asks twice, and for a robot whose owner is gone: over well within 2 s."""
+
+STAGES = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+_LOOK_EVERY_S = 0.1
+_SPEAK_AFTER_S = 0.5
+
+
+class Target(Protocol):
+    """The processes of one node."""
+
+    def left(self) -> Sequence[Process]:
+        """Return those that live."""
+
+    def signal(self, process: Process, number: signal.Signals) -> None:
+        """Send one of them a signal."""
+
+
+class Stop:
+    """One stop under way."""
+
+    def __init__(
+        self,
+        target: Target,
+        clock: Clock,
+        on_holdup: Callable[[Sequence[Process], signal.Signals], None],
+        pace: Pace = PATIENT,
+    ) -> None:
+        """`on_holdup` hears who is left, and the last signal, whenever that has changed."""
+        self._target = target
+        self._clock = clock
+        self._on_holdup = on_holdup
+        self._pace = pace
+        self._wake = asyncio.Event()
+
+    def hurry(self) -> None:
+        """Skip the waiting: somebody has asked twice, or there is no time."""
+        self._pace = QUICK
+        self._wake.set()
+
+    def look(self) -> None:
+        """Look at once: something has ended."""
+        self._wake.set()
+
+    async def run(self) -> None:
+        """Return when nothing is left."""
+        began = self._clock.now()
+        told: dict[int, int] = {}
+        shown: object = None
+        while True:
+            left = self._target.left()
+            if not left:
+                return
+            elapsed = self._clock.now() - began
+            stage = self._pace.stage(elapsed)
+            for process in left:
+                if told.get(process.pid, -1) < stage or STAGES[stage] == signal.SIGKILL:
+                    told[process.pid] = stage
+                    self._target.signal(process, STAGES[stage])
+            view = (tuple(process.pid for process in left), stage)
+            if elapsed >= _SPEAK_AFTER_S and view != shown:
+                shown = view
+                self._on_holdup(left, STAGES[stage])
+            await self._clock.wait(self._wake, _LOOK_EVERY_S)
+            self._wake.clear()
+
+
+async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Process]:
+    """Stop in a hurry who is there, and who comes meanwhile; return who outlives `within_s`.
+
+    One that is just being forked may be missed by a look, so the last two must find nobody.
+    """
+
+    async def end() -> None:
+        while True:
+            await Stop(target, clock, _say_nothing, QUICK).run()
+            if not target.left():
+                return
+
+    ending = asyncio.create_task(end())
+    await asyncio.wait([ending], timeout=within_s)
+    if ending.done():
+        ending.result()
+        return ()
+    ending.cancel()
+    return target.left()
+
+
+def _say_nothing(left: Sequence[Process], number: signal.Signals) -> None:
+    """Nobody hears it: at the end of all what is left is told by itself."""

@@ -1,0 +1,151 @@
+"""Which profiles there are: the course's, those in `./profiles`, and any file by its path."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.errors import LauncherError, ProfileError, ProfileNotFoundError, UsageError
+from launcher.profile.text import SHIPPED
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from launcher.errors import ProfileProblem
+
+ENDINGS = (".yaml", ".yml")
+LESSON = re.compile(r"0*([0-9]+[a-z]?)(?![0-9a-z])")
+"""The number that a profile's name begins with: 4b of `04b-electronic-differential`."""
+
+
+@dataclass(frozen=True)
+class ProfileEntry:
+    """One profile as a list shows it."""
+
+    name: str
+    """File name without its ending: `09-brain`."""
+    path: Path
+    """Absolute."""
+    title: Mapping[str, str] = field(default_factory=dict)
+    about: Mapping[str, str] = field(default_factory=dict)
+    lesson: str = ""
+    nodes: tuple[str, ...] = ()
+    panels: tuple[str, ...] = ()
+    error: str = ""
+    """Why it cannot be started, one problem a line; empty if it can."""
+    problems: tuple[ProfileProblem, ...] = ()
+    """The same, piece by piece."""
+
+
+def list_profiles(
+    paths: Iterable[Path | str] = (), *, hardware: str = "mock"
+) -> list[ProfileEntry]:
+    """Return every profile there is, the lessons in their order; broken ones with their error.
+
+    `paths`: files and folders besides the course's profiles and `./profiles`.
+    """
+    files = [*_files_of(SHIPPED), *_files_of(Path("profiles"))]
+    for path in map(Path, paths):
+        files += _files_of(path) if path.is_dir() else [path]
+    # Path.resolve() raises for a link to itself.
+    different = {os.path.realpath(path): path for path in reversed(files)}
+    return [_entry(path, hardware) for path in sorted(different.values(), key=_order)]
+
+
+def find_profile(name: str | Path) -> Path:
+    """Return the file of a profile given by path, name, lesson number or beginning of a name.
+
+    What is in `./profiles` goes before the course.
+
+    Raises:
+        ProfileNotFoundError: with the names that were probably meant.
+        UsageError: if the beginning fits several.
+    """
+    text = str(name)
+    if is_path(text):
+        return Path(text)
+    known = {
+        file.stem: file for folder in (SHIPPED, Path("profiles")) for file in _files_of(folder)
+    }
+    if text in known:
+        return known[text]
+    fits = fitting(text, known)
+    if len(fits) == 1:
+        return known[fits[0]]
+    if fits:
+        raise UsageError(
+            say("{name!r} may be any of: {names}", name=text, names=", ".join(sorted(fits)))
+        )
+    raise ProfileNotFoundError(text, _near(text, known))
+
+
+def is_path(text: str) -> bool:
+    """Whether this is a file of a profile rather than a name of one."""
+    return os.sep in text or text.endswith(ENDINGS) or os.path.isfile(text)  # noqa: PTH113
+
+
+def fitting(text: str, known: Iterable[str]) -> list[str]:
+    """Return the names with this lesson number, else those that begin so."""
+    names = list(known)
+    number = _number(text) if LESSON.fullmatch(text) else None
+    fits = [name for name in names if _number(name) == number]
+    return fits or [name for name in names if text and name.startswith(text)]
+
+
+def _files_of(folder: Path) -> list[Path]:
+    try:
+        return sorted(path for path in folder.iterdir() if path.suffix in ENDINGS)
+    except OSError:
+        return []
+
+
+def _near(text: str, known: Iterable[str]) -> list[str]:
+    """Return likely names, by the whole name and by the words that it is made of."""
+    from difflib import get_close_matches  # Rarely needed, and slow to import.
+
+    names = list(known)
+    near = get_close_matches(text, names, n=3, cutoff=0.7)
+    for stem in names:
+        if get_close_matches(text, stem.split("-"), n=1, cutoff=0.7) and stem not in near:
+            near.append(stem)
+    return near
+
+
+def _number(text: str) -> str:
+    match = LESSON.match(text)
+    return match.group(1) if match else ""
+
+
+def _order(path: Path) -> tuple[int, int, str, str]:
+    digits = re.match(r"[0-9]+", path.stem)
+    number = int(digits.group()) if digits else 0
+    return (0 if digits else 1, number, path.stem, str(path))
+
+
+def _entry(path: Path, hardware: str) -> ProfileEntry:
+    # Validation takes pydantic along: whoever only looks for a file does without it.
+    from launcher.profile.load import load_profile
+
+    try:
+        profile = load_profile(path, hardware=hardware)
+    except LauncherError as error:
+        return ProfileEntry(
+            name=path.stem,
+            path=path.absolute(),
+            lesson=_number(path.stem),
+            error=str(error),
+            problems=error.problems if isinstance(error, ProfileError) else (),
+        )
+    return ProfileEntry(
+        name=profile.name,
+        path=profile.path,
+        title=profile.title,
+        about=profile.about,
+        lesson=profile.lesson,
+        nodes=tuple(profile.nodes),
+        panels=profile.panels,
+    )

@@ -1,0 +1,144 @@
+"""What the parts of a profile mean together: names, commands, needs, modules."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.profile.files import file_of, files_beside, is_file
+from launcher.profile.model import LONGEST_NODE_NAME, NODE_NAME
+from launcher.profile.modules import is_installed, likely_names
+from launcher.profile.text import shown
+from launcher.profile.tree import did_you_mean, empty, find, place_of
+from launcher.profile.when import WhenError, holds
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from launcher.profile.model import NodeDocument
+    from launcher.profile.tree import Branch, Problems, Where
+
+
+def applies(name: str, node: NodeDocument, hardware: str, tree: Branch, problems: Problems) -> bool:
+    """Whether a node's `when` lets it run on this hardware."""
+    if node.when is None:
+        return True
+    try:
+        return holds(node.when, {"hardware": hardware})
+    except WhenError as error:
+        where = ("nodes", name, "when")
+        problems.add(place_of(tree, where), where, error.message, error.hint)
+        return True
+
+
+def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) -> None:
+    """Check one node by itself: its name, and that there is exactly one thing to run."""
+    where = ("nodes", name)
+    place = place_of(tree, where, key=True)
+    if not NODE_NAME.fullmatch(name) or len(name) > LONGEST_NODE_NAME:
+        problems.add(
+            place,
+            where,
+            say("{name!r} is not a valid name for a ROS node", name=name),
+            say("letters, digits and _, not beginning with a digit"),
+        )
+    given = {key for key in ("run", "exec") if not empty(find(tree, (*where, key)))}
+    if not given:
+        problems.add(place, where, say("needs `run` or `exec`"), say("write run: nodes.hello"))
+    elif len(given) > 1:
+        message = say("has both `run` and `exec`")
+        problems.add(place_of(tree, (*where, "exec"), key=True), where, message, say("keep one"))
+    if node.ready is not None:
+        conditions = [node.ready.topic, node.ready.service, node.ready.node]
+        if sum(value is not None for value in conditions) != 1:
+            problems.add(
+                place_of(tree, (*where, "ready")),
+                (*where, "ready"),
+                say("expected exactly one of topic, service, node"),
+                say("write ready: {topic: /chatter, within: 10}"),
+            )
+        for key in ("type", "rate"):
+            if getattr(node.ready, key) is not None and node.ready.topic is None:
+                problems.add(
+                    place_of(tree, (*where, "ready", key), key=True),
+                    (*where, "ready", key),
+                    say("`{key}` belongs to a topic, and none is given here", key=key),
+                    say("write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1}"),
+                )
+
+
+def check_run(
+    name: str, run: str, folders: Sequence[Path], tree: Branch, problems: Problems
+) -> None:
+    """Check that what a node runs is there.
+
+    `folders`: that of the profile, and others where people look for modules; Deck does not.
+    """
+    where = ("nodes", name, "run")
+    if is_file(run):
+        # Unlike Path.is_file, this takes a name that no file can have for what it is.
+        if not os.path.isfile(run):  # noqa: PTH113
+            file = Path(run)
+            message = say("there is no file {path}", path=shown(file))
+            hint = did_you_mean(f"./{file.name}", files_beside(file.parent))
+            problems.add(place_of(tree, where), where, message, hint)
+    elif not is_installed(run):
+        message = say("there is no module {module!r}", module=run)
+        own = file_of(run.removesuffix(".py"), folders, folders[0])
+        hint = say("for your own file write run: {file}", file=own) if own else ""
+        problems.add(
+            place_of(tree, where), where, message, hint or did_you_mean(run, likely_names(run))
+        )
+
+
+def check_needs(
+    needs: Mapping[str, tuple[str, ...]],
+    everybody: Sequence[str],
+    optional: set[str],
+    tree: Branch,
+    problems: Problems,
+) -> None:
+    """Check that what nodes need exists, must run, and does not need them in turn.
+
+    `needs`: of the nodes that run; `everybody`: all names in the file.
+    """
+    for name, needed in needs.items():
+        for index, other in enumerate(needed):
+            where: Where = ("nodes", name, "needs", index)
+            if other not in everybody:
+                message = say("there is no node {name!r}", name=other)
+                problems.add(place_of(tree, where), where, message, did_you_mean(other, everybody))
+            elif other in optional:
+                message = say("{name} is optional, so nothing can need it", name=other)
+                problems.add(place_of(tree, where), where, message)
+    for cycle in _cycles(needs):
+        where = ("nodes", cycle[0], "needs")
+        path = " -> ".join([*cycle, cycle[0]])
+        message = say("nodes need each other in a cycle: {cycle}", cycle=path)
+        problems.add(place_of(tree, where), where, message, say("remove one of the needs"))
+
+
+def _cycles(needs: Mapping[str, tuple[str, ...]]) -> list[list[str]]:
+    """Return cycles, each once and from its first node in the file; not every one of a knot."""
+    order = {name: position for position, name in enumerate(needs)}
+    done: set[str] = set()
+    cycles: list[list[str]] = []
+    for start in needs:
+        path: list[str] = []
+        branches = [iter([start])]
+        while branches:
+            name = next(branches[-1], None)
+            if name is None:
+                branches.pop()
+                if path:
+                    done.add(path.pop())
+            elif name in path:
+                cycle = path[path.index(name) :]
+                first = cycle.index(min(cycle, key=order.__getitem__))
+                cycles.append(cycle[first:] + cycle[:first])
+            elif name in needs and name not in done:
+                path.append(name)
+                branches.append(iter(needs[name]))
+    return cycles

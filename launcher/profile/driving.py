@@ -1,0 +1,21 @@
+"""Which nodes give orders to the wheels: two sessions of them are never in one domain."""
+
+from __future__ import annotations
+
+_DRIVERS = frozenset(
+    f"nodes.{name}"
+    for name in (
+        "ai_brain",
+        "ai_driver",
+        "chassis",
+        "drive_to_point",
+        "electronic_differential",
+        "llm_parser",
+    )
+)
+"""What gives orders to the wheels; two sessions with any of these would fight over them."""
+
+
+def drives(command: str) -> bool:
+    """Whether a node that is run by this gives orders to the wheels."""
+    return command in _DRIVERS

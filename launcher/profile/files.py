@@ -1,0 +1,67 @@
+"""A user's own nodes, `run: ./my_sonar.py`, and folders: relative to the profile that says so."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from launcher.profile.tree import Branch, Entry, Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from launcher.profile.tree import Tree
+
+
+def is_file(run: str) -> bool:
+    """Whether a file is meant, and not a module."""
+    return run.startswith(("./", "../", "/"))
+
+
+def with_own_files(profile: Branch, folder: Path) -> Branch:
+    """Return a profile, of this folder, with files and folders of its nodes by full paths."""
+    nodes = profile.entries.get("nodes")
+    if nodes is None or not isinstance(nodes.value, Branch):
+        return profile
+    found = {
+        name: Entry(node.key_place, _with_full_paths(node.value, folder))
+        for name, node in nodes.value.entries.items()
+    }
+    every = Entry(nodes.key_place, Branch(found, nodes.value.place, nodes.value.size))
+    return Branch({**profile.entries, "nodes": every}, profile.place, profile.size)
+
+
+def _with_full_paths(node: Tree, folder: Path) -> Tree:
+    if not isinstance(node, Branch):
+        return node
+    parts = {key: _with_full_path(key, part, folder) for key, part in node.entries.items()}
+    return Branch(parts, node.place, node.size)
+
+
+def _with_full_path(key: str, part: Entry, folder: Path) -> Entry:
+    written = part.value
+    if not isinstance(written, Scalar) or not isinstance(written.value, str):
+        return part
+    if not (key == "cwd" or (key == "run" and is_file(written.value))):
+        return part
+    path = os.path.normpath(folder.absolute() / written.value)
+    return Entry(part.key_place, Scalar(path, written.text, written.place, written.size))
+
+
+def files_beside(folder: Path) -> list[str]:
+    """Return the Python files of a folder, as `run` names them."""
+    try:
+        return [f"./{path.name}" for path in sorted(folder.glob("*.py"))]
+    except (OSError, ValueError):
+        return []
+
+
+def file_of(module: str, folders: Sequence[Path], profile_folder: Path) -> str:
+    """Return the file that a module would be in one of these folders, as `run` names it."""
+    for folder in folders:
+        path = folder / f"{module.replace('.', '/')}.py"
+        if path.is_file():
+            found = os.path.relpath(path, profile_folder)
+            return found if found.startswith("../") else f"./{found}"
+    return ""

@@ -1,0 +1,276 @@
+"""What a profile may say: the pydantic model that validates it and that its JSON schema comes from.
+
+Descriptions here are what an editor shows beside a key. The model knows values and types only;
+`launcher.profile.check` knows what they mean together.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from launcher.domain.domain import LAST_DOMAIN
+from launcher.profile.files import is_file
+from launcher.profile.serial_choice import KINDS
+from launcher.words import Words, say
+
+Restart = Literal["never", "on-failure", "always"]
+Panel = Literal["sonar", "wheels", "map", "camera", "head", "voice", "composer"]
+
+NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+LONGEST_NODE_NAME = 255
+ROS_NAME = re.compile(r"[~/]?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
+TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
+MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
+PEER = re.compile(r"[A-Za-z0-9:][A-Za-z0-9.:%_-]*")
+ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+def refuse(words: Words) -> PydanticCustomError:
+    """Return the error by which a validator here refuses a value."""
+    return PydanticCustomError("deck", "{words}", {"words": words})
+
+
+def _texts(value: object) -> object:
+    return {"en": value} if isinstance(value, str) else value
+
+
+def _module(value: object) -> object:
+    if isinstance(value, str) and not is_file(value) and not MODULE.fullmatch(value):
+        raise refuse(
+            say(
+                "{value!r} is not a Python module; write it as nodes.hello, and a file of your "
+                "own as ./my_node.py",
+                value=value,
+            )
+        )
+    return value
+
+
+def _ros_name(value: object) -> object:
+    if isinstance(value, str) and not ROS_NAME.fullmatch(value):
+        raise refuse(
+            say("{value!r} is not a ROS name; write it as /sensor/sonar_front", value=value)
+        )
+    return value
+
+
+def _type_name(value: object) -> object:
+    if isinstance(value, str) and not TYPE_NAME.fullmatch(value):
+        raise refuse(
+            say("{value!r} is not a message type; write it as std_msgs/msg/Float32", value=value)
+        )
+    return value
+
+
+def _ros_names(value: object) -> object:
+    for old in value if isinstance(value, dict) else ():
+        _ros_name(old)
+    return value
+
+
+def _variables(value: object) -> object:
+    for name, text in value.items() if isinstance(value, dict) else ():
+        if not ENV_NAME.fullmatch(name):
+            raise refuse(say("{name!r} is not a valid name for an environment variable", name=name))
+        if isinstance(text, str) and "\0" in text:
+            raise refuse(say("the variable {name} holds a NUL character", name=name))
+    return value
+
+
+def _command(value: object) -> object:
+    if isinstance(value, str):
+        raise refuse(
+            say("expected a list, found one text; write [{words}]", words=", ".join(value.split()))
+        )
+    if value == []:
+        raise refuse(say("an empty command; write for example [ros2, run, package, program]"))
+    if isinstance(value, list) and any("\0" in str(word) for word in value):
+        raise refuse(say("a command cannot hold a NUL character"))
+    return value
+
+
+def _discovery(value: object) -> object:
+    if value in ("localhost", "subnet"):
+        return value
+    if not isinstance(value, list) or not value:
+        raise refuse(
+            say("expected localhost, subnet or a list of addresses, found {value!r}", value=value)
+        )
+    for peer in value:
+        if not isinstance(peer, str) or not PEER.fullmatch(peer):
+            raise refuse(
+                say("{peer!r} is not an address; write it as 192.168.1.7 or robot.local", peer=peer)
+            )
+    return tuple(value)
+
+
+Texts = Annotated[
+    dict[str, str],
+    BeforeValidator(_texts),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string"},
+                {
+                    "type": "object",
+                    "properties": {"en": {"type": "string"}, "ru": {"type": "string"}},
+                    "additionalProperties": {"type": "string"},
+                },
+            ]
+        }
+    ),
+]
+RosName = Annotated[str, BeforeValidator(_ros_name)]
+TypeName = Annotated[str, BeforeValidator(_type_name)]
+_SCALARS: dict[str, Any] = {"type": ["string", "number", "boolean"]}
+Command = Annotated[
+    tuple[str, ...],
+    BeforeValidator(_command),
+    WithJsonSchema({"type": "array", "items": _SCALARS, "minItems": 1}),
+]
+Discovery = Annotated[
+    Any,
+    BeforeValidator(_discovery),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"enum": ["localhost", "subnet"]},
+                {"type": "array", "items": {"type": "string"}, "minItems": 1},
+            ]
+        }
+    ),
+]
+
+
+_DEVICE: dict[str, Any] = {
+    "type": "object",
+    "properties": {
+        "kind": {
+            "enum": [*KINDS, "camera", "sound"],
+            "description": "What it is, for `port: auto` and for `deck check --preflight`.",
+        },
+        "port": {
+            "type": "string",
+            "description": "A path, best one of /dev/serial/by-id; auto: found by its USB ids.",
+        },
+        "usb": {
+            "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
+            "description": "USB ids for `port: auto`, vendor:product: 2e8a:0005.",
+        },
+        "baud": {"type": "integer", "description": "Speed of the port."},
+        "mock": {"type": "object", "description": "What replaces settings on mock hardware."},
+        "real": {"type": "object", "description": "What replaces settings on real hardware."},
+    },
+}
+
+
+class Document(BaseModel):
+    """Common to all parts of a profile: nothing unknown, nothing converted behind one's back."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class ReadyDocument(Document):
+    """When a node counts as ready: one of topic, service and node."""
+
+    topic: RosName | None = Field(None, description="Ready when somebody publishes this topic.")
+    type: TypeName | None = Field(
+        None,
+        description="Of the topic: only publishers of this type count, `std_msgs/msg/Float32`.",
+    )
+    rate: float | None = Field(
+        None,
+        gt=0,
+        le=1000,
+        description="Of the topic: messages must come so many times a second; nine tenths of it"
+        " will do.",
+    )
+    service: RosName | None = Field(None, description="Ready when this service is offered.")
+    node: RosName | None = Field(None, description="Ready when this node is in the ROS graph.")
+    within: float = Field(10.0, gt=0, le=3600, description="Seconds that this may take.")
+
+
+class NodeDocument(Document):
+    """One node: a process, and what it needs."""
+
+    run: Annotated[str, BeforeValidator(_module)] | None = Field(
+        None,
+        description="Python module to run as a ROS node, named as its key: `nodes.hello`; or a file"
+        " of your own, relative to the profile: `./my_sonar.py`.",
+    )
+    exec: Command | None = Field(
+        None, strict=False, description="Any command instead: `[ros2, run, package, program]`."
+    )
+    params: dict[str, Any] = Field({}, description="ROS parameters, nested as you like.")
+    remap: Annotated[dict[str, RosName], BeforeValidator(_ros_names)] = Field(
+        {}, description="Names of topics and services: `{/drive: /drive_safe}`."
+    )
+    env: Annotated[
+        dict[str, str],
+        BeforeValidator(_variables),
+        WithJsonSchema({"type": "object", "additionalProperties": _SCALARS}),
+    ] = Field({}, description="Environment variables on top of the launcher's own.")
+    needs: tuple[str, ...] = Field(
+        (),
+        strict=False,
+        description="Nodes that must be ready before this one is started. One that `when` leaves"
+        " out is not waited for.",
+    )
+    ready: ReadyDocument | None = Field(
+        None, description="Default: `run` nodes are ready when seen in the ROS graph."
+    )
+    restart: Restart = Field(
+        "never", description="Whether to start it again when it ends: backoff doubles up to 30 s."
+    )
+    when: str | None = Field(
+        None, description='Only if this is true: `hardware == "mock"`, `hardware in ["real"]`.'
+    )
+    optional: bool = Field(
+        False,
+        description="The lesson does without it: if its program is not installed, or ends, that is"
+        " told and is no failure.",
+    )
+    warm: bool = Field(True, description="Fork it from a process that has imported rclpy already.")
+    cwd: str | None = Field(None, description="Working directory, relative to the profile's file.")
+
+
+class ProfileDocument(Document):
+    """A profile of Deck: nodes started, supervised and shown together."""
+
+    extends: str | None = Field(
+        None, description="Another profile, by name or path; what stands here overrides it."
+    )
+    title: Texts = Field(
+        {}, description="A line for the picker, by language: `{en: ..., ru: ...}`."
+    )
+    about: Texts = Field({}, description="What it starts and what you see, by language.")
+    lesson: Annotated[str, WithJsonSchema({"type": ["string", "integer"]})] = Field(
+        "", description="Number of the lesson: 9, 4b."
+    )
+    domain: int | None = Field(
+        None,
+        ge=0,
+        le=LAST_DOMAIN,
+        description="ROS_DOMAIN_ID, best 1 to 101; by default one of your own.",
+    )
+    discovery: Discovery = Field(
+        "localhost", description="Who may hear the robot: localhost, subnet, or [static peers]."
+    )
+    nodes: dict[str, NodeDocument | None] = Field(
+        {}, description="Nodes by name; null takes out one of the profile that is extended."
+    )
+    devices: dict[str, Annotated[dict[str, Any], WithJsonSchema(_DEVICE)]] = Field(
+        {},
+        description="Settings of devices, used as ${devices.pico.port} and overridden by"
+        " DECK_PICO_PORT.",
+    )
+    panels: tuple[Panel, ...] = Field(
+        (), strict=False, description="What the deck shows beside nodes and logs."
+    )
+    steps: tuple[dict[str, Any], ...] = Field(
+        (), strict=False, description="The lesson's own exercises."
+    )

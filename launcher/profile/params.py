@@ -1,0 +1,192 @@
+"""A node's parameters: from YAML to `-p name:=value` with the types that ROS has.
+
+ROS knows bool, 64-bit integer, double, string, and lists of one of these. rcl reads the value of
+`-p` as YAML, so text is always written quoted: `"1"` stays text. A list that mixes whole numbers
+with others becomes a list of doubles, which rcl would refuse otherwise.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from typing import TYPE_CHECKING, TypeAlias
+
+from launcher.profile.tree import Branch, Listing, Scalar
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from launcher.profile.tree import Problems, Tree, Where
+
+Single: TypeAlias = bool | int | float | str
+Param: TypeAlias = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+
+NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_/][A-Za-z0-9_/]*)*")
+"""What rcl takes for a name in `-p name:=value`: `a`, `a.b`, `qos_overrides./scan.depth`."""
+LONGEST_TEXT = 32_768
+"""Linux refuses an argument of 128 KiB; escapes may make four bytes of one."""
+INT64 = 2**63
+ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+
+
+def flatten(params: Tree, where: Where, problems: Problems) -> dict[str, Param]:
+    """Return {name: value} with nested names joined by dots; problems for what ROS cannot hold."""
+    flat: dict[str, Param] = {}
+    if isinstance(params, Branch):
+        _flatten(params, "", where, flat, problems)
+    return flat
+
+
+def as_arguments(params: Mapping[str, Param]) -> list[str]:
+    """Return the arguments that go after `--ros-args`."""
+    return [part for name, value in params.items() for part in ("-p", f"{name}:={written(value)}")]
+
+
+def written(value: Param) -> str:
+    """Write one value so that rcl and any YAML parser read back the same value and type."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return _float(value)
+    if isinstance(value, str):
+        return '"' + "".join(map(_escaped, value)) + '"'
+    return "[" + ", ".join(written(item) for item in value) + "]"
+
+
+def _float(value: float) -> str:
+    if value != value:  # noqa: PLR0124 - the definition of nan
+        return ".nan"
+    if value in (float("inf"), float("-inf")):
+        return ".inf" if value > 0 else "-.inf"
+    digits, exponent, power = repr(value).partition("e")
+    # YAML 1.1 takes 1e+16 for text: a float there has a dot.
+    return (digits if "." in digits else digits + ".0") + exponent + power
+
+
+def _escaped(character: str) -> str:
+    if character in ESCAPES:
+        return ESCAPES[character]
+    if character.isprintable():
+        return character
+    code = ord(character)
+    return (
+        f"\\x{code:02x}"
+        if code < 0x100
+        else f"\\u{code:04x}"
+        if code < 0x10000
+        else f"\\U{code:08x}"
+    )
+
+
+def _flatten(
+    params: Branch, prefix: str, where: Where, flat: dict[str, Param], problems: Problems
+) -> None:
+    for key, entry in params.entries.items():
+        name, here = prefix + key, (*where, key)
+        if isinstance(entry.value, Branch):
+            _flatten(entry.value, name + ".", here, flat, problems)
+        elif not NAME.fullmatch(name):
+            problems.add(
+                entry.key_place,
+                here,
+                say("{name!r} is not a valid name for a ROS parameter", name=name),
+                say("letters, digits and _, joined by dots"),
+            )
+        elif name in flat:
+            problems.add(
+                entry.key_place, here, say("the parameter {name} is given twice", name=name)
+            )
+        elif isinstance(entry.value, Listing):
+            items = _list(entry.value, here, problems)
+            if items is not None:
+                flat[name] = items
+        else:
+            value = _single(entry.value, here, problems)
+            if value is not None:
+                flat[name] = value
+
+
+def _single(scalar: Scalar, where: Where, problems: Problems) -> Single | None:
+    value = scalar.value
+    if isinstance(value, str):
+        message = _text_trouble(value)
+    elif isinstance(value, (bool, int, float)):
+        message = _number_trouble(value)
+    else:
+        hint = say("give it a value, or leave it out")
+        problems.add(scalar.place, where, say("a ROS parameter cannot be empty"), hint)
+        return None
+    if message:
+        problems.add(scalar.place, where, message)
+        return None
+    return value
+
+
+def _text_trouble(text: str) -> str:
+    if "\0" in text:
+        return say("ROS cannot carry a NUL character in a text")
+    if any("\ud800" <= character <= "\udfff" for character in text):
+        return say("an incomplete character: a lone surrogate")
+    if len(text) > LONGEST_TEXT:
+        return say("the text is longer than {limit} characters", limit=LONGEST_TEXT)
+    return ""
+
+
+def _number_trouble(number: float) -> str:
+    if isinstance(number, int) and not -INT64 <= number < INT64:
+        return say("{value} does not fit into 64 bits", value=number)
+    if 0 < abs(number) < sys.float_info.min:
+        return say("{value} is too small for ROS", value=number)
+    return ""
+
+
+def _list(listing: Listing, where: Where, problems: Problems) -> Param | None:
+    if not listing.items:
+        problems.add(
+            listing.place,
+            where,
+            say("an empty list has no type in ROS"),
+            say("leave the parameter out"),
+        )
+        return None
+    items: list[Single] = []
+    for index, item in enumerate(listing.items):
+        if not isinstance(item, Scalar):
+            kind = (
+                say("a list of lists") if isinstance(item, Listing) else say("a list of mappings")
+            )
+            problems.add(
+                item.place,
+                (*where, index),
+                say("ROS has no parameter that is {kind}", kind=kind),
+                say("give each its own name"),
+            )
+            return None
+        value = _single(item, (*where, index), problems)
+        if value is not None:
+            items.append(value)
+    return (
+        _of_one_type(items, listing, where, problems) if len(items) == len(listing.items) else None
+    )
+
+
+def _of_one_type(
+    items: list[Single], listing: Listing, where: Where, problems: Problems
+) -> Param | None:
+    kinds = {type(item) for item in items}
+    if kinds == {int, float}:
+        return [float(item) for item in items]
+    if len(kinds) == 1:
+        return items  # type: ignore[return-value]
+    words = {bool: "bool", int: "integer", float: "double", str: "string"}
+    names = ", ".join(sorted(words[kind] for kind in kinds))
+    problems.add(
+        listing.place,
+        where,
+        say("a list in ROS holds one type, this one holds {names}", names=names),
+        say("quote all of them, or none"),
+    )
+    return None

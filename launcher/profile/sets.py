@@ -1,0 +1,46 @@
+"""`--set node.param=value`: parameters given on the command line, over those of the profile."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from launcher.profile.params import flatten
+from launcher.profile.tree import Branch, Entry, Place, did_you_mean
+from launcher.profile.yaml_tree import read_value
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from launcher.profile.spec import NodeSpec
+    from launcher.profile.tree import Problems
+
+
+def read_sets(
+    overrides: Iterable[str], nodes: dict[str, NodeSpec], left_out: set[str], problems: Problems
+) -> dict[str, NodeSpec]:
+    """Return the nodes with the overrides in their parameters; problems for those that fit none.
+
+    `left_out`: nodes of the file that do not run on this hardware.
+    """
+    result = dict(nodes)
+    for text in overrides:
+        place = Place(f"--set {text}")
+        target, equals, written = text.partition("=")
+        node, dot, param = target.strip().partition(".")
+        if not (equals and dot and node and param):
+            message = say("expected node.param=value")
+            problems.add(place, (), message, say("write --set sonar_front.rate=2.0"))
+        elif node in left_out:
+            problems.add(place, (), say("{name} does not run on this hardware", name=node))
+        elif node not in result:
+            known = did_you_mean(node, result) or say("known: {keys}", keys=", ".join(result))
+            problems.add(place, (), say("there is no node {name!r}", name=node), known)
+        else:
+            value = read_value(written, place.file, problems)
+            if value is not None:
+                one = Branch({param: Entry(place, value)}, place)
+                params = {**result[node].params, **flatten(one, (node,), problems)}
+                result[node] = replace(result[node], params=params)
+    return result

@@ -1,0 +1,111 @@
+"""What a profile comes to: plain data that can be started."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from launcher import node_program
+from launcher.profile.params import as_arguments
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from launcher.domain.domain import Discovery
+    from launcher.errors import ProfileProblem
+    from launcher.profile.model import Restart
+    from launcher.profile.params import Param
+
+DEFAULT_WITHIN_S = 10.0
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The condition under which a node counts as ready."""
+
+    kind: str
+    """`topic`, `service` or `node`."""
+    name: str
+    """As in the profile: a ROS name, absolute or not."""
+    type: str = ""
+    """Of a topic: the type awaited, `std_msgs/msg/Float32`; empty: any."""
+    rate_hz: float = 0.0
+    """Of a topic: how often messages must come; 0: none need come."""
+    within_s: float = DEFAULT_WITHIN_S
+
+
+@dataclass(frozen=True)
+class NodeSpec:
+    """One node: what to run, how, and after which others."""
+
+    name: str
+    """Its key in the profile; of a `run` node also its name in the ROS graph."""
+    run: str | None = None
+    """A Python module, or the absolute path of a file. Either this or `exec` is set."""
+    exec: tuple[str, ...] | None = None
+    params: Mapping[str, Param] = field(default_factory=dict)
+    """Flat: `{"limits.front": 0.5}`."""
+    remap: Mapping[str, str] = field(default_factory=dict)
+    env: Mapping[str, str] = field(default_factory=dict)
+    needs: tuple[str, ...] = ()
+    """Only nodes that run: those that `when` leaves out are not waited for."""
+    ready: Ready | None = None
+    restart: Restart = "never"
+    when: str | None = None
+    """The condition as written; it holds."""
+    optional: bool = False
+    """If it cannot be started, or ends, that is told and is no failure."""
+    warm: bool = True
+    cwd: Path | None = None
+    """Absolute; None: where the launcher was started."""
+
+    @property
+    def command(self) -> str:
+        """What is run, for people."""
+        if self.run is None:
+            return " ".join(self.exec or ())
+        return f"./{os.path.basename(self.run)}" if "/" in self.run else self.run  # noqa: PTH119
+
+    def ros_args(self) -> list[str]:
+        """Return `--ros-args` and all that follows; empty for a command without parameters."""
+        named = ["-r", f"__node:={self.name}"] if self.run is not None else []
+        remaps = [part for old, new in self.remap.items() for part in ("-r", f"{old}:={new}")]
+        arguments = [*named, *remaps, *as_arguments(self.params)]
+        return ["--ros-args", *arguments] if arguments else []
+
+    def argv(self) -> list[str]:
+        """Return the full command line, as it is started without the spawn server."""
+        if self.run is not None:
+            return [sys.executable, "-u", node_program.__file__, self.run, *self.ros_args()]
+        return [*(self.exec or ()), *self.ros_args()]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A profile as it is about to be started."""
+
+    path: Path
+    """Absolute."""
+    name: str
+    """File name without its ending: `09-brain`."""
+    nodes: Mapping[str, NodeSpec]
+    """In the order of the file; only those that run on this hardware."""
+    title: Mapping[str, str] = field(default_factory=dict)
+    """Language code to title."""
+    about: Mapping[str, str] = field(default_factory=dict)
+    """Language code to what it starts and shows."""
+    lesson: str = ""
+    domain: int = 0
+    """The one that counts, whoever chose it."""
+    discovery: Discovery = "localhost"
+    hardware: str = "mock"
+    devices: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    used: tuple[str, ...] = ()
+    """The devices that its nodes name, in the order of the file."""
+    panels: tuple[str, ...] = ()
+    steps: tuple[Mapping[str, Any], ...] = ()
+    warnings: tuple[ProfileProblem, ...] = ()
+    """What is allowed, and probably not meant."""

@@ -1,0 +1,190 @@
+"""From a tree to validated documents; what pydantic finds becomes problems in plain words."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import ValidationError
+
+from launcher.profile.model import Document, NodeDocument, ProfileDocument, ReadyDocument
+from launcher.profile.tree import Branch, Listing, did_you_mean, empty, find, place_of, plain
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+    from launcher.profile.tree import Problems, Tree, Where
+
+D = TypeVar("D", bound=Document)
+
+WANTED = {
+    "string_type": say("text"),
+    "int_type": say("a whole number"),
+    "float_type": say("a number"),
+    "bool_type": say("true or false"),
+    "tuple_type": say("a list"),
+    "dict_type": say("keys and values"),
+    "model_type": say("keys and values"),
+}
+_DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
+LIMITS = {
+    "greater_than": (say("more than {limit}"), "gt"),
+    "greater_than_equal": (say("at least {limit}"), "ge"),
+    "less_than_equal": (say("at most {limit}"), "le"),
+}
+
+
+def validate(
+    tree: Branch, problems: Problems
+) -> tuple[ProfileDocument | None, dict[str, NodeDocument]]:
+    """Return the profile without its nodes, and the nodes; problems for all that does not fit.
+
+    Each node is validated by itself, so that a fault in one hides no fault of another.
+    """
+    data = _data(tree)
+    nodes = data.get("nodes")
+    if isinstance(nodes, dict):
+        data["nodes"] = {}
+    profile = _validated(ProfileDocument, data, (), tree, problems)
+    valid: dict[str, NodeDocument] = {}
+    for name, content in nodes.items() if isinstance(nodes, dict) else ():
+        node = _validated(NodeDocument, content, ("nodes", name), tree, problems)
+        if node is not None:
+            valid[name] = node
+    return profile, valid
+
+
+def _data(tree: Branch) -> dict[str, Any]:
+    """Return plain data: keys without a value left out, and text wherever only text makes sense.
+
+    `exec: [--x, 0.10]` means the text 0.10 that stands there, and `lesson: 9` the text 9.
+    """
+    data: dict[str, Any] = {
+        key: plain(entry.value) for key, entry in tree.entries.items() if not empty(entry.value)
+    }
+    for key in ("lesson", "title", "about"):
+        if key in data:
+            data[key] = _as_text(find(tree, (key,)))
+    nodes = find(tree, ("nodes",))
+    if isinstance(nodes, Branch):
+        data["nodes"] = {name: _node(entry.value) for name, entry in nodes.entries.items()}
+    return data
+
+
+def _node(tree: Tree) -> Any:  # noqa: ANN401 - whatever stands there
+    if not isinstance(tree, Branch):
+        return plain(tree) if not empty(tree) else {}
+    as_text = {"exec", "env", "remap"}
+    return {
+        key: _as_text(entry.value) if key in as_text else plain(entry.value)
+        for key, entry in tree.entries.items()
+        if not empty(entry.value)
+    }
+
+
+def _as_text(tree: Tree | None) -> Any:  # noqa: ANN401 - whatever stands there
+    if isinstance(tree, Branch):
+        return {key: _as_text(entry.value) for key, entry in tree.entries.items()}
+    if isinstance(tree, Listing):
+        return [_as_text(item) for item in tree.items]
+    return tree.text if tree is not None and not empty(tree) else None
+
+
+def _validated(
+    model: type[D], data: object, where: Where, tree: Branch, problems: Problems
+) -> D | None:
+    """Return the document; where there are problems, what is left of it without the keys at fault.
+
+    With that, the checks that come after find in the same go what else is wrong.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        faults = error.errors(include_url=False)
+    for details in faults:
+        _add(details, where, tree, problems)
+    if not isinstance(data, dict):
+        return None
+    at_fault = {details["loc"][0] for details in faults if details["loc"]}
+    with suppress(ValidationError):
+        return model.model_validate({k: v for k, v in data.items() if k not in at_fault})
+    return None
+
+
+def _add(details: ErrorDetails, above: Where, tree: Branch, problems: Problems) -> None:
+    where = (*above, *details["loc"])
+    kind = details["type"]
+    message, hint = _words(details, where)
+    problems.add(place_of(tree, where, key=kind == "extra_forbidden"), where, message, hint)
+
+
+def _words(details: ErrorDetails, where: Where) -> tuple[str, str]:
+    kind, found, context = details["type"], details["input"], details.get("ctx", {})
+    if kind == "deck":
+        return context["words"], ""
+    if kind == "extra_forbidden":
+        known = _keys(where[:-1])
+        hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
+        return say("unknown key"), hint
+    if kind in WANTED:
+        wanted = WANTED[kind]
+        return say(
+            "expected {wanted}, found {found}", wanted=wanted, found=described(found)
+        ), _mend(kind, found)
+    if kind == "literal_error":
+        known = _choices(context["expected"])
+        return (
+            say(
+                "expected one of {known}, found {found}",
+                known=", ".join(known),
+                found=described(found),
+            ),
+            did_you_mean(str(found), known),
+        )
+    if kind in LIMITS:
+        template, key = LIMITS[kind]
+        wanted = say(template, limit=f"{context[key]:g}")
+        return say("expected {wanted}, found {found}", wanted=wanted, found=described(found)), ""
+    return details["msg"], ""
+
+
+def _mend(kind: str, found: object) -> str:
+    if kind == "string_type" and isinstance(found, (bool, int, float)):
+        return say("put it in quotes")
+    if kind == "float_type" and isinstance(found, str):
+        comma = _DECIMAL_COMMA.fullmatch(found)
+        if comma:
+            return say("write a fraction with a point: {mended}", mended=".".join(comma.groups()))
+    if kind == "tuple_type" and isinstance(found, str):
+        return say("write [{value}]", value=found)
+    return ""
+
+
+def _choices(expected: str) -> list[str]:
+    """Take pydantic's "'a', 'b' or 'c'" apart."""
+    return [word.strip("' ") for word in expected.replace(" or ", ", ").split(",")]
+
+
+def _keys(where: Where) -> list[str]:
+    model: type[Document] = ProfileDocument
+    if where and where[0] == "nodes":
+        model = ReadyDocument if where[-1] == "ready" else NodeDocument
+    return list(model.model_fields)
+
+
+def described(value: object) -> str:
+    """Name a value as found in a file: `the text 'fast'`, `a list`, `12`."""
+    if value is None:
+        return say("nothing")
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        text = value if len(value) <= 40 else value[:39] + "…"
+        return say("the text {text!r}", text=text)
+    if isinstance(value, (list, tuple)):
+        return say("a list")
+    if isinstance(value, dict):
+        return say("keys and values")
+    return str(value)

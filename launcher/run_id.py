@@ -1,0 +1,49 @@
+"""The id of a run: it says when it began, and which process supervises it.
+
+It holds the number and the start of that process, so that nobody mistakes another for it.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import TYPE_CHECKING
+
+from launcher.processes.table import read_process
+
+if TYPE_CHECKING:
+    from launcher.processes.table import Process
+
+
+def new_run_id() -> str:
+    """Return an id for a run whose supervisor is this process; ids sort by time."""
+    process = read_process(os.getpid())
+    started = process.started_ticks if process else 0
+    return f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{started}"
+
+
+def supervisor_of(run_id: str) -> int:
+    """Return the number of the process that supervises, or has supervised, this run; else 0."""
+    return _process_of(run_id)[0]
+
+
+def living_supervisor(run_id: str) -> Process | None:
+    """Return the supervisor of this run; None if it is not alive."""
+    pid, started = _process_of(run_id)
+    process = read_process(pid) if pid > 0 else None
+    if process is None or process.started_ticks != started or process.zombie:
+        return None
+    return process
+
+
+def supervisor_runs(run_id: str) -> bool:
+    """Whether the supervisor of this run is alive."""
+    return living_supervisor(run_id) is not None
+
+
+def _process_of(run_id: str) -> tuple[int, int]:
+    try:
+        pid, started = map(int, run_id.split("-")[-2:])
+    except ValueError:
+        return 0, 0
+    return pid, started

@@ -1,0 +1,117 @@
+"""Which other sessions of this user are in a ROS domain, whatever their run directory."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from launcher.domain.domain import LAST_SAFE_DOMAIN
+from launcher.errors import DomainTakenError
+from launcher.processes.owner import who_words
+from launcher.profile.driving import drives
+from launcher.run_id import supervisor_of
+from launcher.rundir import OWN_RUN_DIR
+from launcher.runs.found import supervisors
+from launcher.runs.record import RunRecord
+from launcher.status import SessionInfo
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from launcher.profile.load import Profile
+    from launcher.runs.found import FoundSupervisor
+    from launcher.words import Words
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """Another session."""
+
+    record: RunRecord
+    run_dir: str
+    """Where its folder is."""
+    purpose: str
+    """Its `DECK_RUN_DIR`."""
+
+    @property
+    def words(self) -> Words:
+        """Name it, and who has started it."""
+        session = self.record.session
+        return say(
+            "{name}: {who}, supervisor {pid}",
+            name=session.name,
+            who=who_words(session.started_by),
+            pid=session.supervisor_pid,
+        )
+
+    @property
+    def down(self) -> str:
+        """What is typed to stop it, in a shell with another `DECK_RUN_DIR`."""
+        if not self.purpose:
+            return f"env -u {OWN_RUN_DIR} deck down"
+        return f"{OWN_RUN_DIR}={shlex.quote(self.purpose)} deck down"
+
+
+def neighbours(everyone: Iterable[FoundSupervisor], domain: int) -> list[Neighbour]:
+    """Return the sessions in a domain, oldest first."""
+    found = []
+    for supervisor in everyone:
+        if supervisor.domain != domain:
+            continue
+        place, record = supervisor.place, supervisor.record()
+        if record is None and supervisor.holds:
+            record = _unknown(supervisor)
+        if record is not None:
+            found.append(Neighbour(record, place.rpartition("/")[0], supervisor.purpose))
+    return sorted(found, key=lambda one: one.record.session.run_id)
+
+
+def _unknown(supervisor: FoundSupervisor) -> RunRecord:
+    """Stand in for the record of one that runs and cannot write any."""
+    session = SessionInfo(
+        run_id=supervisor.run_id,
+        profile="",
+        name=supervisor.run_id,
+        domain=supervisor.domain,
+        supervisor_pid=supervisor_of(supervisor.run_id),
+    )
+    return RunRecord(supervisor.folder, session, (), {})
+
+
+def refuse_company(profile: Profile) -> None:
+    """Make sure that a profile would have its domain to itself.
+
+    Raises:
+        DomainTakenError: if another session of this user is in it.
+    """
+    everyone = list(supervisors())
+    here = neighbours(everyone, profile.domain)
+    if not here:
+        return
+    driving = any(drives(node.command) for node in profile.nodes.values())
+    raise DomainTakenError(
+        profile.domain,
+        [one.words for one in here],
+        free_domain(everyone, profile.domain),
+        can_share=not any(one.record.collides(set(profile.nodes), driving) for one in here),
+    )
+
+
+def rival(everyone: Iterable[FoundSupervisor], record: RunRecord) -> Neighbour | None:
+    """Return one that cannot be in the same domain as this run: a robot is driven once."""
+    for other in neighbours(everyone, record.session.domain):
+        if other.record.collides(set(record.nodes), record.drives):
+            return other
+    return None
+
+
+def free_domain(everyone: Iterable[FoundSupervisor], domain: int) -> int:
+    """Return the next domain after this one in which none of these sessions runs."""
+    taken = {domain, *(one.domain for one in everyone)}
+    for step in range(1, LAST_SAFE_DOMAIN + 1):
+        candidate = (domain - 1 + step) % LAST_SAFE_DOMAIN + 1
+        if candidate not in taken:
+            return candidate
+    return domain

@@ -1,0 +1,90 @@
+"""Sessions as the table of processes shows them: their supervisors, wherever their folders are.
+
+A supervisor carries a mark in its environment, as nodes do: the id of its run, and the descriptor
+under which it holds the folder of its run open. Through /proc that leads to the record and to the
+socket, be the folder moved or in a run directory that nobody here knows of. The kernel lets only
+the same user follow it.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.processes.table import SUPERVISOR_MARK, process_numbers, read_marks
+from launcher.run_id import supervisor_of, supervisor_runs
+from launcher.rundir import OWN_RUN_DIR
+from launcher.runs.record import read_record
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from launcher.runs.record import RunRecord
+
+MADE_AGAIN_WITHIN_S = 10.0
+"""A supervisor whose folder has gone makes it again meanwhile."""
+_LOOK_AGAIN_S = 0.05
+
+
+@dataclass(frozen=True)
+class FoundSupervisor:
+    """A supervisor that runs."""
+
+    run_id: str
+    folder: Path
+    """The folder of its run, by way of /proc."""
+    domain: int
+    purpose: str
+    """Its `DECK_RUN_DIR`, by which somebody keeps runs apart; empty for most."""
+
+    @property
+    def place(self) -> str:
+        """Where the folder is, in words for people."""
+        try:
+            return str(self.folder.readlink()).removesuffix(" (deleted)")
+        except OSError:
+            return "?"
+
+    @property
+    def holds(self) -> bool:
+        """Whether it holds its folder still; one that is about to end has let go of it."""
+        return os.path.lexists(self.folder)
+
+    def record(self) -> RunRecord | None:
+        """Return its record, waited for if it is just being made again; None if there is none."""
+        deadline = time.monotonic() + MADE_AGAIN_WITHIN_S
+        while True:
+            record = read_record(self.folder)
+            if record is not None or time.monotonic() > deadline:
+                return record
+            if not self.holds:
+                return None
+            time.sleep(_LOOK_AGAIN_S)
+
+
+def supervisors() -> Iterator[FoundSupervisor]:
+    """Yield this user's supervisors that run a session."""
+    us = os.getuid()
+    for pid in process_numbers():
+        with suppress(OSError, ValueError):
+            # The superuser could read those of others.
+            if Path(f"/proc/{pid}").stat().st_uid != us:
+                continue
+            found = _supervisor(pid)
+            if found is not None:
+                yield found
+
+
+def _supervisor(pid: int) -> FoundSupervisor | None:
+    marks = read_marks(pid) or {}
+    run_id, *numbers = marks.get(SUPERVISOR_MARK, "").split("/")
+    # What a supervisor starts may have copies of its environment.
+    if supervisor_of(run_id) != pid or not supervisor_runs(run_id):
+        return None
+    domain, descriptor = map(int, numbers)
+    folder = Path(f"/proc/{pid}/fd/{descriptor}")
+    return FoundSupervisor(run_id, folder, domain, marks.get(OWN_RUN_DIR, ""))

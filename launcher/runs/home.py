@@ -1,0 +1,154 @@
+"""The folder of a run, kept where it belongs for as long as the run lasts.
+
+It goes with the login where it is in /run/user, and people move and tidy up. The supervisor looks
+again and again, makes it anew, in a place of last resort if need be, and holds it open under one
+descriptor: by that it is found through /proc wherever it is (`launcher.runs.found`).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import tempfile
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.control.socket import SOCKET_NAME, listen
+from launcher.errors import RunDirError
+from launcher.processes.marks import show_mark
+from launcher.processes.table import SUPERVISOR_MARK
+from launcher.rundir import own_folder
+from launcher.runs.record import RECORD_NAME
+from launcher.words import Words, say
+
+if TYPE_CHECKING:
+    import socket
+    from collections.abc import Awaitable, Callable, Mapping
+
+    from launcher.runs.record import RunRecord
+
+LOOK_EVERY_S = 1.0
+
+
+class Home:
+    """Where clients find a run: its record, and the socket to connect to."""
+
+    def __init__(self, record: RunRecord) -> None:
+        """`record` says where it belongs."""
+        self.record = record
+        """As it is now, with the folder that it is in."""
+        self._proper = record.folder
+        self._descriptor = -1
+        self._socket: os.stat_result | None = None
+
+    @property
+    def run_dir(self) -> Path:
+        """Where the folders of runs belong."""
+        return self._proper.parent
+
+    def settle(self) -> None:
+        """Make the folder and write the record; whoever looks at processes finds it, too."""
+        self.record.write()
+        self._hold()
+
+    def listen(self) -> socket.socket:
+        """Return the socket that clients connect to."""
+        server = listen(self.record.folder)
+        self._socket = os.stat(SOCKET_NAME, dir_fd=self._descriptor)
+        return server
+
+    def note(self, processes: Mapping[str, tuple[int, int]]) -> None:
+        """Note which processes there are, for whoever comes after a sudden end."""
+        self.record = replace(self.record, processes=dict(processes))
+        if self._is_in_place():
+            self.record.write()
+
+    async def keep(
+        self, serve: Callable[[socket.socket], Awaitable[None]], tell: Callable[[Words], None]
+    ) -> None:
+        """Make it again whenever it goes; `serve` is given each new socket, `tell` the story."""
+        complained = False
+        while True:
+            await asyncio.sleep(LOOK_EVERY_S)
+            if self._is_in_place() and self._is_complete():
+                continue
+            before = self.record.folder
+            try:
+                await serve(self._made_again())
+            except OSError as problem:
+                if not complained:
+                    tell(
+                        say(
+                            "{path} has gone and cannot be made again: {problem}",
+                            path=before,
+                            problem=problem,
+                        )
+                    )
+                complained = True
+            else:
+                now = self.record.folder
+                tell(say("{path} has gone; the session is now in {now}", path=before, now=now))
+                complained = False
+
+    def remove(self) -> None:
+        """Take the folder away, and let nobody look for it any more."""
+        self.record.remove()
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1
+
+    def _is_in_place(self) -> bool:
+        """Whether what is held open is still the folder at this path."""
+        with suppress(OSError):
+            return os.path.samestat(os.fstat(self._descriptor), self.record.folder.stat())
+        return False
+
+    def _is_complete(self) -> bool:
+        with suppress(OSError):
+            (self.record.folder / RECORD_NAME).lstat()
+            there = os.stat(SOCKET_NAME, dir_fd=self._descriptor)
+            return self._socket is not None and os.path.samestat(there, self._socket)
+        return False
+
+    def _made_again(self) -> socket.socket:
+        """Make folder, record and socket; leave nothing behind that looks like a session."""
+        before, held = self.record.folder, os.dup(self._descriptor)
+        try:
+            self._settle_where_possible()
+            if not os.path.samestat(os.fstat(held), os.fstat(self._descriptor)):
+                _empty(held)
+                if before != self._proper:
+                    with suppress(OSError):
+                        before.rmdir()
+            return self.listen()
+        finally:
+            os.close(held)
+
+    def _settle_where_possible(self) -> None:
+        try:
+            own_folder(self.run_dir)
+            self.record = replace(self.record, folder=self._proper)
+            self.settle()
+        except (OSError, RunDirError):
+            folder = Path(tempfile.mkdtemp(prefix="deck-"))
+            self.record = replace(self.record, folder=folder)
+            self.settle()
+
+    def _hold(self) -> None:
+        """Keep the folder open, under the same number as the one before."""
+        descriptor = os.open(self.record.folder, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
+        if self._descriptor < 0:
+            self._descriptor = descriptor
+            session = self.record.session
+            show_mark(SUPERVISOR_MARK, f"{session.run_id}/{session.domain}/{descriptor}")
+        else:
+            os.dup2(descriptor, self._descriptor, inheritable=False)
+            os.close(descriptor)
+
+
+def _empty(folder: int) -> None:
+    for name in (RECORD_NAME, SOCKET_NAME):
+        with suppress(OSError):
+            os.unlink(name, dir_fd=folder)

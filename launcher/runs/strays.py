@@ -1,0 +1,120 @@
+"""Processes that an earlier run left behind: its supervisor is gone, and they are not.
+
+It takes a supervisor and its spawn server killed together to leave any. They are told of, and
+ended only if somebody asks for it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import time
+from typing import TYPE_CHECKING
+
+from launcher.processes.signal import send
+from launcher.processes.table import (
+    NODE_MARK,
+    RUN_MARK,
+    TICKS_PER_S,
+    boot_time_s,
+    command_line,
+    processes,
+    read_marks,
+    read_process,
+)
+from launcher.run_id import supervisor_runs
+from launcher.rundir import OWN_RUN_DIR
+from launcher.runs.record import read_records
+from launcher.status import Stray
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from launcher.processes.table import Process
+
+_SAME_START_S = 1.5
+"""The kernel's boot time is told to the second, and moves a little with the clock."""
+INTERRUPT_S = 2.0
+"""From SIGINT to SIGKILL, and the most that SIGKILL is waited for."""
+
+
+def find_strays(run_dir: Path) -> tuple[Stray, ...]:
+    """Return what is left of runs whose supervisor is gone."""
+    recorded = {
+        key: (record.session.run_id, node)
+        for record in read_records(run_dir)
+        if not record.runs
+        for node, key in record.processes.items()
+    }
+    booted = boot_time_s()
+    strays = []
+    for process in processes():
+        if process.zombie:
+            continue
+        run_id, node = recorded.get((process.pid, process.started_ticks), ("", ""))
+        if not run_id:
+            run_id, node = _marked(process)
+        if run_id:
+            started_s = booted + process.started_ticks / TICKS_PER_S
+            command = command_line(process.pid) or process.name
+            strays.append(Stray(process.pid, started_s, node, command, run_id))
+    return tuple(strays)
+
+
+def _marked(process: Process) -> tuple[str, str]:
+    marks = read_marks(process.pid)
+    if not marks or RUN_MARK not in marks:
+        return "", ""
+    # Whoever keeps runs apart does not want to be told of the others.
+    if marks.get(OWN_RUN_DIR, "") != os.environ.get(OWN_RUN_DIR, ""):
+        return "", ""
+    run_id, node = marks[RUN_MARK], marks.get(NODE_MARK, "")
+    # A spawn server that has outlived its supervisor is there to tidy up, and ends by itself.
+    if node.startswith("-") or supervisor_runs(run_id):
+        return "", ""
+    return run_id, node
+
+
+def still_there(stray: Stray) -> bool:
+    """Whether this very process is alive, and not another with its number."""
+    return _found(stray) is not None
+
+
+def _found(stray: Stray) -> Process | None:
+    process = read_process(stray.pid)
+    if process is None or process.zombie:
+        return None
+    started_s = boot_time_s() + process.started_ticks / TICKS_PER_S
+    if abs(started_s - stray.started_s) > _SAME_START_S or supervisor_runs(stray.run_id):
+        return None
+    return process
+
+
+async def end_strays(strays: Iterable[Stray]) -> None:
+    """End these processes, with SIGKILL those that do not end by SIGINT."""
+    left = [stray for stray in strays if still_there(stray)]
+    for number in (signal.SIGINT, signal.SIGKILL):
+        _signal(left, number)
+        deadline = time.monotonic() + INTERRUPT_S
+        while left and time.monotonic() < deadline:
+            await asyncio.sleep(0.05)
+            left = [stray for stray in left if still_there(stray)]
+
+
+def _signal(strays: Iterable[Stray], number: signal.Signals) -> None:
+    for stray in strays:
+        process = _found(stray)
+        if process is not None:
+            send(process, number)
+
+
+def forget_ended_runs(run_dir: Path, strays: Iterable[Stray]) -> None:
+    """Take away the records of runs of which nothing is left."""
+    kept = {stray.run_id for stray in strays}
+    for record in read_records(run_dir):
+        run_id = record.session.run_id
+        # A copy of a record that a person keeps has another name.
+        if record.folder.name == run_id and run_id not in kept and not record.runs:
+            record.remove()

@@ -1,0 +1,180 @@
+"""How a freshly forked process becomes a node: its session, its descriptors, its program."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import io
+import os
+import runpy  # noqa: F401 - ahead, for all nodes that are forked
+import signal
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from launcher import node_program
+from launcher.processes.marks import show_mark, show_name, show_title
+from launcher.processes.table import NODE_MARK
+from launcher.processes.ties import die_with_parent, leave_libraries_alone_at_exit
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from launcher.spawn_server.preload import Preload
+    from launcher.spawn_server.shared_modules import SharedModules
+
+ENDING = (signal.SIGINT, signal.SIGTERM)
+NOT_EXECUTABLE = 126
+NOT_FOUND = 127
+"""Exit codes as a shell gives them."""
+
+
+@dataclass(frozen=True)
+class Birth:
+    """All that a forked process needs to know to become its node."""
+
+    kind: str
+    """`module`: run here, in the warm interpreter; `exec`: a program; `probe`: the graph probe."""
+    name: str
+    title: str
+    argv: tuple[str, ...]
+    """For `module` the module or file with its arguments, for `exec` the command line."""
+    env: dict[str, str | None]
+    """What differs from the server's environment; None unsets."""
+    cwd: str
+    fds: tuple[int, ...]
+    """Stdout and stderr, or stdin, stdout and stderr."""
+    supervisor: int
+    shared: SharedModules
+    """What was imported of the project's own modules."""
+
+    @classmethod
+    def from_request(
+        cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload
+    ) -> Birth:
+        """Read a request; where the imports have failed, modules start cold."""
+        kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
+        if kind == "module" and preload.broken:
+            kind, argv = "exec", (sys.executable, node_program.__file__, *argv)
+        return cls(
+            kind=kind,
+            name=request["name"],
+            title=request["title"],
+            argv=argv,
+            env=dict(request["env"]),
+            cwd=request["cwd"],
+            fds=tuple(fds),
+            supervisor=supervisor,
+            shared=preload.shared,
+        )
+
+
+def become(birth: Birth) -> None:
+    """Be the node, to its end; an exception of the node's ends this process as it ought to."""
+    os.setsid()
+    if not die_with_parent(birth.supervisor):
+        os._exit(1)
+    _reset_signals()
+    _take_descriptors(birth.fds)
+    _set_environment(birth)
+    try:
+        os.chdir(birth.cwd)
+    except OSError as problem:
+        _give_up(f"cannot enter {birth.cwd}: {problem.strerror}", NOT_EXECUTABLE)
+    if birth.kind == "exec":
+        _hear_signals()
+        _execute(birth)
+    show_title(birth.title)
+    show_name(birth.name)
+    show_mark(NODE_MARK, birth.name)
+    _renew_streams()
+    if birth.kind == "probe":
+        _hear_signals()
+        from launcher.spawn_server.probe import probe
+
+        probe(birth.argv)
+    else:
+        _run_module(birth.argv, birth.shared)
+
+
+def _reset_signals() -> None:
+    """Undo what this process was forked with, ignored signals above all: exec would keep them."""
+    for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}:
+        if signal.getsignal(number) is not signal.SIG_DFL:
+            with contextlib.suppress(OSError, ValueError):
+                signal.signal(number, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_SETMASK, ENDING)
+
+
+def _hear_signals() -> None:
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())
+
+
+def _set_environment(birth: Birth) -> None:
+    os.environ[NODE_MARK] = birth.name
+    for name, value in birth.env.items():
+        if value is None:
+            os.environ.pop(name, None)
+        else:
+            os.environ[name] = value
+
+
+def _take_descriptors(fds: tuple[int, ...]) -> None:
+    if len(fds) == 2:
+        fds = (os.open(os.devnull, os.O_RDONLY), *fds)
+    for target, fd in enumerate(fds):
+        os.dup2(fd, target)
+    for entry in os.listdir("/proc/self/fd"):  # noqa: PTH208
+        if int(entry) > 2:
+            with contextlib.suppress(OSError):
+                os.close(int(entry))
+
+
+def _execute(birth: Birth) -> None:
+    try:
+        os.execvp(birth.argv[0], birth.argv)
+    except FileNotFoundError:
+        _give_up(f"command not found: {birth.argv[0]}", NOT_FOUND)
+    except OSError as problem:
+        _give_up(f"cannot execute {birth.argv[0]}: {problem.strerror}", NOT_EXECUTABLE)
+
+
+def _give_up(word: str, code: int) -> None:
+    os.write(2, f"deck: {plain(word)}\n".encode(errors="backslashreplace"))
+    os._exit(code)
+
+
+def _renew_streams() -> None:
+    """Make stdin, stdout and stderr anew, unbuffered as under `python -u`."""
+    stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115
+    sys.stdin = sys.__stdin__ = stdin  # type: ignore[misc]
+    sys.stdout = sys.__stdout__ = _unbuffered(1)  # type: ignore[misc]
+    sys.stderr = sys.__stderr__ = _unbuffered(2)  # type: ignore[misc]
+
+
+def _unbuffered(fd: int) -> io.TextIOWrapper:
+    raw = io.FileIO(fd, "w", closefd=False)
+    return io.TextIOWrapper(
+        raw,
+        encoding="utf-8",
+        errors="backslashreplace",
+        write_through=True,
+    )
+
+
+def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
+    """Be the program that `launcher.node_program` would start anew."""
+    # Python's own defaults at start, undone by `_reset_signals`.
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    node_program.prepare(argv)
+    importlib.invalidate_caches()
+    shared.renew(argv[0])
+    _hear_signals()
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+        # Not before: interrupted until here, it ends without a traceback.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if "numpy.random" in sys.modules:
+        # `random` reseeds itself after a fork, numpy's old global generator does not.
+        sys.modules["numpy.random"].seed()
+    leave_libraries_alone_at_exit()
+    node_program.run(argv[0])

@@ -1,0 +1,122 @@
+"""The probe: a short-lived process that tells which nodes, topics and services the graph has.
+
+The supervisor has no rclpy. While some node's readiness is awaited, this process, forked from
+the spawn server, watches the graph for it: a line of JSON on stdout for every change. `met`: the
+conditions that hold now, by their position in the list it was given; `seen`: of topics that are
+published but otherwise than awaited `[position, types, messages per second or null]`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rclpy.node import Node
+
+    from launcher.spawn_server.arrivals import Arrivals
+
+EAGER_S = 10.0
+"""For so long it looks often: a start is under way."""
+EAGER_PERIOD_S = 0.03
+CALM_PERIOD_S = 0.25
+RATES_S = 1.0
+"""A rate that is too low is told no more often than this."""
+ENOUGH = 0.9
+"""Of the rate awaited: a timer of 5 Hz never comes at 5 Hz quite."""
+
+
+class _Wanted(NamedTuple):
+    """As `launcher.supervisor.readiness.Condition`."""
+
+    kind: str
+    name: str
+    type: str
+    rate_hz: float
+
+
+@dataclass
+class _Report:
+    met: list[int] = field(default_factory=list)
+    seen: list[tuple[int, list[str], float | None]] = field(default_factory=list)
+
+    def differs(self, other: _Report) -> bool:
+        """Whether more differs than rates."""
+        return self.met != other.met or [x[:2] for x in self.seen] != [x[:2] for x in other.seen]
+
+
+def probe(argv: Sequence[str]) -> None:
+    """Watch until stdin ends; `argv` is one JSON list of `[kind, name, type, rate]` conditions."""
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    from launcher.spawn_server.arrivals import Arrivals
+
+    conditions = [_Wanted(*fields) for fields in json.loads(argv[0])]
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    # A leading underscore hides a node from people's lists.
+    node = rclpy.create_node(
+        f"_deck_probe_{os.getpid()}",
+        use_global_arguments=False,
+        enable_rosout=False,
+        start_parameter_services=False,
+    )
+    try:
+        _watch(node, conditions, Arrivals(node))
+    finally:
+        node.destroy_node()
+        rclpy.shutdown()
+
+
+def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: Arrivals) -> None:
+    started = time.monotonic()
+    told: _Report | None = None
+    told_at = 0.0
+    while True:
+        now = time.monotonic()
+        report = _look(node, conditions, arrivals)
+        # A rate is never quite the same; the rest is told at once.
+        if told is None or report.differs(told) or (report != told and now > told_at + RATES_S):
+            line = {"met": report.met, "seen": report.seen}
+            os.write(1, json.dumps(line).encode() + b"\n")
+            told, told_at = report, now
+        eager = now - started < EAGER_S
+        if select.select([0], [], [], EAGER_PERIOD_S if eager else CALM_PERIOD_S)[0]:
+            return
+
+
+def _look(node: Node, conditions: Sequence[_Wanted], arrivals: Arrivals) -> _Report:
+    names = {f"{space.rstrip('/')}/{name}" for name, space in node.get_node_names_and_namespaces()}
+    report = _Report()
+    for position, wanted in enumerate(conditions):
+        if wanted.kind != "topic":
+            met = (
+                f"/{wanted.name.lstrip('/')}" in names
+                if wanted.kind == "node"
+                else node.count_services(wanted.name) > 0
+            )
+            if met:
+                report.met.append(position)
+            continue
+        if not node.count_publishers(wanted.name):
+            continue
+        ends = node.get_publishers_info_by_topic(wanted.name)
+        types = sorted({end.topic_type for end in ends})
+        if not types or (wanted.type and wanted.type not in types):
+            report.seen.append((position, types, None))
+            continue
+        if not wanted.rate_hz:
+            report.met.append(position)
+            continue
+        rate_hz = arrivals.rate_hz(wanted.name, wanted.type or types[0])
+        if rate_hz is not None and rate_hz >= ENOUGH * wanted.rate_hz:
+            report.met.append(position)
+        else:
+            report.seen.append((position, types, rate_hz))
+    return report

@@ -1,0 +1,174 @@
+"""The spawn server: a child of the supervisor from which every node is forked.
+
+The first is forked from the supervisor before that has imported anything, later ones are started
+as `python -m launcher.spawn_server.server FD PID MODE ROOM`: FD is its end of a seqpacket socket,
+PID the supervisor, MODE `warm` or `cold`, and ROOM mere length for titles
+(`launcher.processes.marks`).
+
+One message is one packet of descriptors: first that of a memory file with a JSON object, then, of
+a request, the new process's stdin (optional), stdout and stderr. The answer is a packet of JSON,
+`{"id": ..., "pid": ..., "started": ...}`, its start in ticks, or `{"id": ..., "error": ...}`. A
+node is forked through an intermediate that exits, so that it becomes the supervisor's own child.
+
+At the end of the socket the supervisor is gone, and this process, which outlives it, ends
+whatever it has left running (`launcher.spawn_server.undertaker`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import socket
+import sys
+from typing import TYPE_CHECKING, Any
+
+from launcher.processes.table import RUN_MARK, read_process
+from launcher.spawn_server.node import ENDING, Birth, become
+from launcher.spawn_server.preload import Preload
+from launcher.spawn_server.undertaker import undertake
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+MAX_FDS = 4
+COLLECT_EVERY_S = 0.05
+"""While there are intermediates that have not been seen to exit."""
+
+
+class SpawnServer:
+    """Answers the supervisor's requests until the supervisor has gone."""
+
+    def __init__(self, link: socket.socket, supervisor: int, preload: Preload) -> None:
+        """`preload`: what is still to be imported before warm nodes can be forked."""
+        self._link = link
+        self._supervisor = supervisor
+        self._preload = preload
+        self._intermediates: set[int] = set()
+        self._waiting: list[tuple[dict[str, Any], list[int]]] = []
+        self.groups: set[int] = set()
+
+    def serve(self) -> Callable[[], None] | None:
+        """Serve to the end of the socket.
+
+        Returns:
+            None at the end; in a process that was forked here, what it has to do now.
+        """
+        while True:
+            if self._preload.done and self._waiting:
+                task = self._fork(*self._waiting.pop(0))
+            elif self._request_is_there():
+                packet, fds, _flags, _address = socket.recv_fds(self._link, 1, MAX_FDS)
+                if not packet:
+                    return None
+                task = self._take(_read(fds[0]), fds[1:])
+            else:
+                self._preload.step()
+                task = None
+            if task is not None:
+                return task
+
+    def _request_is_there(self) -> bool:
+        """Wait for a request, but do not wait while there is something to be imported."""
+        timeout = self._preload.wait_s
+        if self._intermediates:
+            self._collect()
+            timeout = COLLECT_EVERY_S if timeout is None else timeout
+        return bool(select.select([self._link], [], [], timeout)[0])
+
+    def _take(self, request: dict[str, Any], fds: list[int]) -> Callable[[], None] | None:
+        if request["kind"] == "adopt":
+            self.groups.update(request["groups"])
+            return None
+        if request["kind"] == "preload":
+            self._preload.also(request["packages"])
+            return None
+        if request["kind"] == "forget":
+            self.groups.difference_update(request["groups"])
+            return None
+        if request["kind"] != "exec" and not self._preload.done:
+            self._waiting.append((request, fds))
+            return None
+        return self._fork(request, fds)
+
+    def _fork(self, request: dict[str, Any], fds: list[int]) -> Callable[[], None] | None:
+        birth = Birth.from_request(request, fds, self._supervisor, self._preload)
+        try:
+            pid = os.fork()
+        except OSError as problem:
+            _answer(self._link, {"id": request["id"], "error": problem.strerror})
+        else:
+            if pid == 0:
+                self._waiting.clear()
+                return _fork_on(birth, self._link, request["id"])
+            self._intermediates.add(pid)
+        for fd in fds:
+            os.close(fd)
+        return None
+
+    def _collect(self) -> None:
+        for pid in tuple(self._intermediates):
+            if os.waitpid(pid, os.WNOHANG)[0] == pid:
+                self._intermediates.remove(pid)
+
+
+def _read(fd: int) -> dict[str, Any]:
+    with open(fd, "rb") as file:
+        file.seek(0)
+        message: dict[str, Any] = json.load(file)
+    return message
+
+
+def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[], None]:
+    """Fork the node, answer for it, and exit: what comes after runs in the node alone.
+
+    The server does not wait for that: meanwhile it forks for the next request.
+    """
+    try:
+        pid = os.fork()
+    except OSError as problem:
+        _answer(link, {"id": request_id, "error": problem.strerror})
+        os._exit(1)
+    if pid:
+        node = read_process(pid)
+        assert node is not None, "nobody but this process can reap it"
+        _answer(link, {"id": request_id, "pid": pid, "started": node.started_ticks})
+        os._exit(0)
+    return lambda: become(birth)
+
+
+def _answer(link: socket.socket, answer: dict[str, Any]) -> None:
+    # Without a supervisor nobody waits for it, and the next read says so.
+    with contextlib.suppress(OSError):
+        link.send(json.dumps(answer).encode())
+
+
+def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold: bool) -> None:
+    """Serve; at the end of the socket be the undertaker; in a forked node be the node.
+
+    `packages`: those whose shared modules the nodes to come will need, as far as that is known.
+    """
+    # Whoever started the supervisor may have had these ignored, and a terminal is none of ours.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    # A node inherits this: one that is asked to end at once must not take that for ignored.
+    signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    server = SpawnServer(link, supervisor, Preload(packages, cold=cold))
+    task = server.serve()
+    if task is not None:
+        task()
+    else:
+        undertake(os.environ[RUN_MARK], server.groups)
+
+
+def main() -> None:
+    """Serve on the socket that the arguments tell of."""
+    link = socket.socket(fileno=int(sys.argv[1]))
+    link.set_inheritable(False)
+    serve(link, int(sys.argv[2]), (), cold=sys.argv[3] == "cold")
+
+
+if __name__ == "__main__":
+    main()

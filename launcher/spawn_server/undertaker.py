@@ -1,0 +1,55 @@
+"""What the spawn server does when the supervisor is gone: end all that is left of its run.
+
+The nodes themselves died with the supervisor (PDEATHSIG); their children, and whatever has left
+the nodes' groups, did not.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from typing import TYPE_CHECKING
+
+from launcher.processes.signal import send
+from launcher.processes.table import RUN_MARK, processes, read_marks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from launcher.processes.table import Process
+
+GRACE_S = 0.7
+"""From SIGINT to SIGKILL: with the search around it less than the 2 s of the promise."""
+PATIENCE_S = 10.0
+"""After that a process that SIGKILL does not end is left to the kernel."""
+
+
+def undertake(run_id: str, groups: Iterable[int]) -> None:
+    """End every process in `groups`, and every one that is marked with `run_id`."""
+    wanted = frozenset(groups)
+    started = time.monotonic()
+    told: set[int] = set()
+    while True:
+        left = survivors(run_id, wanted)
+        elapsed = time.monotonic() - started
+        if not left or elapsed > PATIENCE_S:
+            return
+        for process in left:
+            if elapsed >= GRACE_S:
+                send(process, signal.SIGKILL)
+            elif process.pid not in told:
+                send(process, signal.SIGINT)
+        told.update(process.pid for process in left)
+        time.sleep(0.05)
+
+
+def survivors(run_id: str, groups: frozenset[int]) -> list[Process]:
+    """Return the processes that are left of a run, without this one."""
+    return [
+        process
+        for process in processes()
+        if process.pid != os.getpid()
+        and not process.zombie
+        and (process.group in groups or (read_marks(process.pid) or {}).get(RUN_MARK) == run_id)
+    ]

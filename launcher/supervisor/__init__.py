@@ -1,0 +1,1 @@
+"""The supervisor: a process that starts a session's nodes, watches them, and ends them."""

@@ -1,0 +1,92 @@
+"""The guardian: the supervisor's parent, which outlives it and ends whatever it has left running.
+
+The supervisor adopts what its nodes have started and let go of. When it is killed the kernel hands
+all of that to its own nearest ancestor that adopts: this process. So nothing eludes it, be it in a
+session of its own, daemonised, without a variable in its environment.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from typing import TYPE_CHECKING, NoReturn
+
+from launcher.processes.marks import show_name, show_title
+from launcher.processes.signal import send
+from launcher.processes.table import processes
+from launcher.processes.ties import become_subreaper
+
+if TYPE_CHECKING:
+    from launcher.processes.table import Process
+
+GRACE_S = 0.7
+"""From SIGINT to SIGKILL: with the search around it less than the 2 s of the promise."""
+PATIENCE_S = 10.0
+"""After that a process that SIGKILL does not end is left to the kernel."""
+_LOOK_EVERY_S = 0.05
+
+
+def fork_under_guardian() -> None:
+    """Become the guardian of a new process; in that one, which is to be the supervisor, return."""
+    become_subreaper()
+    supervisor = os.fork()
+    if supervisor == 0:
+        os.setsid()
+        return
+    _guard(supervisor)
+
+
+def _guard(supervisor: int) -> NoReturn:
+    # What is sent to all of a service or a terminal is for the supervisor to obey.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    show_title("deck: guardian")
+    show_name("deck guardian")
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for fd in range(3):
+        # Whoever waits for the end of the supervisor's output must not wait for us.
+        os.dup2(nowhere, fd)
+    os.chdir("/")
+    while os.wait()[0] != supervisor:
+        pass
+    _end_all()
+    os._exit(0)
+
+
+def _end_all() -> None:
+    began = time.monotonic()
+    told: set[int] = set()
+    while left := _descendants():
+        elapsed = time.monotonic() - began
+        if elapsed > PATIENCE_S:
+            return
+        for process in left:
+            if elapsed >= GRACE_S:
+                send(process, signal.SIGKILL)
+            elif process.pid not in told:
+                send(process, signal.SIGINT, signal.SIGCONT)
+        told.update(process.pid for process in left)
+        _reap()
+        time.sleep(_LOOK_EVERY_S)
+
+
+def _descendants() -> list[Process]:
+    """Return all that lives and has this process among its forebears."""
+    children: dict[int, list[Process]] = {}
+    for process in processes():
+        children.setdefault(process.parent, []).append(process)
+    found, wanted = [], [os.getpid()]
+    while wanted:
+        below = children.pop(wanted.pop(), [])
+        found += [process for process in below if not process.zombie]
+        wanted += [process.pid for process in below]
+    return found
+
+
+def _reap() -> None:
+    try:
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+    except ChildProcessError:
+        return

@@ -1,0 +1,350 @@
+"""One node's life: waiting, starting, ready or running, stopping, and what comes after.
+
+All of it happens in one task, so that nothing can start it twice.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from launcher.processes.exit import Exit
+from launcher.processes.stop import PATIENT, QUICK, Stop
+from launcher.spawn_server.spawner import SpawnError
+from launcher.status import NodeState, NodeStatus, Severity
+from launcher.supervisor.readiness import UnwatchableError
+from launcher.supervisor.restart_policy import Again, Finished, GivenUp, RestartPolicy
+from launcher.supervisor.words import (
+    NOT_EXECUTABLE,
+    NOT_FOUND,
+    end_words,
+    instead,
+    late,
+    left_undone,
+    stopped_words,
+    what,
+    who,
+)
+from launcher.words import say
+
+if TYPE_CHECKING:
+    import signal
+    from collections.abc import Sequence
+
+    from launcher.processes.table import Process
+    from launcher.processes.usage import Usage
+    from launcher.supervisor.plan import NodePlan
+    from launcher.supervisor.readiness import Seen
+    from launcher.supervisor.surroundings import RunningProcess, Surroundings
+
+LATE_S = 60.0
+"""For so long after its time was up a node may still become ready."""
+USAGE = 2
+"""Exit code of a program that does not take its arguments; Deck's nodes have it for parameters."""
+USAGE_WITHIN_S = 10.0
+"""What is refused is refused at once."""
+ASKED_TWICE_S = 0.3
+"""Two requests to stop that are closer together are one."""
+
+
+@dataclass
+class _Now:
+    """What there is only while a process runs."""
+
+    process: RunningProcess
+    started: float
+    stop: Stop | None = None
+
+
+class Node:
+    """One node of the session."""
+
+    def __init__(self, plan: NodePlan, around: Surroundings) -> None:
+        """`around`: the session it lives in."""
+        self.plan = plan
+        self.state = NodeState.WAITING
+        self.detail = ""
+        self.serves = False
+        """Whether those that need it may start."""
+        self.usage: Usage | None = None
+        self._around = around
+        self._policy = RestartPolicy(plan.restart)
+        self._restarts = 0
+        self._last: Exit | None = None
+        self._now: _Now | None = None
+        self._task: asyncio.Task[None] | None = None
+        self._nudge = asyncio.Event()
+        self._down = False
+        self._again = False
+        self._forced = False
+        self._hurried = False
+        self._asked_at = 0.0
+
+    @property
+    def at_work(self) -> bool:
+        """Whether anything of it is under way: it runs, waits, or is to be started again."""
+        return self._task is not None and not self._task.done()
+
+    def status(self) -> NodeStatus:
+        """Return its status as of now."""
+        now, last, usage = self._now, self._last, self.usage
+        return NodeStatus(
+            name=self.plan.name,
+            command=self.plan.command,
+            state=self.state,
+            detail=self.detail,
+            pid=now.process.pid if now else None,
+            uptime_s=self._around.clock.now() - now.started if now else None,
+            restarts=self._restarts,
+            exit_code=last.code if last and not now else None,
+            signal=last.signal if last and not now else None,
+            cpu_percent=usage.cpu_percent if usage and now else None,
+            memory_bytes=usage.memory_bytes if usage and now else None,
+            needs=self.plan.needs,
+        )
+
+    def start(self) -> None:
+        """Start it; a node that waits for others or for its next try starts at once."""
+        if not self.at_work:
+            self._down = self._again = self._forced = self._hurried = False
+            self._policy.reset()
+            self._task = asyncio.create_task(self._live())
+            self._task.add_done_callback(self._tell_fault)
+        elif self._down:
+            self._again = True
+        elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
+            self._forced = True
+            self._nudge.set()
+
+    async def stop(self, *, now: bool = False) -> None:
+        """Stop it and return when nothing of it is left.
+
+        `now`, or asking a second time, skips the waiting between the signals.
+        """
+        self._again = False
+        if self.at_work and self._task is not None:
+            self._go_down(now=now or self._asked_before())
+            await asyncio.wait([self._task])
+        elif self.state in (NodeState.WAITING, NodeState.BACKOFF):
+            self._become(NodeState.EXITED, say("stopped"))
+
+    def restart(self) -> None:
+        """Stop and start it; one that is to be started again already is not started twice."""
+        if self.at_work:
+            self._again = True
+            self._go_down(now=False)
+        else:
+            self.start()
+
+    def needs_changed(self) -> None:
+        """Look again whether all that it needs is there."""
+        if self.state is NodeState.WAITING:
+            self._nudge.set()
+
+    def _asked_before(self) -> bool:
+        return self._down and self._around.clock.now() - self._asked_at > ASKED_TWICE_S
+
+    def _tell_fault(self, task: asyncio.Task[None]) -> None:
+        """Nothing of ours should raise here; if it does, the node must not seem to be well."""
+        if not task.cancelled() and task.exception() is not None:
+            self._become(
+                NodeState.FAILED, say("an error in Deck itself: {error!r}", error=task.exception())
+            )
+            asyncio.get_running_loop().call_exception_handler(
+                {"message": f"life of {self.plan.name}", "exception": task.exception()}
+            )
+
+    def _go_down(self, *, now: bool) -> None:
+        if not self._down:
+            self._asked_at = self._around.clock.now()
+        self._down = True
+        self._hurried = self._hurried or now
+        self.serves = False
+        if now and self._now is not None and self._now.stop is not None:
+            self._now.stop.hurry()
+        self._nudge.set()
+
+    def _become(self, state: NodeState, detail: str = "", *, serves: bool = False) -> None:
+        self.state, self.detail, self.serves = state, detail, serves and not self._down
+        self._around.changed(self.plan.name, self.state)
+
+    async def _live(self) -> None:
+        while True:
+            await self._wait_for_needs()
+            if not self._down:
+                again = await self._one_process()
+                if not again and not self._down:
+                    return
+            if self._down:
+                if not self._again:
+                    self._become(NodeState.EXITED, stopped_words(self._last))
+                    return
+                self._again = self._down = self._hurried = False
+                self._policy.reset()
+
+    async def _wait_for_needs(self) -> None:
+        while not self._down and not self._forced:
+            missing = self._around.missing(self.plan)
+            if not missing:
+                break
+            if (self.state, self.detail) != (NodeState.WAITING, missing):
+                self._become(NodeState.WAITING, missing)
+            await self._nudge.wait()
+            self._nudge.clear()
+        self._forced = False
+
+    async def _one_process(self) -> bool:
+        """Start a process and see it to its end; return whether to start another."""
+        self._become(NodeState.STARTING)
+        try:
+            process = await self._launched()
+        except SpawnError as problem:
+            end = Exit(None)
+            lasted = 0.0
+            why: str = say("cannot be started: {reason}", reason=problem.args[0])
+            self._around.say(self.plan.name, Severity.ERROR, why)
+        else:
+            if process is None:
+                return False
+            end, lasted = await self._see_through(process)
+            why = self._end_words(end)
+        if self._down:
+            return False
+        return await self._after(end, lasted, why)
+
+    async def _launched(self) -> RunningProcess | None:
+        """Start a process; None if it is to go down before there is one."""
+        launching = asyncio.ensure_future(self._around.launch(self.plan))
+        launching.add_done_callback(lambda _launched: self._nudge.set())
+        while not launching.done() and not self._down:
+            self._nudge.clear()
+            await self._nudge.wait()
+        if not launching.done():
+            launching.cancel()
+            await asyncio.wait([launching])
+        return None if launching.cancelled() else launching.result()
+
+    async def _see_through(self, process: RunningProcess) -> tuple[Exit, float]:
+        clock = self._around.clock
+        self._now = now = _Now(process, clock.now())
+        self._last = self.usage = None
+        self._around.say(self.plan.name, Severity.INFO, say("started, pid {pid}", pid=process.pid))
+        process.ended.add_done_callback(lambda _ended: self._nudge.set())
+        ready = asyncio.create_task(self._become_ready())
+        while not process.ended.done() and not self._down:
+            self._nudge.clear()
+            await self._nudge.wait()
+        ready.cancel()
+        lasted = clock.now() - now.started
+        if self._down:
+            self._become(NodeState.STOPPING)
+        await self._end_all_of_it(now)
+        end = await process.ended
+        await process.close()
+        self._now, self._last = None, end
+        self._around.say(self.plan.name, self._gravity(end), self._end_words(end))
+        return end, lasted
+
+    async def _end_all_of_it(self, now: _Now) -> None:
+        """Stop what is left: all of it if it is to go down, else what its end has left behind."""
+        now.stop = Stop(
+            now.process, self._around.clock, self._held_up, QUICK if self._hurried else PATIENT
+        )
+        if now.process.ended.done() and not self._down:
+            left = now.process.left()
+            if not left:
+                return
+            self._become(NodeState.STOPPING, say("it ended and left {who} running", who=who(left)))
+        stop = now.stop
+        now.process.ended.add_done_callback(lambda _ended: stop.look())
+        await stop.run()
+
+    def _held_up(self, left: Sequence[Process], number: signal.Signals) -> None:
+        words = say("{signal} sent, waiting for {who}", signal=number.name, who=who(left))
+        self._become(NodeState.STOPPING, words)
+        if number.name != "SIGINT":
+            self._around.say(self.plan.name, Severity.WARN, words)
+
+    async def _become_ready(self) -> None:
+        plan, condition = self.plan, self.plan.ready
+        if condition is None:
+            self._become(NodeState.RUNNING, serves=True)
+            return
+        self._become(NodeState.STARTING, say("waiting for {what}", what=what(condition)))
+        clock = self._around.clock
+        seen: Seen | None = None
+
+        def tell(found: Seen) -> None:
+            nonlocal seen
+            seen = found
+            if self.state is NodeState.STARTING:
+                self._become(NodeState.STARTING, instead(condition, found))
+            elif self.state is NodeState.RUNNING:
+                self._become(NodeState.RUNNING, late(condition, found, plan.within_s))
+
+        ready = asyncio.ensure_future(self._around.ready(condition, tell))
+        came = asyncio.Event()
+        ready.add_done_callback(lambda _ready: came.set())
+        try:
+            if not await clock.wait(came, plan.within_s):
+                words = late(condition, seen, plan.within_s)
+                self._become(NodeState.RUNNING, words)
+                self._around.say(plan.name, Severity.WARN, words)
+                if not await clock.wait(came, LATE_S):
+                    return
+            ready.result()
+            self._become(NodeState.READY, serves=True)
+        except UnwatchableError:
+            self._become(NodeState.RUNNING, say("whether it is ready cannot be seen"), serves=True)
+        finally:
+            ready.cancel()
+
+    async def _after(self, end: Exit, lasted: float, why: str) -> bool:
+        """Do what the restart policy says; return whether to start it again."""
+        clock = self._around.clock
+        verdict = (
+            GivenUp(1)
+            if self._is_hopeless(end, lasted)
+            else self._policy.after(clean=end.clean, lasted_s=lasted, now=clock.now())
+        )
+        if isinstance(verdict, Again):
+            words = say("{why}; again in {seconds:g} s", why=why, seconds=verdict.delay_s)
+            self._become(NodeState.BACKOFF, words)
+            self._nudge.clear()
+            await clock.wait(self._nudge, verdict.delay_s)
+            self._forced = False
+            if not self._down:
+                self._restarts += 1
+            return not self._down
+        undone = "" if self.plan.ready is None else left_undone(self.plan.ready)
+        if self.plan.optional or (isinstance(verdict, Finished) and not undone):
+            self._become(NodeState.EXITED, why)
+            return False
+        if isinstance(verdict, Finished):
+            why = undone
+            self._around.say(self.plan.name, Severity.ERROR, why)
+        elif verdict.crashes > 1:
+            why = say(
+                "given up: it ended {count} times in {seconds:.0f} s: {why}",
+                count=verdict.crashes,
+                seconds=verdict.within_s,
+                why=why,
+            )
+            self._around.say(self.plan.name, Severity.ERROR, why)
+        self._become(NodeState.FAILED, why)
+        return False
+
+    def _is_hopeless(self, end: Exit, lasted: float) -> bool:
+        """Whether another try would end in the same way."""
+        if self.plan.module:
+            return end.code == USAGE and lasted < USAGE_WITHIN_S
+        return end.code in (NOT_EXECUTABLE, NOT_FOUND)
+
+    def _gravity(self, end: Exit) -> Severity:
+        if end.clean or self._down:
+            return Severity.INFO
+        return Severity.WARN if self.plan.optional else Severity.ERROR
+
+    def _end_words(self, end: Exit) -> str:
+        return end_words(end, self.plan, self._around.last_words(self.plan.name), asked=self._down)

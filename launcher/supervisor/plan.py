@@ -1,0 +1,189 @@
+"""What a supervisor is given to run: plain data, so that it need not read profiles itself.
+
+The client has read and validated the profile; the supervisor starts while it does, and gets
+the plan as one line of JSON.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from launcher.domain.discovery import settings_of_discovery
+from launcher.domain.domain import ros_environment
+from launcher.profile.driving import drives
+from launcher.supervisor.readiness import Condition
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from launcher.profile.load import NodeSpec, Profile
+
+_COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTNG_", "AMENT_")
+"""Variables that count when an interpreter or a library starts: a fork would come too late."""
+
+_BOOTSTRAP_DONE = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
+"""Set by the ROS wheels once LD_LIBRARY_PATH leads into this environment."""
+
+
+@dataclass(frozen=True)
+class NodePlan:
+    """One node."""
+
+    name: str
+    command: str
+    argv: tuple[str, ...]
+    """The full command line, as it is without the spawn server."""
+    module: tuple[str, ...] = ()
+    """The module, or file, and its arguments if it is to be forked warm, else empty."""
+    env: dict[str, str | None] = field(default_factory=dict)
+    """What differs from the supervisor's environment; None unsets."""
+    cwd: str = "/"
+    needs: tuple[str, ...] = ()
+    ready: Condition | None = None
+    within_s: float = 10.0
+    restart: str = "never"
+    optional: bool = False
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The whole session."""
+
+    profile: str
+    name: str
+    nodes: tuple[NodePlan, ...]
+    env: dict[str, str | None]
+    """What differs for every node, and for the probe: domain, discovery, language."""
+    run_dir: str
+    log_dir: str
+    title: dict[str, str] = field(default_factory=dict)
+    lesson: str = ""
+    domain: int = 0
+    discovery: str | tuple[str, ...] = "localhost"
+    hardware: str = "mock"
+    panels: tuple[str, ...] = ()
+    foreground: bool = True
+
+    @property
+    def needs(self) -> dict[str, tuple[str, ...]]:
+        """Node to the nodes it needs."""
+        return {node.name: node.needs for node in self.nodes}
+
+    @property
+    def drives(self) -> bool:
+        """Whether anything gives orders to the wheels."""
+        return any(drives(node.command) for node in self.nodes)
+
+    @property
+    def warm(self) -> bool:
+        """Whether anything is to be forked warm."""
+        return any(node.module for node in self.nodes)
+
+    @property
+    def packages(self) -> set[str]:
+        """The packages of the modules that are to be forked warm."""
+        modules = (node.module[0] for node in self.nodes if node.module)
+        return {module.rpartition(".")[0] for module in modules if "/" not in module} - {""}
+
+    def to_json(self) -> str:
+        """Return it as one line."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_json(cls, line: str | bytes) -> Plan:
+        """Read what `to_json` has written."""
+        fields: dict[str, Any] = json.loads(line)
+        fields["nodes"] = tuple(_node_from(node) for node in fields["nodes"])
+        fields["panels"] = tuple(fields["panels"])
+        if not isinstance(fields["discovery"], str):
+            fields["discovery"] = tuple(fields["discovery"])
+        return cls(**fields)
+
+
+def _node_from(fields: dict[str, Any]) -> NodePlan:
+    for key in ("argv", "module", "needs"):
+        fields[key] = tuple(fields[key])
+    if fields["ready"] is not None:
+        fields["ready"] = Condition(**fields["ready"])
+    return NodePlan(**fields)
+
+
+def plan_of(
+    profile: Profile, *, run_dir: str, log_dir: str, foreground: bool, node_lang: str
+) -> Plan:
+    """Make the plan of a profile for this machine, environment and working directory."""
+    return Plan(
+        profile=str(profile.path),
+        name=profile.name,
+        nodes=tuple(_node_plan(node) for node in profile.nodes.values()),
+        env=_common_env(profile, node_lang),
+        run_dir=run_dir,
+        log_dir=log_dir,
+        title=dict(profile.title),
+        lesson=profile.lesson,
+        domain=profile.domain,
+        discovery=profile.discovery,
+        hardware=profile.hardware,
+        panels=tuple(profile.panels),
+        foreground=foreground,
+    )
+
+
+def _common_env(profile: Profile, node_lang: str) -> dict[str, str | None]:
+    wanted = ros_environment(os.environ, profile.domain, profile.discovery)
+    env: dict[str, str | None] = {
+        name: wanted.get(name)
+        for name in {*wanted, *os.environ}
+        if wanted.get(name) != os.environ.get(name)
+    }
+    env.update(settings_of_discovery(os.environ, profile.discovery))
+    # One format of log lines, one that can be read back.
+    env["RCUTILS_CONSOLE_OUTPUT_FORMAT"] = None
+    env["RCUTILS_COLORIZED_OUTPUT"] = "0"
+    env["PYTHONUNBUFFERED"] = "1"
+    env["PYTHONIOENCODING"] = "utf-8:backslashreplace"
+    if node_lang:
+        env["DECK_LANG"] = node_lang
+    return env
+
+
+def _node_plan(node: NodeSpec) -> NodePlan:
+    argv = tuple(node.argv())
+    env: dict[str, str | None] = {}
+    module: tuple[str, ...] = ()
+    if node.run is None:
+        env.update(_foreign_env())
+    elif node.warm and not any(name.startswith(_COLD_PREFIXES) for name in node.env):
+        module = argv[argv.index(node.run) :]
+    ready = node.ready
+    return NodePlan(
+        name=node.name,
+        command=node.command,
+        argv=argv,
+        module=module,
+        env={**env, **node.env},
+        cwd=str(node.cwd) if node.cwd is not None else os.getcwd(),  # noqa: PTH109
+        needs=tuple(node.needs),
+        ready=None
+        if ready is None
+        else Condition(ready.kind, ready.name, ready.type, ready.rate_hz),
+        within_s=10.0 if ready is None else ready.within_s,
+        restart=node.restart,
+        optional=node.optional,
+    )
+
+
+def _foreign_env() -> Mapping[str, str | None]:
+    """Return what a program of another environment must not inherit from the ROS wheels.
+
+    Their libraries would be found before its own; a Python of this environment finds them again.
+    """
+    if _BOOTSTRAP_DONE not in os.environ:
+        return {}
+    parts = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    others = [part for part in parts if part and not part.startswith(sys.prefix)]
+    return {_BOOTSTRAP_DONE: None, "LD_LIBRARY_PATH": os.pathsep.join(others) or None}

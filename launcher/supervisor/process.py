@@ -1,0 +1,141 @@
+"""A node's process with all that descends from it: started, found, signalled, let go of."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from typing import TYPE_CHECKING
+
+from launcher.logs.reader import PipeReader, node_pipe
+from launcher.processes.members import Members
+from launcher.processes.ports import BurntPorts
+from launcher.processes.shared_memory import held_segments, port_numbers, sweep
+from launcher.processes.signal import send
+from launcher.spawn_server.spawner import SpawnRequest
+
+if TYPE_CHECKING:
+    import asyncio
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from launcher.logs.book import LogBook
+    from launcher.processes.exit import Exit, Reaper
+    from launcher.processes.table import Process
+    from launcher.spawn_server.spawner import Born, Spawner
+    from launcher.supervisor.plan import NodePlan, Plan
+
+_FRESH_S = 0.02
+"""A scan of all processes this old is good for the other nodes that stop at the same time."""
+
+
+class ProcessScan:
+    """The processes of all nodes, looked up no more often than makes sense."""
+
+    def __init__(self, members: Members) -> None:
+        self.members = members
+        self._found: Mapping[str, Sequence[Process]] = {}
+        self._at = float("-inf")
+
+    def look(self, max_age_s: float = _FRESH_S) -> Mapping[str, Sequence[Process]]:
+        """Return the living processes of each node."""
+        now = time.monotonic()
+        if now - self._at > max_age_s:
+            self._found, self._at = self.members.scan(), now
+        return self._found
+
+    def forget(self) -> None:
+        """What is known is out of date: something was started, or has ended."""
+        self._at = float("-inf")
+
+
+class NodeProcess:
+    """One process that was started for a node; fits `RunningProcess`."""
+
+    def __init__(
+        self, name: str, born: Born, launcher: ProcessLauncher, readers: Sequence[PipeReader]
+    ) -> None:
+        """`readers` read its stdout and stderr."""
+        self.name = name
+        self.pid = born.pid
+        self.started_ticks = born.started_ticks
+        self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(born.pid, born.started_ticks)
+        self.ended.add_done_callback(self._on_end)
+        self._launcher = launcher
+        self._readers = readers
+
+    def left(self) -> Sequence[Process]:
+        """Return its processes that live."""
+        return self._launcher.scan.look().get(self.name, ())
+
+    def signal(self, process: Process, number: signal.Signals) -> None:
+        """Send one of them a signal, and wake it, which may be suspended, so that it hears it."""
+        send(process, number, signal.SIGCONT)
+
+    async def close(self) -> None:
+        """Read what it has still written, and forget it."""
+        for reader in self._readers:
+            reader.close()
+        self._launcher.sweep_segments(self.name)
+        self._launcher.scan.members.remove(self.pid)
+        self._launcher.spawner.forget(self.pid)
+
+    def _on_end(self, _ended: object) -> None:
+        self._launcher.scan.forget()
+        for reader in self._readers:
+            reader.drain()
+
+
+class ProcessLauncher:
+    """Starts nodes' processes, their pipes read into the log."""
+
+    def __init__(
+        self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, book: LogBook
+    ) -> None:
+        self.spawner = spawner
+        self.reaper = reaper
+        self.scan = scan
+        self._plan = plan
+        self._book = book
+        self._segments: dict[str, set[str]] = {}
+        self._burnt = BurntPorts()
+        # Before the probe joins: it would be shifted, and shift the nodes.
+        self._burnt.avoid_others(plan.domain)
+
+    def note_segments(self, name: str, pids: Iterable[int]) -> None:
+        """Note which shared memory a node's processes hold: of a killed one nobody could tell."""
+        self._segments.setdefault(name, set()).update(*map(held_segments, pids))
+
+    def sweep_segments(self, name: str) -> None:
+        """Remove the shared memory that a node has left behind, and let nobody take its place."""
+        self._burnt.keep(port_numbers(sweep(self._segments.pop(name, ()))))
+
+    async def launch(self, node: NodePlan) -> NodeProcess:
+        """Start a node; raises `SpawnError`."""
+        request = SpawnRequest(
+            kind="module" if node.module else "exec",
+            name=node.name,
+            title=f"deck: {node.name} ({node.command})",
+            argv=node.module or node.argv,
+            cwd=node.cwd,
+            env={**self._plan.env, **node.env},
+        )
+        out, out_write = node_pipe()
+        err, err_write = node_pipe()
+        # Read from the first moment: what a process says before it is known is its own too.
+        readers = [
+            self._book.read(node.name, out, "stdout"),
+            self._book.read(node.name, err, "stderr"),
+        ]
+        try:
+            self._burnt.avoid_others(self._plan.domain)
+            born = await self.spawner.spawn(request, (out_write, err_write))
+        except BaseException:
+            for reader in readers:
+                reader.close()
+            raise
+        finally:
+            os.close(out_write)
+            os.close(err_write)
+        self.scan.members.add(node.name, born)
+        self.scan.forget()
+        return NodeProcess(node.name, born, self, readers)

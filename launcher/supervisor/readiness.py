@@ -1,0 +1,195 @@
+"""Waiting until a node can be used: its name, a topic or a service is in the ROS graph.
+
+The graph is watched by a probe process (`launcher.spawn_server.probe`) that lives only while
+somebody waits.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import signal
+from dataclasses import astuple, dataclass
+from typing import TYPE_CHECKING
+
+from launcher.processes.signal import send
+from launcher.spawn_server.spawner import SpawnError, SpawnRequest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from launcher.processes.exit import Reaper
+    from launcher.spawn_server.spawner import Born, Spawner
+
+MAX_PROBES = 3
+"""So many probes may die in a row before the graph counts as one that cannot be watched."""
+LINGER_S = 5.0
+"""For so long the graph is watched though nobody waits: the next node's turn comes soon."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What must be in the ROS graph."""
+
+    kind: str
+    """`node`, `topic` (a publisher of it) or `service`."""
+    name: str
+    type: str = ""
+    """Of a topic: only a publisher of this type counts, `std_msgs/msg/Float32`; empty: any."""
+    rate_hz: float = 0.0
+    """Of a topic: messages come at least this often; 0: none need come."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What there is of a topic whose condition does not hold."""
+
+    types: tuple[str, ...]
+    """Of its publishers."""
+    rate_hz: float | None = None
+    """Of the messages that come; None if that is not awaited, or cannot be measured."""
+
+
+class UnwatchableError(Exception):
+    """The graph cannot be watched: there is no rclpy here, or it does not start."""
+
+
+class Readiness:
+    """Tells when conditions hold, all of them known from the start."""
+
+    def __init__(
+        self,
+        conditions: Sequence[Condition],
+        spawner: Spawner,
+        reaper: Reaper,
+        env: Mapping[str, str | None],
+    ) -> None:
+        """`env`: what the probe needs to look at the right domain."""
+        self._conditions = list(dict.fromkeys(conditions))
+        self._spawner = spawner
+        self._reaper = reaper
+        self._env = env
+        self._waiters: dict[asyncio.Future[None], tuple[Condition, Callable[[Seen], None]]] = {}
+        self._holding: frozenset[Condition] = frozenset()
+        self._seen: dict[Condition, Seen] = {}
+        self._task: asyncio.Task[None] | None = None
+        self._linger: asyncio.TimerHandle | None = None
+
+    def expect(self) -> None:
+        """Begin to watch: somebody will wait in a moment, and looking takes time to begin."""
+        if self._task is None and self._conditions:
+            self._task = asyncio.create_task(self._watch())
+            self._stop_later()
+
+    async def until(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+        """Return once `condition` holds; `tell` what is there instead whenever that changes.
+
+        Raises:
+            UnwatchableError: if that cannot be found out.
+        """
+        if condition in self._holding:
+            return
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters[future] = condition, tell
+        if condition in self._seen:
+            tell(self._seen[condition])
+        self.expect()
+        try:
+            await future
+        finally:
+            self._waiters.pop(future, None)
+            self._stop_later()
+
+    def renew(self) -> None:
+        """Forget what is known: a dead node lingers in the view of whoever has seen it alive."""
+        self._stop()
+        if self._waiters:
+            self.expect()
+
+    def _stop_later(self) -> None:
+        if self._linger is not None:
+            self._linger.cancel()
+        self._linger = asyncio.get_running_loop().call_later(LINGER_S, self._stop_if_idle)
+
+    def _stop_if_idle(self) -> None:
+        if not self._waiters:
+            self._stop()
+
+    def _stop(self) -> None:
+        self._holding = frozenset()
+        self._seen = {}
+        if self._task is not None:
+            self._task.cancel()
+            self._task = None
+
+    async def _watch(self) -> None:
+        for _attempt in range(MAX_PROBES):
+            with contextlib.suppress(SpawnError):
+                await self._one_probe()
+        self._holding = frozenset()
+        for future in self._waiters:
+            if not future.done():
+                future.set_exception(UnwatchableError)
+        self._task = None
+
+    async def _one_probe(self) -> None:
+        """Start a probe and listen to it until it ends."""
+        hold_read, hold = os.pipe()
+        report, report_write = os.pipe()
+        born: Born | None = None
+        try:
+            try:
+                born = await self._spawner.spawn(self._request(), (hold_read, report_write, 2))
+            finally:
+                os.close(hold_read)
+                os.close(report_write)
+            await self._listen(report)
+        finally:
+            # The probe ends at the end of its stdin, politely: it says goodbye to the graph.
+            os.close(hold)
+            os.close(report)
+            if born is not None:
+                _ = asyncio.create_task(self._see_off(born))  # noqa: RUF006 - ends by itself
+
+    async def _listen(self, fd: int) -> None:
+        reader = asyncio.StreamReader()
+        transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(os.dup(fd), "rb", 0)
+        )
+        try:
+            async for line in reader:
+                told = json.loads(line)
+                self._learn(
+                    frozenset(self._conditions[position] for position in told["met"]),
+                    {
+                        self._conditions[position]: Seen(tuple(types), rate_hz)
+                        for position, types, rate_hz in told["seen"]
+                    },
+                )
+        finally:
+            transport.close()
+
+    def _learn(self, holding: frozenset[Condition], seen: dict[Condition, Seen]) -> None:
+        before, self._holding, self._seen = self._seen, holding, seen
+        for future, (condition, tell) in self._waiters.items():
+            if future.done():
+                continue
+            if condition in holding:
+                future.set_result(None)
+            elif condition in seen and seen[condition] != before.get(condition):
+                tell(seen[condition])
+
+    def _request(self) -> SpawnRequest:
+        wanted = json.dumps([astuple(condition) for condition in self._conditions])
+        return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
+
+    async def _see_off(self, born: Born, within_s: float = 3.0) -> None:
+        ended = self._reaper.exit_of(born.pid, born.started_ticks)
+        try:
+            await asyncio.wait_for(asyncio.shield(ended), within_s)
+        except asyncio.TimeoutError:
+            send(born, signal.SIGKILL)
+            await ended
+        self._spawner.forget(born.pid)

@@ -1,0 +1,370 @@
+"""One run of the supervisor, from its plan to its last word."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launcher.control.protocol import MAX_MESSAGE_BYTES, encode, pack_session, pack_text
+from launcher.control.server import ControlServer
+from launcher.domain.discovery import why_open
+from launcher.domain.ports import other_users
+from launcher.logs.book import DECK, LogBook
+from launcher.logs.files import LogFiles
+from launcher.logs.folder import make_log_folder, prune_runs
+from launcher.private_files import open_file
+from launcher.processes.exit import Reaper
+from launcher.processes.members import Members
+from launcher.processes.owner import who_runs, who_words
+from launcher.processes.shared_memory import sweep_abandoned
+from launcher.processes.stop import end_all
+from launcher.rundir import OWN_RUN_DIR
+from launcher.runs.beside import free_domain, rival
+from launcher.runs.found import supervisors
+from launcher.runs.home import Home
+from launcher.runs.record import RunRecord, exclusively
+from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
+from launcher.spawn_server.spawner import Spawner
+from launcher.status import SessionInfo, Severity, Stray
+from launcher.supervisor.orphans import Orphans
+from launcher.supervisor.plan import Plan
+from launcher.supervisor.process import ProcessLauncher, ProcessScan
+from launcher.supervisor.session import Session
+from launcher.supervisor.words import who
+from launcher.words import Words, say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from launcher.logs.ring import LogRing
+    from launcher.runs.beside import Neighbour
+    from launcher.spawn_server.start import SpawnServerHandle
+    from launcher.status import LogLine, NodeStatus
+
+LAST_WORDS = "supervisor"
+"""Name of the log of what the supervisor prints, its tracebacks above all."""
+HURRIED_S = 5.0
+"""What outlives SIGKILL for so long is stuck in the kernel, and is waited for no longer."""
+STRAYS_AGAIN_S = 3.0
+"""What is left of a run that ended a moment ago may just be ending."""
+
+
+async def run(run_id: str, spawn_server: SpawnServerHandle, client: int) -> None:
+    """Read the plan, carry it out, and clean up; `client` is the process that has started this."""
+    stdin = await _open_stdin()
+    line = await stdin.readline()
+    if not line.endswith(b"\n"):
+        return  # The profile was no good, or the client has gone: there is nothing to do.
+    plan = Plan.from_json(line)
+    home = Home(_record(plan, run_id, client))
+    try:
+        if _claim(home, plan):
+            await Supervisor(plan, home, spawn_server).run(stdin)
+    finally:
+        home.remove()
+
+
+async def _open_stdin() -> asyncio.StreamReader:
+    reader = asyncio.StreamReader(limit=MAX_MESSAGE_BYTES)
+    await asyncio.get_running_loop().connect_read_pipe(
+        lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(os.dup(0), "rb", 0)
+    )
+    return reader
+
+
+def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
+    session = SessionInfo(
+        run_id=run_id,
+        profile=plan.profile,
+        name=plan.name,
+        title=plan.title,
+        lesson=plan.lesson,
+        domain=plan.domain,
+        discovery=plan.discovery,
+        hardware=plan.hardware,
+        panels=plan.panels,
+        supervisor_pid=os.getpid(),
+        log_dir=str(Path(plan.log_dir, plan.name, run_id)),
+        foreground=plan.foreground,
+        started_by=who_runs(client),
+        since_s=time.time(),
+    )
+    nodes = tuple(node.name for node in plan.nodes)
+    return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
+
+
+def _claim(home: Home, plan: Plan) -> bool:
+    """Make room for this run, unless another has these nodes in this domain."""
+    folder = home.run_dir
+    try:
+        with exclusively(folder, plan.domain):
+            everyone = list(supervisors())
+            other = rival(everyone, home.record)
+            if other is not None:
+                _answer(_refusal(other, free_domain(everyone, plan.domain)))
+                return False
+            home.settle()
+        folder = Path(home.record.session.log_dir)
+        make_log_folder(folder, (DECK, LAST_WORDS, *home.record.nodes))
+        _keep_last_words(folder)
+    except OSError as problem:
+        _answer({"no_room": pack_text(_no_room(folder, problem))})
+        return False
+    return True
+
+
+def _refusal(other: Neighbour, free: int) -> dict[str, object]:
+    elsewhere = other.purpose != os.environ.get(OWN_RUN_DIR, "")
+    return {
+        "running": pack_session(other.record.session),
+        "run_dir": other.run_dir if elsewhere else "",
+        "down": other.down if elsewhere else "deck down",
+        "free": free,
+    }
+
+
+def _no_room(folder: Path, problem: OSError) -> Words:
+    reason = say(problem.strerror or str(problem))
+    return say("{path} cannot be written: {reason}", path=folder, reason=reason)
+
+
+def _answer(message: Mapping[str, object]) -> None:
+    """Say the one line on stdout, and let go of it: nobody reads there any more."""
+    with contextlib.suppress(BrokenPipeError):
+        os.write(1, encode(message))
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
+
+
+def _keep_last_words(folder: Path) -> None:
+    """Send stderr to a file: the client that started this process may be gone long before."""
+    words = open_file(folder / f"{LAST_WORDS}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    os.dup2(words, 2)
+    os.close(words)
+
+
+class Supervisor:
+    """Fits `Controlled`: what clients ask for ends here."""
+
+    def __init__(self, plan: Plan, home: Home, spawn_server: SpawnServerHandle) -> None:
+        self.info = home.record.session
+        self.strays: tuple[Stray, ...] = ()
+        self._plan = plan
+        self._home = home
+        self._loop = asyncio.get_running_loop()
+        self._reaper = Reaper()
+        self._spawner = Spawner(self.info.run_id, spawn_server, self._warn)
+        if not plan.warm:
+            self._spawner.go_cold()
+        self._spawner.preload(plan.packages)
+        self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
+        self.control = ControlServer(self)
+        self._book = LogBook(
+            (node.name for node in plan.nodes), self._files, self.control.lines_came
+        )
+        scan = ProcessScan(Members(self.info.run_id))
+        launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._book)
+        self._session = Session(plan, launcher, self._book, self._status_changed)
+        open_because = why_open(os.environ, plan.discovery)
+        if open_because:
+            self._book.say(DECK, Severity.WARN, open_because)
+        self._end = asyncio.Event()
+        self._hurry = asyncio.Event()
+        self._reason = ""
+        self._record_failed = False
+        self._pids: dict[str, int | None] = {}
+
+    async def run(self, stdin: asyncio.StreamReader) -> None:
+        """Run the session to its end."""
+        self._reaper.install(self._loop)
+        self._install_signals()
+        self._watch_guardian()
+        try:
+            listener = self._home.listen()
+        except OSError as problem:
+            folder = self._home.record.folder
+            _answer({"no_room": pack_text(_no_room(folder, problem))})
+            self._spawner.close()
+            self._files.close()
+            return
+        await self.control.serve(listener)
+        self._tell_of_other_users()
+        self._session.start()
+        _answer({"folder": str(self._home.record.folder)})
+        helpers = [
+            asyncio.create_task(self._session.measure()),
+            asyncio.create_task(self._look_for_strays()),
+            asyncio.create_task(self._home.keep(self.control.serve, self._warn)),
+            asyncio.create_task(self._watch_owner(stdin)),
+        ]
+        await self._end.wait()
+        await self._stop_all()
+        for helper in helpers:
+            helper.cancel()
+        self._spawner.close()
+        # Whoever hears that it is over finds the logs complete, and nothing in the way.
+        self._files.close()
+        self._home.remove()
+        await self.control.close(self._reason)
+
+    # What clients ask.
+
+    def statuses(self) -> Mapping[str, NodeStatus]:
+        """Return every node as of now."""
+        return {name: node.status() for name, node in self._session.nodes.items()}
+
+    def rings(self) -> Mapping[str, LogRing]:
+        """Return every node's log."""
+        return self._book.rings
+
+    def history(self, node: str | None, limit: int) -> Sequence[LogLine]:
+        """Return the newest lines of one node or of all."""
+        return self._book.newest(node, limit)
+
+    def start(self, names: Iterable[str]) -> None:
+        """Start nodes; raises `UnknownNodeError`."""
+        if not self._end.is_set():
+            self._session.start(names)
+
+    async def stop(self, names: Iterable[str], *, now: bool) -> None:
+        """Stop nodes; raises `UnknownNodeError`."""
+        await self._session.stop(names, now=now)
+
+    def restart(self, names: Iterable[str]) -> None:
+        """Restart nodes; raises `UnknownNodeError`."""
+        if not self._end.is_set():
+            self._session.restart(names)
+
+    async def stop_strays(self, strays: Iterable[Stray]) -> None:
+        """End what an earlier run has left."""
+        await end_strays(strays)
+        self._find_strays()
+
+    def shut_down(self, asked_by: int, *, now: bool) -> None:
+        """Begin to stop everything, and then the supervisor, because this process asks for it."""
+        if asked_by == self.info.started_by.pid:
+            reason = say("stopped")
+        else:
+            reason = say("ended from elsewhere: {who}", who=who_words(who_runs(asked_by)))
+        self._finish(reason, now=now or self._end.is_set())
+
+    # What happens.
+
+    def _finish(self, reason: Words, *, now: bool) -> None:
+        if not self._end.is_set():
+            self._reason = reason
+            self._end.set()
+        if now:
+            self._hurry.set()
+
+    async def _stop_all(self) -> None:
+        """Stop every node and what they have left; in a hurry, whatever hangs, within bounds."""
+        stopping = [asyncio.create_task(self._session.stop(now=self._hurry.is_set()))]
+        hurry = asyncio.create_task(self._hurry.wait())
+        await asyncio.wait([*stopping, hurry], return_when=asyncio.FIRST_COMPLETED)
+        if not stopping[0].done():
+            stopping.append(asyncio.create_task(self._session.stop(now=True)))
+            await asyncio.wait(stopping, timeout=HURRIED_S)
+        hurry.cancel()
+        # What has left its node behind so well that it could not be told whose it was.
+        orphans = Orphans(self.info.run_id, self._spawner)
+        left = await end_all(orphans, self._session.clock, HURRIED_S)
+        if left:
+            words = say("{reason}; still running: {who}", reason=self._reason, who=who(left))
+            self._reason = words
+            self._book.say(DECK, Severity.ERROR, words)
+
+    def _install_signals(self) -> None:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if number == signal.SIGHUP and not self.info.foreground:
+                signal.signal(number, signal.SIG_IGN)
+            else:
+                self._loop.add_signal_handler(number, self._on_signal, number)
+
+    def _watch_guardian(self) -> None:
+        with contextlib.suppress(OSError):
+            guardian = os.getppid()
+            held = os.pidfd_open(guardian)
+            self._loop.add_reader(held, self._guardian_gone, guardian, held)
+
+    def _guardian_gone(self, guardian: int, held: int) -> None:
+        self._loop.remove_reader(held)
+        os.close(held)
+        words = say(
+            "the guardian (pid {pid}) ended: if the supervisor is killed now, what nodes have sent"
+            " into the background may go on",
+            pid=guardian,
+        )
+        self._warn(words)
+
+    def _on_signal(self, number: signal.Signals) -> None:
+        self._finish(say("{signal} received", signal=number.name), now=self._end.is_set())
+
+    async def _watch_owner(self, stdin: asyncio.StreamReader) -> None:
+        """In the foreground, the session ends with the client that started it."""
+        while await stdin.read(65536):
+            pass
+        if self.info.foreground:
+            self._finish(say("the screen that started it is gone"), now=True)
+
+    def _status_changed(self, name: str) -> None:
+        status = self._session.nodes[name].status()
+        if self._pids.get(name) != status.pid:
+            self._pids[name] = status.pid
+            self._write_record()
+        self.control.status_changed(name)
+
+    def _write_record(self) -> None:
+        """Note which processes there are, for whoever comes after a sudden end."""
+        try:
+            self._home.note(self._session.processes)
+        except OSError as problem:
+            if not self._record_failed:
+                self._record_failed = True
+                self._book.say(DECK, Severity.ERROR, _no_room(self._home.record.folder, problem))
+        else:
+            self._record_failed = False
+
+    def _warn(self, words: Words) -> None:
+        self._book.say(DECK, Severity.WARN, words)
+
+    def _tell_of_other_users(self) -> None:
+        """Say who could hear and drive this robot from elsewhere on the machine."""
+        users = other_users(self.info.domain)
+        if users:
+            words = say(
+                "{users} also have ROS processes in domain {domain} on this machine; choose "
+                "another with `--domain`",
+                users=", ".join(users),
+                domain=self.info.domain,
+            )
+            self._warn(words)
+
+    def _log_failed(self, reason: str) -> None:
+        words = say("{folder}: {reason}", folder=self.info.log_dir, reason=reason)
+        self._loop.call_soon_threadsafe(self._book.say, DECK, Severity.ERROR, words)
+
+    async def _look_for_strays(self) -> None:
+        self._find_strays()
+        await asyncio.to_thread(self._prune_logs)
+        await asyncio.to_thread(sweep_abandoned)
+        if self.strays:
+            await asyncio.sleep(STRAYS_AGAIN_S)
+            self._find_strays()
+
+    def _find_strays(self) -> None:
+        run_dir = self._home.run_dir
+        strays = find_strays(run_dir)
+        forget_ended_runs(run_dir, strays)
+        if strays != self.strays:
+            self.strays = strays
+            self.control.strays_changed()
+
+    def _prune_logs(self) -> None:
+        prune_runs(Path(self.info.log_dir).parent)

@@ -1,0 +1,183 @@
+"""The session: all nodes of a profile, what they cost, and what can be asked of them."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from launcher.clock import MonotonicClock
+from launcher.errors import UnknownNodeError
+from launcher.logs.book import DECK
+from launcher.processes.usage import UsageMeter
+from launcher.status import NodeState, Severity
+from launcher.supervisor.node import Node
+from launcher.supervisor.order import needed_by, stop_waves
+from launcher.supervisor.readiness import Readiness
+from launcher.supervisor.shared_memory import SharedMemory
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from launcher.clock import Clock
+    from launcher.logs.book import LogBook
+    from launcher.supervisor.plan import NodePlan, Plan
+    from launcher.supervisor.process import NodeProcess, ProcessLauncher
+    from launcher.supervisor.readiness import Condition, Seen
+
+USAGE_EVERY_S = 2.0
+
+
+class Session:
+    """Fits `Surroundings`: each node asks here for what it needs."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        launcher: ProcessLauncher,
+        book: LogBook,
+        on_change: Callable[[str], None],
+    ) -> None:
+        """`on_change` is called with the name of a node whose status has changed."""
+        self.clock: Clock = MonotonicClock()
+        self.plan = plan
+        self.book = book
+        self.nodes = {node.name: Node(node, self) for node in plan.nodes}
+        self._launcher = launcher
+        self._on_change = on_change
+        self._meter = UsageMeter()
+        self._readiness = Readiness(
+            [node.ready for node in plan.nodes if node.ready is not None],
+            launcher.spawner,
+            launcher.reaper,
+            plan.env,
+        )
+        self.processes: dict[str, tuple[int, int]] = {}
+        """Node to the number and the start, in ticks, of its newest process."""
+        self._to_return: set[str] = set()
+        """Nodes that are being stopped only to be started again."""
+        self._restarting: asyncio.Task[None] | None = None
+        self._hurry = asyncio.Event()
+        self._shared_memory = SharedMemory(lambda *words: book.say(DECK, *words))
+
+    # What is asked of it.
+
+    def start(self, names: Iterable[str] = ()) -> None:
+        """Start these nodes with all that they need; all if none is named."""
+        chosen = self._chosen(names)
+        self._shared_memory.clear()
+        # The probe goes first: what it sees coming it need not look for.
+        self._readiness.expect()
+        for name in needed_by(chosen, self.plan.needs):
+            if name in chosen or not self.nodes[name].at_work:
+                self.nodes[name].start()
+
+    async def stop(self, names: Iterable[str] = (), *, now: bool = False) -> None:
+        """Stop these nodes, dependants first; all if none is named."""
+        chosen = self._chosen(names)
+        self._to_return.difference_update(chosen)
+        await self._stop(chosen, now=now)
+
+    async def _stop(self, chosen: list[str], *, now: bool = False) -> None:
+        if now:
+            self._hurry.set()
+            await asyncio.gather(*(self.nodes[name].stop(now=True) for name in chosen))
+            return
+        self._hurry.clear()
+        for wave in stop_waves(chosen, self.plan.needs):
+            in_a_hurry = self._hurry.is_set()
+            await asyncio.gather(*(self.nodes[name].stop(now=in_a_hurry) for name in wave))
+
+    def restart(self, names: Iterable[str] = ()) -> None:
+        """Begin to stop and start these nodes, dependants first; all if none is named."""
+        chosen = self._chosen(names)
+        if len(chosen) == 1:
+            self.nodes[chosen[0]].restart()
+            return
+        self._to_return.update(chosen)
+        if self._restarting is None or self._restarting.done():
+            self._restarting = asyncio.create_task(self._restart())
+
+    async def _restart(self) -> None:
+        stopped: set[str] = set()
+        while self._to_return - stopped:
+            wave = self._to_return - stopped
+            await self._stop(sorted(wave))
+            stopped |= wave
+        # Without those that somebody has stopped meanwhile.
+        returning = [name for name in self.nodes if name in self._to_return]
+        self._to_return.clear()
+        if returning:
+            self.start(returning)
+
+    def _chosen(self, names: Iterable[str]) -> list[str]:
+        names = list(names)
+        for name in names:
+            if name not in self.nodes:
+                raise UnknownNodeError(name, self.nodes)
+        return names or list(self.nodes)
+
+    async def measure(self) -> None:
+        """Measure what the nodes cost, again and again."""
+        while True:
+            await asyncio.sleep(USAGE_EVERY_S)
+            self._shared_memory.clear()
+            if not any(node.state.alive for node in self.nodes.values()):
+                continue
+            members = self._launcher.scan.look(0.0)
+            for name, processes in members.items():
+                self._launcher.note_segments(name, (process.pid for process in processes))
+            usages = self._meter.measure(members, self.clock.now())
+            for name, node in self.nodes.items():
+                if node.state.alive:
+                    node.usage = usages.get(name)
+                    self._on_change(name)
+
+    # What the nodes ask of it.
+
+    async def launch(self, plan: NodePlan) -> NodeProcess:
+        """Start a node's process; raises `SpawnError`."""
+        if plan.name in self.processes:
+            # It may have died without a goodbye, and whoever saw it alive sees it still.
+            self._readiness.renew()
+        process = await self._launcher.launch(plan)
+        self.processes[plan.name] = (process.pid, process.started_ticks)
+        return process
+
+    async def ready(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+        """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
+        await self._readiness.until(condition, tell)
+
+    def missing(self, plan: NodePlan) -> str:
+        """Say which needed nodes are not there yet; empty if all are."""
+        absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
+        if not absent:
+            return ""
+        return say("waiting for {nodes}", nodes=", ".join(map(_with_state, absent)))
+
+    def last_words(self, name: str) -> str:
+        """Return what the node said last."""
+        return self.book.last_words(name)
+
+    def say(self, name: str, severity: Severity, words: str) -> None:
+        """Add a line about the node to its log."""
+        self.book.say(name, severity, words)
+
+    def changed(self, name: str, state: NodeState) -> None:
+        """Tell the clients, and those nodes that need this one."""
+        if state is NodeState.READY:
+            # It may be killed before it is measured.
+            pid, _started = self.processes[name]
+            self._launcher.note_segments(name, (pid,))
+        self._on_change(name)
+        for other in self.nodes.values():
+            if name in other.plan.needs:
+                other.needs_changed()
+
+
+def _with_state(node: Node) -> str:
+    if node.state in (NodeState.STARTING, NodeState.WAITING):
+        return node.plan.name
+    if node.state is NodeState.RUNNING:
+        return say("{name} (not ready)", name=node.plan.name)
+    return f"{node.plan.name} ({node.state.value})"

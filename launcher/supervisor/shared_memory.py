@@ -1,0 +1,69 @@
+"""Nothing in shared memory holds up the nodes, and what was in their way is told of."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from typing import TYPE_CHECKING
+
+from launcher.processes.shared_memory import SHARED_MEMORY
+from launcher.processes.shared_memory_unfinished import discard_unfinished
+from launcher.status import Severity
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from launcher.words import Words
+
+
+LEAST_FREE_BYTES = 1 << 20
+"""A participant of Fast DDS takes half of that."""
+
+
+class SharedMemory:
+    """To be cleared before nodes start and again and again: others are killed at any time."""
+
+    def __init__(
+        self, tell: Callable[[Severity, Words], None], folder: Path = SHARED_MEMORY
+    ) -> None:
+        """`tell` adds a line to the log."""
+        self._tell = tell
+        self._folder = folder
+        self._kept: set[str] = set()
+        self._full = False
+
+    def clear(self) -> None:
+        """Remove what is in the way; tell once of what cannot be helped here."""
+        self._look_for_room()
+        found = discard_unfinished(self._folder)
+        if found.removed:
+            words = say(
+                "removed {files} from /dev/shm: incomplete, left by a process that was killed; "
+                "any node that opens it hangs",
+                files=", ".join(found.removed),
+            )
+            self._tell(Severity.WARN, words)
+        for name in found.kept:
+            if name not in self._kept:
+                self._kept.add(name)
+                words = say(
+                    "/dev/shm/{file} is incomplete, left by another user's process that was "
+                    "killed; any node that opens it hangs: sudo rm /dev/shm/{file}",
+                    file=name,
+                )
+                self._tell(Severity.ERROR, words)
+
+    def _look_for_room(self) -> None:
+        with contextlib.suppress(OSError):
+            room = os.statvfs(self._folder)
+            full = room.f_bavail * room.f_frsize < LEAST_FREE_BYTES
+            if full and not self._full:
+                words = say(
+                    "{folder} is full: nodes that start now may not hear the others; `df {folder}`"
+                    " and `ls -l {folder}` show what fills it",
+                    folder=self._folder,
+                )
+                self._tell(Severity.ERROR, words)
+            self._full = full

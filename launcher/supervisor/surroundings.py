@@ -1,0 +1,51 @@
+"""What a node's life needs of the session around it, and of the process started for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from launcher.processes.stop import Target
+
+if TYPE_CHECKING:
+    import asyncio
+    from collections.abc import Callable
+
+    from launcher.clock import Clock
+    from launcher.processes.exit import Exit
+    from launcher.status import NodeState, Severity
+    from launcher.supervisor.plan import NodePlan
+    from launcher.supervisor.readiness import Condition, Seen
+
+
+class RunningProcess(Target, Protocol):
+    """A process that was started for a node, with all that descends from it."""
+
+    pid: int
+    ended: asyncio.Future[Exit]
+
+    async def close(self) -> None:
+        """Nothing of it is left: read what it has still written, and let go of it."""
+
+
+class Surroundings(Protocol):
+    """What a node's life needs of the session around it."""
+
+    clock: Clock
+
+    async def launch(self, plan: NodePlan) -> RunningProcess:
+        """Start the node's process; raises `SpawnError`."""
+
+    async def ready(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+        """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
+
+    def missing(self, plan: NodePlan) -> str:
+        """Say which needed nodes are not there yet; empty if all are."""
+
+    def last_words(self, name: str) -> str:
+        """Return what the node said last."""
+
+    def say(self, name: str, severity: Severity, words: str) -> None:
+        """Add a line about the node to its log."""
+
+    def changed(self, name: str, state: NodeState) -> None:
+        """The status of the node of this name has changed."""

@@ -1,0 +1,115 @@
+"""How a node's end, and what is waited for, are told in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.words import say
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from launcher.processes.exit import Exit
+    from launcher.processes.table import Process
+    from launcher.supervisor.plan import NodePlan
+    from launcher.supervisor.readiness import Condition, Seen
+
+NOT_EXECUTABLE, NOT_FOUND = 126, 127
+NOT_FOUND_WORDS = "deck: command not found"
+"""How a process that was to become a command says that there is none."""
+
+
+def stopped_words(last: Exit | None) -> str:
+    """How a node ended that was asked to; `last` is None where no process was."""
+    if last is not None and last.signal is not None:
+        return say("stopped by {signal}", signal=last.signal)
+    if last is not None and last.code:
+        return say("stopped, exit code {code}", code=last.code)
+    return say("stopped")
+
+
+def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
+    """How a process ended, with `last`, what it said last, unless it was `asked` to end."""
+    if end.clean:
+        return say("ended")
+    if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not plan.module:
+        program = plan.argv[0]
+        if plan.optional:
+            return say("{program} is not installed; it goes on without", program=program)
+        return say("{program} is not installed", program=program)
+    how = (
+        say("killed by {signal}", signal=end.signal)
+        if end.signal is not None
+        else say("exit code {code}", code=end.code)
+    )
+    # Who is killed cannot say why: what it said last is about something else.
+    told = last and not asked and end.signal != "SIGKILL"
+    return say("{how}: {last}", how=how, last=_short(last)) if told else how
+
+
+def what(condition: Condition) -> str:
+    """What is waited for."""
+    if condition.kind == "topic":
+        if condition.type:
+            return say("publisher of {name} ({type})", name=condition.name, type=condition.type)
+        return say("publisher of {name}", name=condition.name)
+    if condition.kind == "service":
+        return say("service {name}", name=condition.name)
+    return say("node {name} in the graph", name=condition.name)
+
+
+def instead(condition: Condition, seen: Seen) -> str:
+    """What there is in place of what is waited for: another type, or too few messages."""
+    if condition.type and condition.type not in seen.types:
+        return say(
+            "{name} is published as {types}, expected {type}",
+            name=condition.name,
+            types=", ".join(seen.types),
+            type=condition.type,
+        )
+    if seen.rate_hz is None:
+        return say(
+            "how often {name} comes cannot be measured: {types} is not installed",
+            name=condition.name,
+            types=", ".join(seen.types),
+        )
+    return say(
+        "{name} comes at {rate:.2g} Hz, expected {wanted:g} Hz",
+        name=condition.name,
+        rate=seen.rate_hz,
+        wanted=condition.rate_hz,
+    )
+
+
+def late(condition: Condition, seen: Seen | None, within_s: float) -> str:
+    """That the time to become ready is up, and why."""
+    why = lack(condition) if seen is None else instead(condition, seen)
+    return say("not ready within {seconds:g} s: {why}", seconds=within_s, why=why)
+
+
+def lack(condition: Condition) -> str:
+    """What is missing, where it was waited for in vain."""
+    if condition.kind == "topic":
+        return say("nobody publishes {name}", name=condition.name)
+    if condition.kind == "service":
+        return say("nobody serves {name}", name=condition.name)
+    return say("node {name} is not in the graph", name=condition.name)
+
+
+def left_undone(condition: Condition) -> str:
+    """What goes undone when a node ends, however well; empty if it need only have been there."""
+    if condition.kind == "topic":
+        return say("ended by itself; it was to publish {name}", name=condition.name)
+    if condition.kind == "service":
+        return say("ended by itself; it was to serve {name}", name=condition.name)
+    return ""
+
+
+def who(left: Sequence[Process], most: int = 3) -> str:
+    """Processes by number and name, no more than `most` of them."""
+    names = ", ".join(f"{process.pid} ({process.name})" for process in left[:most])
+    return names if len(left) <= most else f"{names} …"
+
+
+def _short(text: str, most: int = 160) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"
