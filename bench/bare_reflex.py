@@ -13,8 +13,8 @@ from itertools import count
 
 import serial
 
-from robot.wire_pico import Drive, Hello, encode
-from robot.wire_tfluna import Model, TofDecoder
+from robot.wire.pico import Drive, Hello, encode
+from robot.wire.tfluna import Model, TofDecoder
 
 CRITICAL_M, SPEED_RAD_S, PERIOD_S = 0.5, 9.0, 0.02
 

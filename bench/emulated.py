@@ -14,11 +14,11 @@ import time
 import tty
 from typing import TYPE_CHECKING
 
-from robot.wire_pico import Drive, Halt, PicoDecoder, Release
-from robot.wire_tfluna import TofFrame
-from robot.wire_tfluna import encode as encode_tof
-from robot.world import STEP_S, World
-from robot.world_pico import SimulatedPico
+from robot.wire.pico import Drive, Halt, PicoDecoder, Release
+from robot.wire.tfluna import TofFrame
+from robot.wire.tfluna import encode as encode_tof
+from robot.world.pico import SimulatedPico
+from robot.world.world import STEP_S, World
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-    from robot.wire_pico import Message
+    from robot.wire.pico import Message
 
 FAR_M, NEAR_M = 3.0, 0.3
 

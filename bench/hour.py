@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import time
 
-from robot.safety import Zone
-from robot.world import World
-from robot.world_room import LIVING_ROOM
+from robot.safety.distance import Zone
+from robot.world.room import LIVING_ROOM
+from robot.world.world import World
 from tests.unit.random_driver import RandomDriver
 
 HOUR_S = 3600.0

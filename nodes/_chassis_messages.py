@@ -11,15 +11,15 @@ from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Header
 
 from nodes._drive import FRAME
-from robot.geometry import quaternion_from_rpy
+from robot.motion.geometry import quaternion_from_rpy
 from robot.kinematics import turning_radius
-from robot.odometry import Pose, advance
+from robot.motion.odometry import Pose, advance
 from robot.words import DriveSetpoint
 
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
 
-    from robot.wire_pico import Telemetry
+    from robot.wire.pico import Telemetry
 
 JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
 ODOM = "odom"

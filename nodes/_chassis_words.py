@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from nodes._pico_client import PicoClient
     from nodes._refusals import Refusal
     from nodes._speech import Speech
-    from robot.wire_pico import Telemetry
+    from robot.wire.pico import Telemetry
 
 STARTED = Phrase("The chassis at {port} obeys {topic}", "Шасси на {port} исполняет команды {topic}")
 COMMAND_OLD = Phrase(

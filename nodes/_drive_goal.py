@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from deck_interfaces.action import DriveToPoint
 from rclpy.task import Future
 
-from robot.approach import Progress
+from robot.motion.approach import Progress
 
 if TYPE_CHECKING:
     from rclpy.action.server import ServerGoalHandle
 
-    from robot.approach import Approach
-    from robot.odometry import Pose
+    from robot.motion.approach import Approach
+    from robot.motion.odometry import Pose
 
 _FEEDBACK_EVERY_S = 0.2
 

@@ -11,7 +11,7 @@ from nodes._topics import GOAL_POSE, LATCHED
 
 if TYPE_CHECKING:
     from nodes._node import LessonNode
-    from robot.odometry import Point
+    from robot.motion.odometry import Point
 
 
 class GoalPose:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from nodes._parameters import Number, Setting, Switch, Text, Whole
 from nodes._speech import Phrase
-from robot.head import HeadJoint
 from robot.limits import HEAD_ANGLE, Limits
-from robot.wire_lsc16 import BAUD, SERVO
+from robot.motion.head import HeadJoint
+from robot.wire.lsc16 import BAUD, SERVO
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -10,7 +10,7 @@ from nav_msgs.msg import OccupancyGrid
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
 
-    from robot.world_grid import Grid
+    from robot.world.grid import Grid
 
 FRAME = "odom"
 """The simulated robot starts where its odometry does, so one frame is enough."""

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from sensor_msgs.msg import JointState
 
 from nodes._topics import DEPTH
-from robot.world import STEP_S
+from robot.world.world import STEP_S
 
 if TYPE_CHECKING:
     from nodes._node import LessonNode
-    from robot.world import World
+    from robot.world.world import World
 
 MOTORS = "/mock/motors"
 JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")

@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 
 from nodes._speech import Phrase
 from nodes._topics import NEWEST_OF_ANY, ODOMETRY
-from robot.odometry import Pose, yaw_from_quaternion
+from robot.motion.odometry import Pose, yaw_from_quaternion
 
 if TYPE_CHECKING:
     from nodes._node import LessonNode

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from nodes._serial_link import SerialLink
 from nodes._speech import Phrase
-from robot.frames_pico import PicoReader
-from robot.wire_pico import (
+from robot.frames.pico import PicoReader
+from robot.wire.pico import (
     PROTOCOL,
     SEQUENCES,
     Drive,

@@ -11,9 +11,9 @@ from sensor_msgs.msg import JointState
 
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, HEAD_STATE, MOCK_POSE
-from robot.odometry import Pose, yaw_from_quaternion
-from robot.world_room import LIVING_ROOM
-from robot.world_view import Eye, RoomView
+from robot.motion.odometry import Pose, yaw_from_quaternion
+from robot.world.room import LIVING_ROOM
+from robot.world.view import Eye, RoomView
 
 if TYPE_CHECKING:
     import numpy as np

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import NamedTuple
 
-from robot.safety import Reading, Shares, Sight, Zone, look, share
+from robot.safety.distance import Reading, Shares, Sight, Zone, look, share
 
 
 class View(NamedTuple):

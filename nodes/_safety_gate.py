@@ -22,8 +22,8 @@ from nodes._refusals import Refusals
 from nodes._sole_publisher import SolePublisher
 from nodes._topics import DEPTH, DRIVE_SAFE, DRIVE_TELEOP
 from robot.limits import SPEED, STEERING
-from robot.safety import Shares, Verdict, allowed, gate
-from robot.safety_sources import Sources
+from robot.safety.distance import Shares, Verdict, allowed, gate
+from robot.safety.sources import Sources
 from robot.words import STOP, DriveSetpoint
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from nodes._node import LessonNode
     from nodes._refusals import Refusal
-    from robot.safety_sources import Order
+    from robot.safety.sources import Order
 
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach everybody."""

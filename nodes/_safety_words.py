@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes._speech import Phrase, Speech
-from robot.safety import Sight, Verdict, Zone
+from robot.safety.distance import Sight, Verdict, Zone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

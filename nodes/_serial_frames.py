@@ -1,6 +1,6 @@
 """`~/frames`: what goes over a serial port, in words, for as long as somebody wants to know.
 
-While nobody is subscribed, bytes are not even kept. See robot/frame_lines.py for the format.
+While nobody is subscribed, bytes are not even kept. See robot/frames/lines.py for the format.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 from std_msgs.msg import String
 
 from nodes._node import change_period
-from robot.frame_lines import encode
-from robot.frame_teller import Chunk, FrameTeller
+from robot.frames.lines import encode
+from robot.frames.teller import Chunk, FrameTeller
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nodes._node import LessonNode
-    from robot.frames import FrameReader
+    from robot.frames.protocols import FrameReader
 
 FRAMES = "~/frames"
 _LOOK_EVERY_S = 1.0

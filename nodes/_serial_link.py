@@ -22,13 +22,13 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from nodes._serial_frames import SerialFrames
 from nodes._serial_reads import SerialReads
 from nodes._speech import Phrase
-from robot.frames import RawReader
+from robot.frames.protocols import RawReader
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nodes._node import LessonNode
-    from robot.frames import FrameReader
+    from robot.frames.protocols import FrameReader
 
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
 """What pyserial raises when a cable is pulled; TypeError is how it sees its port closed."""

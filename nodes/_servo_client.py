@@ -15,8 +15,8 @@ from diagnostic_msgs.msg import KeyValue
 
 from nodes._serial_link import SerialLink
 from nodes._speech import Phrase
-from robot.frames_lsc16 import ServoReader
-from robot.wire_lsc16 import Battery, BatteryRequest, Move, ServoDecoder, encode
+from robot.frames.lsc16 import ServoReader
+from robot.wire.lsc16 import Battery, BatteryRequest, Move, ServoDecoder, encode
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus

@@ -18,10 +18,10 @@ from tf2_msgs.msg import TFMessage
 from nodes._drive import FRAME, from_message
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, ODOMETRY, TF
-from robot.geometry import quaternion_from_rpy
-from robot.kinematics import turning_radius
 from robot.limits import SPEED, STEERING, first_excess
-from robot.odometry import Pose, advance
+from robot.motion.geometry import quaternion_from_rpy
+from robot.kinematics import turning_radius
+from robot.motion.odometry import Pose, advance
 from robot.words import STOP
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from robot.stop_place import stop_place
+from robot.safety.stop_place import stop_place
 
 _LONGEST = 4096
 

@@ -1,6 +1,6 @@
 """The brain of lesson 9: hears a voice, looks at the distance, and has the robot act.
 
-The reasoning that an LLM would do is a few rules in `robot.brain`: with an obstacle within
+The reasoning that an LLM would do is a few rules in `robot.commands.brain`: with an obstacle within
 `stop_distance`, or without a fresh and valid distance, the robot is told to stop; else the head
 turns, the robot drives forward, and the loudspeaker says so. A word that drives ("стоп", "left")
 is obeyed as it is, as long as it does not lead into the unknown.
@@ -23,8 +23,8 @@ from nodes._sensor import SensorListener
 from nodes._sound import from_message, to_message
 from nodes._speech import Phrase
 from nodes._topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, SONAR_FRONT, SPEAKER
-from robot.brain import Decision, decide, spoken
-from robot.safety import Reading, look
+from robot.commands.brain import Decision, decide, spoken
+from robot.safety.distance import Reading, look
 from robot.sound import text_in
 from robot.words import WORDS, parse_word
 

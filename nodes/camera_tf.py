@@ -18,7 +18,7 @@ from nodes._node import LessonNode
 from nodes._parameters import Number, Text, Value
 from nodes._speech import Phrase
 from nodes._topics import LATCHED, TF_STATIC
-from robot.geometry import quaternion_from_rpy
+from robot.motion.geometry import quaternion_from_rpy
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -43,13 +43,13 @@ from nodes._parameters import Number, Text, Whole
 from nodes._pico_client import PicoClient
 from nodes._refusals import MAX_WHEEL_SPEED, Refusals
 from nodes._topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
-from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 from robot.limits import STEERING, wheel_limits
+from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
 
-    from robot.wire_pico import Telemetry
+    from robot.wire.pico import Telemetry
 
 JOINT_STATES, BATTERY = "/joint_states", "/battery"
 _STILL = (0.0, 0.0, 0.0)

@@ -1,9 +1,9 @@
 """The action of lesson 3: drives to a point in the odom frame, tells how far it is, can be stopped.
 
 It reads /odom and publishes /drive `rate` times a second while it has a goal, and a stop when it
-has none any more. The way is found by `robot.approach`: forward, in reverse for a point close
-behind, and backing away first from a point inside of the turning circle. A drive is aborted, with
-the reason in the result's message, at an emergency stop, without odometry or with one that is too
+has none any more. The way is found by `robot.motion.approach`: forward, in reverse for a point
+close behind, and backing away first from a point inside of the turning circle. A drive is aborted,
+with the reason in the result's message, at an emergency stop, without odometry or with one that is too
 old, when the robot stands though it should drive, and when it drives and does not arrive. A new
 goal takes the place of the old one. A goal that is no number or too far away is refused; so is any
 while the emergency stop is held.
@@ -37,10 +37,10 @@ from nodes._odometry import OdometryListener
 from nodes._parameters import Choice, Number, Text
 from nodes._simulated_base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
 from nodes._topics import DEPTH, DRIVE, DRIVE_TO_POINT, ODOMETRY
-from robot.approach import Approach, Chassis
-from robot.kinematics import WHEELBASE_M
 from robot.limits import SPEED, STEERING
-from robot.odometry import Point, Pose
+from robot.motion.approach import Approach, Chassis
+from robot.kinematics import WHEELBASE_M
+from robot.motion.odometry import Point, Pose
 from robot.words import STOP
 
 if TYPE_CHECKING:

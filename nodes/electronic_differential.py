@@ -29,6 +29,7 @@ from nodes._refusals import MAX_WHEEL_SPEED, Refusals
 from nodes._sole_publisher import SolePublisher
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, DRIVE, WHEEL_COMMANDS
+from robot.limits import RIM_M_S, SPEED, STEERING, Limits
 from robot.kinematics import (
     STRAIGHT_BELOW_RAD,
     TRACK_M,
@@ -37,7 +38,6 @@ from robot.kinematics import (
     WheelSpeeds,
     wheel_speeds,
 )
-from robot.limits import RIM_M_S, SPEED, STEERING, Limits
 from robot.words import STOP, DriveSetpoint
 
 JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")

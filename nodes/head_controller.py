@@ -32,7 +32,7 @@ from nodes._node import LessonNode, change_period
 from nodes._parameters import Number, Whole
 from nodes._servo_client import WAS_AWAY, ServoClient
 from nodes._topics import DEPTH, HEAD_SERVICE, HEAD_STATE
-from robot.head import turn_ms
+from robot.motion.head import turn_ms
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

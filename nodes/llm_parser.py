@@ -26,7 +26,7 @@ from nodes._node import LessonNode
 from nodes._parameters import Number
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, LLM_RAW_JSON, LLM_RESULT
-from robot.commands import (
+from robot.commands.schema import (
     MAX_COMMANDS,
     CommandError,
     DriveCommand,

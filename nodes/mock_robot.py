@@ -28,12 +28,12 @@ from nodes._parameters import Choice, Number, Setting, Text, Whole
 from nodes._pty import PseudoSerial
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, LATCHED, MAP, MOCK_POSE
-from robot.geometry import quaternion_from_rpy
-from robot.wire_tfluna import TofFrame, encode
-from robot.world import STEP_S, Sonar, World
-from robot.world_grid import grid_of
-from robot.world_pico import SimulatedPico
-from robot.world_servos import SimulatedServos
+from robot.motion.geometry import quaternion_from_rpy
+from robot.wire.tfluna import TofFrame, encode
+from robot.world.grid import grid_of
+from robot.world.pico import SimulatedPico
+from robot.world.servos import SimulatedServos
+from robot.world.world import STEP_S, Sonar, World
 
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
 _BEHIND_S = 0.5

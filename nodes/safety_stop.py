@@ -36,7 +36,7 @@ from nodes._safety_gate import Gate, Moment
 from nodes._safety_words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
 from nodes._sensor import SensorListener
 from nodes._topics import DEPTH, SAFETY_STATE, SONAR_FRONT, SOURCES
-from robot.safety import Sight, Verdict, Zone, allowed, where
+from robot.safety.distance import Sight, Verdict, Zone, allowed, where
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus

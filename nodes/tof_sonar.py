@@ -25,8 +25,8 @@ from nodes._parameters import Choice, Number, Text, Whole
 from nodes._serial_link import SerialLink
 from nodes._speech import Phrase
 from nodes._topics import DEPTH, SONAR_FRONT
-from robot.frames_tof import TofReader
-from robot.wire_tfluna import BAUD, Model, TofDecoder
+from robot.frames.tof import TofReader
+from robot.wire.tfluna import BAUD, Model, TofDecoder
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus

@@ -6,8 +6,8 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from launcher.status import LogLine, Severity
-from robot.frame_lines import MOST_OCTETS, FrameLine
-from robot.frames import Kind
+from robot.frames.lines import MOST_OCTETS, FrameLine
+from robot.frames.protocols import Kind
 from tui.i18n import N_, _
 
 if TYPE_CHECKING:

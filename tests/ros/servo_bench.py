@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from nodes._device_fault import FINE, FaultyLine
 from nodes._pty import PseudoSerial
-from robot.world_servos import SimulatedServos
+from robot.world.servos import SimulatedServos
 
 if TYPE_CHECKING:
     from pathlib import Path

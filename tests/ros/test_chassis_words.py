@@ -9,7 +9,7 @@ import pytest
 from nodes import _speech
 from nodes._chassis_words import Standing
 from nodes._speech import Speech
-from robot.wire_pico import Telemetry
+from robot.wire.pico import Telemetry
 from tests.ros.test_serial_link import Log
 
 

@@ -17,7 +17,7 @@ from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
-from robot.wire_pico import PicoDecoder, Welcome, encode
+from robot.wire.pico import PicoDecoder, Welcome, encode
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer

@@ -16,8 +16,8 @@ from example_interfaces.srv import AddTwoInts
 from sensor_msgs.msg import JointState
 
 from nodes._device_fault import FINE, NOISE, SILENT, UNPLUGGED
-from robot.wire_lsc16 import Move, ServoDecoder
-from robot.wire_tfluna import TofFrame, encode
+from robot.wire.lsc16 import Move, ServoDecoder
+from robot.wire.tfluna import TofFrame, encode
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer

@@ -13,10 +13,10 @@ from sensor_msgs.msg import JointState
 
 from nodes._device_fault import FAULTS
 from nodes.mock_robot import DEVICES
-from robot.wire_lsc16 import Battery, BatteryRequest, ServoDecoder
-from robot.wire_lsc16 import encode as encode_servo
-from robot.wire_pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode
-from robot.wire_tfluna import Model, TofDecoder
+from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder
+from robot.wire.lsc16 import encode as encode_servo
+from robot.wire.pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode
+from robot.wire.tfluna import Model, TofDecoder
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until

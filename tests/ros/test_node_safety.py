@@ -15,7 +15,7 @@ from nodes._safety_eyes import Eye
 from nodes._safety_gate import Moment
 from nodes._safety_words import diagnosis, tell_front
 from nodes._speech import Speech
-from robot.safety import Sight, Verdict, Zone
+from robot.safety.distance import Sight, Verdict, Zone
 from tests.ros.gate import FRONT, REAR, Gate, drive, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer

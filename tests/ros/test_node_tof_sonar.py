@@ -16,7 +16,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float32
 
-from robot.wire_tfluna import TofFrame, encode
+from robot.wire.tfluna import TofFrame, encode
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
 from tests.waiting import wait_until

@@ -10,7 +10,7 @@ import pytest
 from nodes import _pico_client
 from nodes._pico_client import SILENT_AFTER_S, PicoClient
 from nodes._speech import Speech
-from robot.wire_pico import Telemetry, encode
+from robot.wire.pico import Telemetry, encode
 from tests.ros.test_serial_link import Log
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from std_msgs.msg import String
 
 from nodes._serial_frames import SerialFrames
 from nodes._speech import Speech
-from robot.frame_lines import decode
-from robot.frames import Kind, RawReader
+from robot.frames.lines import decode
+from robot.frames.protocols import Kind, RawReader
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from nodes._node import LessonNode
-    from robot.frame_lines import FrameLine
+    from robot.frames.lines import FrameLine
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ import serial
 from ackermann_msgs.msg import AckermannDriveStamped
 from std_msgs.msg import Bool
 
-from robot.wire_pico import Drive, Hello, PicoDecoder, Telemetry, encode
+from robot.wire.pico import Drive, Hello, PicoDecoder, Telemetry, encode
 from tests.ros.devices import set_parameter
 from tests.ros.peer import LATCHED
 from tests.ros.robot_nodes import BELIEVED_S, NODES, RobotNodes, shuffled

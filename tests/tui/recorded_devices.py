@@ -7,20 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import GraphUpdate, Sample
 from launcher.status import NodeState, NodeStatus
-from robot import wire_pico, wire_tfluna
-from robot.frame_lines import encode
-from robot.frame_teller import Chunk, FrameTeller
-from robot.frames_pico import PicoReader
-from robot.frames_tof import TofReader
-from robot.wire_pico import Drive, Telemetry
-from robot.wire_tfluna import TofFrame
+from robot.frames.lines import encode
+from robot.frames.pico import PicoReader
+from robot.frames.teller import Chunk, FrameTeller
+from robot.frames.tof import TofReader
+from robot.wire import pico as wire_pico
+from robot.wire import tfluna as wire_tfluna
+from robot.wire.pico import Drive, Telemetry
+from robot.wire.tfluna import TofFrame
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, RecordedSession
 from tests.tui.recorded_lesson import TOPICS, lesson_update, sample, topic
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robot.frame_lines import FrameLine
+    from robot.frames.lines import FrameLine
 
 AT_S = NOW_S + 17.0
 """The moment at which the clock of the tests stands."""

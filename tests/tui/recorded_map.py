@@ -10,9 +10,9 @@ from typing import Any
 
 from graph.data import GraphUpdate, Sample, TopicRow, Trouble
 from robot.kinematics import wheel_speeds
-from robot.odometry import Pose
-from robot.world import Sonar, Wheels, World
-from robot.world_grid import grid_of
+from robot.motion.odometry import Pose
+from robot.world.grid import grid_of
+from robot.world.world import Sonar, Wheels, World
 from tests.tui.recorded_lesson import NOW_S, SESSION, lesson_update, sample, topic
 
 GRID, POSE = "nav_msgs/msg/OccupancyGrid", "geometry_msgs/msg/PoseStamped"

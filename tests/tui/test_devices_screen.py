@@ -13,8 +13,8 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import Sample
-from robot.frame_lines import FrameLine
-from robot.frames import Kind
+from robot.frames.lines import FrameLine
+from robot.frames.protocols import Kind
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, sample
 from tests.tui.recorded_devices import (
     AT_S,

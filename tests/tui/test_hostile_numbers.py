@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from graph.data import GraphUpdate, Sample
 from launcher.events import LogEvent, StatusEvent
 from launcher.status import LogLine, NodeStatus
-from robot.odometry import yaw_from_quaternion
+from robot.motion.odometry import yaw_from_quaternion
 from tests.tui import hostile
 from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSession

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from textual.app import App, ComposeResult
 from textual.events import Paste
 
-from robot.commands import CommandError, parse_llm
+from robot.commands.schema import CommandError, parse_llm
 from tui.i18n import set_language
 from tui.widgets.json_editor import JsonEditor, Place
 from tui.widgets.json_tokens import tokens

@@ -10,7 +10,7 @@ import pytest
 from textual.app import App, ComposeResult
 
 from graph.data import GraphUpdate, Trouble
-from robot.odometry import Pose
+from robot.motion.odometry import Pose
 from tests.tui.panel_stage import rows
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
 from tests.tui.recorded_map import (

@@ -10,7 +10,7 @@ import pytest
 from textual.app import App, ComposeResult
 
 from graph.data import Sample
-from robot.commands import parse_llm
+from robot.commands.schema import parse_llm
 from tests.tui.recorded import NOW_S, joints, sample
 from tui.i18n import set_language
 from tui.widgets.outcome import Outcome, delay_text

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robot.odometry import Pose
+from robot.motion.odometry import Pose
 from tests.tui.app_runs import opened, settle
 from tests.tui.panel_stage import rows
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession

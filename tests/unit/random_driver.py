@@ -7,13 +7,13 @@ import random
 from typing import TYPE_CHECKING
 
 from robot.kinematics import wheel_speeds
-from robot.odometry import Point, Pose
-from robot.safety import Reading, Shares, Zone, gate, look, share, where
+from robot.motion.odometry import Point, Pose
+from robot.safety.distance import Reading, Shares, Zone, gate, look, share, where
 from robot.words import STOP, DriveSetpoint
-from robot.world import STEP_S, Wheels
+from robot.world.world import STEP_S, Wheels
 
 if TYPE_CHECKING:
-    from robot.world import World
+    from robot.world.world import World
 
 CONTROL_STEPS = 5
 """20 commands a second."""

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from robot.approach import Approach, Chassis, Progress
-from robot.geometry import quaternion_from_rpy
 from robot.limits import SPEED, STEERING
-from robot.odometry import Point, Pose, advance, yaw_from_quaternion
+from robot.motion.approach import Approach, Chassis, Progress
+from robot.motion.geometry import quaternion_from_rpy
+from robot.motion.odometry import Point, Pose, advance, yaw_from_quaternion
 from robot.words import STOP, DriveSetpoint
 
 STEP_S = 0.05

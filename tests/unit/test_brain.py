@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.brain import Decision, decide, spoken
-from robot.safety import Sight
+from robot.commands.brain import Decision, decide, spoken
+from robot.safety.distance import Sight
 from robot.words import STOP, DriveSetpoint, parse_word
 
 FORWARD = DriveSetpoint(0.5, 0.0)

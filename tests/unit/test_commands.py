@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.commands import (
+from robot.commands.problems import TEMPLATES
+from robot.commands.schema import (
     MAX_BYTES,
     MAX_COMMANDS,
     CommandError,
@@ -20,7 +21,6 @@ from robot.commands import (
     Problem,
     parse_llm,
 )
-from robot.problems import TEMPLATES
 
 DRIVE = {"action": "drive", "speed": 0.2, "steering": -0.3}
 HEAD = {"action": "turn_head", "pan": -45, "tilt": 10}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from robot.wire_pico import (
+from robot.wire.pico import (
     Drive,
     Halt,
     Hello,

@@ -10,21 +10,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot import wire_lsc16, wire_pico, wire_tfluna
-from robot.frame_lines import MOST, FrameLine, decode, encode
-from robot.frame_teller import Chunk, FrameTeller
-from robot.frames import Kind, RawReader
-from robot.frames_lsc16 import ServoReader
-from robot.frames_pico import PicoReader
-from robot.frames_tof import TofReader
-from robot.wire_line import wrap
-from robot.wire_lsc16 import Battery, BatteryRequest, Move
-from robot.wire_pico import Drive, Halt, Hello, Release, Telemetry, Welcome
-from robot.wire_tfluna import TofFrame
+from robot.frames.lines import MOST, FrameLine, decode, encode
+from robot.frames.lsc16 import ServoReader
+from robot.frames.pico import PicoReader
+from robot.frames.protocols import Kind, RawReader
+from robot.frames.teller import Chunk, FrameTeller
+from robot.frames.tof import TofReader
+from robot.wire import lsc16 as wire_lsc16
+from robot.wire import pico as wire_pico
+from robot.wire import tfluna as wire_tfluna
+from robot.wire.line import wrap
+from robot.wire.lsc16 import Battery, BatteryRequest, Move
+from robot.wire.pico import Drive, Halt, Hello, Release, Telemetry, Welcome
+from robot.wire.tfluna import TofFrame
 from tests.unit.streams import cut
 
 if TYPE_CHECKING:
-    from robot.frames import FrameReader, Piece
+    from robot.frames.protocols import FrameReader, Piece
 
 READERS = (PicoReader, TofReader, ServoReader, RawReader)
 TELEMETRY = Telemetry(3, 61250, 2, 6.18, -6.15, 0.35, 7.42, 0.81, None, 0, frozenset("EN"))

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.geometry import Quaternion, quaternion_from_rpy
+from robot.motion.geometry import Quaternion, quaternion_from_rpy
 
 angles = st.floats(-math.pi, math.pi)
 

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nodes._head_words import SERVO_SETTINGS, contradiction
-from robot.head import HeadJoint, turn_ms
 from robot.limits import Limits
-from robot.wire_lsc16 import PULSE, Move, decode, encode
+from robot.motion.head import HeadJoint, turn_ms
+from robot.wire.lsc16 import PULSE, Move, decode, encode
 
 JOINTS = st.builds(
     HeadJoint,

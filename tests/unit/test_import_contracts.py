@@ -31,7 +31,7 @@ ALLOWED = {
     "launcher.spawn_server.arrivals": ["rclpy"],
     "launcher.spawn_server.start": ["launcher.spawn_server.server", "socket"],
     "launcher.spawn_server.preload": ["ctypes"],
-    "robot.commands": ["math", "numpy", "pydantic", "text"],
+    "robot.commands.schema": ["math", "numpy", "pydantic", "text"],
     "text.plain": ["re", "yaml"],
 }
 
@@ -47,7 +47,15 @@ FORBIDDEN = {
             "launcher.spawn_server.preload",
         ),
     ],
-    "robot.commands": ["asyncio", "graph", "launcher", "nodes", "rclpy", "subprocess", "tui"],
+    "robot.commands.schema": [
+        "asyncio",
+        "graph",
+        "launcher",
+        "nodes",
+        "rclpy",
+        "subprocess",
+        "tui",
+    ],
     "text.plain": ["graph", "launcher", "nodes", "rclpy", "robot", "textual", "tui"],
 }
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.json_places import JsonError, line_column, read
+from robot.commands.json_places import JsonError, line_column, read
 
 documents = st.recursive(
     st.none()

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.odometry import Point, Pose
-from robot.world_grid import grid_of
-from robot.world_room import LIVING_ROOM
+from robot.motion.odometry import Point, Pose
+from robot.world.grid import grid_of
+from robot.world.room import LIVING_ROOM
 from tui.widgets.drawing import Line, cells_of
 from tui.widgets.map_canvas import Canvas
 from tui.widgets.map_field import Extent, Field, bar_length_m, fitted

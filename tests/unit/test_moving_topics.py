@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot.moving_topics import moves
+from robot.safety.moving_topics import moves
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
 TEXT = "std_msgs/msg/String"

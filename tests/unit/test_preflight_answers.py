@@ -8,12 +8,12 @@ from typing import cast
 
 import pytest
 
-from robot.wire_lsc16 import Battery
-from robot.wire_lsc16 import encode as encode_servos
-from robot.wire_pico import Telemetry, Welcome
-from robot.wire_pico import encode as encode_pico
-from robot.wire_tfluna import TofFrame
-from robot.wire_tfluna import encode as encode_tof
+from robot.wire.lsc16 import Battery
+from robot.wire.lsc16 import encode as encode_servos
+from robot.wire.pico import Telemetry, Welcome
+from robot.wire.pico import encode as encode_pico
+from robot.wire.tfluna import TofFrame
+from robot.wire.tfluna import encode as encode_tof
 from tui.doctor import Level
 from tui.preflight.answers import Answer, ask
 from tui.preflight.line import Line

@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from robot.commands import parse_llm
-from robot.problems import TEMPLATES, TEMPLATES_RU, CommandError, Problem, field_name
+from robot.commands.problems import TEMPLATES, TEMPLATES_RU, CommandError, Problem, field_name
+from robot.commands.schema import parse_llm
 
 
 def fields(template: str) -> list[str]:

@@ -8,7 +8,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.safety import Reading, Shares, Sight, Verdict, Zone, allowed, gate, look, share, where
+from robot.safety.distance import (
+    Reading,
+    Shares,
+    Sight,
+    Verdict,
+    Zone,
+    allowed,
+    gate,
+    look,
+    share,
+    where,
+)
 from robot.words import STOP, DriveSetpoint
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)

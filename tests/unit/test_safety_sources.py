@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.safety_sources import HELD_AGE_S, Sources
+from robot.safety.sources import HELD_AGE_S, Sources
 from robot.words import STOP, DriveSetpoint
 
 KEYS, ACTION, WORDS = "/drive_teleop", "/drive_action", "/drive"

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.wire_lsc16 import (
+from robot.wire.lsc16 import (
     ActionComplete,
     ActionRun,
     ActionStop,

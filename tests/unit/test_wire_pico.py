@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.wire_crc import crc16
-from robot.wire_line import LONGEST, LineSplitter, unwrap, wrap
-from robot.wire_pico import (
+from robot.wire.crc import crc16
+from robot.wire.line import LONGEST, LineSplitter, unwrap, wrap
+from robot.wire.pico import (
     FLAGS,
     Drive,
     Halt,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.wire_tfluna import SIZE, Model, TofDecoder, TofFrame, decode, encode
+from robot.wire.tfluna import SIZE, Model, TofDecoder, TofFrame, decode, encode
 from tests.unit.streams import cut, flipped, noise
 
 frames = st.builds(

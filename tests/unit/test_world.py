@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.odometry import Point, Pose
-from robot.safety import Zone
-from robot.world import Body, Sonar, Wheels, World
-from robot.world_room import LIVING_ROOM, Box, Room
+from robot.motion.odometry import Point, Pose
+from robot.safety.distance import Zone
+from robot.world.room import LIVING_ROOM, Box, Room
+from robot.world.world import Body, Sonar, Wheels, World
 from tests.unit.random_driver import RandomDriver, drive
 
 EMPTY = Room(Box(0.0, 0.0, 10.0, 10.0))

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from robot.wire_lsc16 import Battery, BatteryRequest, Move, decode
-from robot.wire_lsc16 import encode as encode_servo
-from robot.wire_pico import Drive, Halt, Hello, PicoDecoder, Release, Telemetry, encode
-from robot.world import World
-from robot.world_pico import SimulatedPico
-from robot.world_servos import SimulatedServos
+from robot.wire.lsc16 import Battery, BatteryRequest, Move, decode
+from robot.wire.lsc16 import encode as encode_servo
+from robot.wire.pico import Drive, Halt, Hello, PicoDecoder, Release, Telemetry, encode
+from robot.world.pico import SimulatedPico
+from robot.world.servos import SimulatedServos
+from robot.world.world import World
 
 PICO2 = Path(__file__).parents[2] / "firmware" / "pico2"
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from robot.odometry import Point
-from robot.world_grid import CELL_M, FREE, OCCUPIED, UNKNOWN, grid_of
-from robot.world_room import LIVING_ROOM, Box, Room
+from robot.motion.odometry import Point
+from robot.world.grid import CELL_M, FREE, OCCUPIED, UNKNOWN, grid_of
+from robot.world.room import LIVING_ROOM, Box, Room
 
 
 @pytest.mark.parametrize("angle", [n * math.tau / 48 for n in range(48)])

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot.odometry import Pose
-from robot.world_room import LIVING_ROOM, Box, Room
-from robot.world_view import FIELD_RAD, HEIGHT_M, Eye, RoomView
+from robot.motion.odometry import Pose
+from robot.world.room import LIVING_ROOM, Box, Room
+from robot.world.view import FIELD_RAD, HEIGHT_M, Eye, RoomView
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,7 +14,7 @@ from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.words import say
-from robot.moving_topics import EMERGENCY_STOP, STOPPED_BY_ZEROS, moves
+from robot.safety.moving_topics import EMERGENCY_STOP, STOPPED_BY_ZEROS, moves
 from text.plain import plain
 from tui.cli.output import keep_stdout_to_ourselves, say_error, write
 from tui.cli.robot_to_hear import robot_to_hear

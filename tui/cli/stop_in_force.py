@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from robot.stop_place import stop_place
+from robot.safety.stop_place import stop_place
 from tui.i18n import _
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate, Sample
-    from robot.commands import LlmResponse
+    from robot.commands.schema import LlmResponse
     from tui.app import DeckApp
 
 
@@ -76,7 +76,7 @@ class LlmFeed(Panel):
 
 def _read(text: str) -> LlmResponse | None:
     # pydantic is imported for the lessons that need it.
-    from robot.commands import CommandError, parse_llm
+    from robot.commands.schema import CommandError, parse_llm
 
     try:
         return parse_llm(text)

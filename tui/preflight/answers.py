@@ -10,11 +10,11 @@ import math
 import time
 from typing import TYPE_CHECKING, NamedTuple
 
-from robot.wire_lsc16 import Battery, BatteryRequest, ServoDecoder
-from robot.wire_lsc16 import encode as encode_servos
-from robot.wire_pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
-from robot.wire_pico import encode as encode_pico
-from robot.wire_tfluna import Model, TofDecoder, TofFrame
+from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder
+from robot.wire.lsc16 import encode as encode_servos
+from robot.wire.pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
+from robot.wire.pico import encode as encode_pico
+from robot.wire.tfluna import Model, TofDecoder, TofFrame
 from tui.doctor.finding import Level
 from tui.i18n import Prose, _
 

@@ -9,7 +9,7 @@ from textual import on
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Static, TextArea
 
-from robot.commands import MAX_BYTES, CommandError, parse_llm
+from robot.commands.schema import MAX_BYTES, CommandError, parse_llm
 from text.plain import plain
 from tui import clock
 from tui.actions import bindings
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from textual.timer import Timer
 
     from graph.data import Sample, TopicRow
-    from robot.commands import LlmResponse, Problem
+    from robot.commands.schema import LlmResponse, Problem
     from tui.messages import GraphChanged, LanguageChanged, SessionChanged
 
 TYPE = "std_msgs/msg/String"

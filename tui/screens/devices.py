@@ -9,7 +9,7 @@ from textual import on, work
 from textual.widgets import Static
 
 from launcher.status import Severity
-from robot.frame_lines import decode
+from robot.frames.lines import decode
 from tui import clock, device_trouble
 from tui.actions import bindings
 from tui.actions.devices import DEVICES_ACTIONS

@@ -16,7 +16,7 @@ from tui.widgets.json_words import problem_words
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from robot.commands import Problem
+    from robot.commands.schema import Problem
 
 
 class JsonVerdict(Vertical):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from robot.problems import Problem
+from robot.commands.problems import Problem
 from text.plain import plain
 from tui.i18n import _, language
 

@@ -28,7 +28,7 @@ from tui.widgets.sonar_words import remark
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robot.odometry import Pose
+    from robot.motion.odometry import Pose
     from tui.widgets.map_field import Field
     from tui.widgets.map_scene import Scene
     from tui.widgets.sonar_words import Bounds

@@ -17,7 +17,7 @@ from tui.widgets.sonar_words import COURSE
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from robot.odometry import Point, Pose
+    from robot.motion.odometry import Point, Pose
     from tui.widgets.map_legend import Entry
     from tui.widgets.map_reading import Ground
     from tui.widgets.sonar_words import Bounds

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robot.odometry import Point, Pose, yaw_from_quaternion
+from robot.motion.odometry import Point, Pose, yaw_from_quaternion
 from tui.widgets.map_field import Extent
 
 if TYPE_CHECKING:

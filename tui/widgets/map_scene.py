@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robot.world import Body, Sonar
+from robot.world.world import Body, Sonar
 from tui.widgets.map_canvas import Canvas
 from tui.widgets.map_reading import OCCUPIED_FROM
 from tui.widgets.sonar_bar import ink_of
 from tui.widgets.sonar_words import COURSE, Bounds
 
 if TYPE_CHECKING:
-    from robot.odometry import Point, Pose
+    from robot.motion.odometry import Point, Pose
     from tui.widgets import dots
     from tui.widgets.map_field import Field
     from tui.widgets.map_reading import Ground

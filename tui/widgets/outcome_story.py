@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from graph.data import Sample
-    from robot.commands import LlmResponse
+    from robot.commands.schema import LlmResponse
 
 SENT_TO, RESULT = "/llm_raw_json", "/llm_result"
 DRIVE, DRIVE_SAFE, WHEELS = "/drive", "/drive_safe", "/wheel_commands"

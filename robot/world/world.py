@@ -12,9 +12,9 @@ import random
 from dataclasses import dataclass, field
 
 from robot.kinematics import TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M
-from robot.odometry import Pose, advance
+from robot.motion.odometry import Pose, advance
 from robot.words import DriveSetpoint
-from robot.world_room import LIVING_ROOM, Box, Room
+from robot.world.room import LIVING_ROOM, Box, Room
 
 STEP_S = 0.01
 _AWAY_M = 0.02

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from robot.limits import HEAD_ANGLE, Limits
-from robot.wire_lsc16 import CENTRE_US, PULSE, TIME
+from robot.wire.lsc16 import CENTRE_US, PULSE, TIME
 
 _LEAST_MS = 20
 """A servo gets a new pulse no more often."""

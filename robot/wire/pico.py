@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, field
 
 from robot.limits import Limits
-from robot.wire_line import LineSplitter, unwrap, wrap
+from robot.wire.line import LineSplitter, unwrap, wrap
 
 PROTOCOL = 1
 """Both sides must speak the same one; otherwise the motors stay off."""

@@ -13,12 +13,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robot.kinematics import WHEELBASE_M, turning_radius
 from robot.limits import SPEED, STEERING
+from robot.kinematics import WHEELBASE_M, turning_radius
 from robot.words import STOP, DriveSetpoint
 
 if TYPE_CHECKING:
-    from robot.odometry import Point, Pose
+    from robot.motion.odometry import Point, Pose
 
 SPEED_STEP_M_S = 0.05
 STEERING_STEP_RAD = 0.02

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from robot.odometry import Point
+    from robot.motion.odometry import Point
 
 
 @dataclass(frozen=True)

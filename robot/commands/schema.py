@@ -11,10 +11,10 @@ from typing import Annotated, Literal, Union
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from robot import json_places
-from robot.explain import Explainer
+from robot.commands import json_places
+from robot.commands.explain import Explainer
+from robot.commands.problems import TEMPLATES, CommandError, Problem
 from robot.limits import HEAD_ANGLE, MAX_BYTES, MAX_COMMANDS, SPEED, STEERING
-from robot.problems import TEMPLATES, CommandError, Problem
 
 __all__ = [
     "HEAD_ANGLE",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from robot.wire_crc import crc16
+from robot.wire.crc import crc16
 
 LONGEST = 128
 """Bytes of a line at most, its end included."""

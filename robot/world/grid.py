@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from robot.world_room import Box, Room
+    from robot.world.room import Box, Room
 
 OCCUPIED, FREE, UNKNOWN = 100, 0, -1
 """As nav_msgs/OccupancyGrid has them."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robot.limits import STEERING, first_excess, wheel_limits
-from robot.wire_pico import (
+from robot.wire.pico import (
     PROTOCOL,
     SEQUENCES,
     STANDING_FLAGS,
@@ -23,10 +23,10 @@ from robot.wire_pico import (
     Welcome,
     encode,
 )
-from robot.world import STEP_S, Wheels
+from robot.world.world import STEP_S, Wheels
 
 if TYPE_CHECKING:
-    from robot.world import World
+    from robot.world.world import World
 
 FIRMWARE = "simulated"
 _STEP_MS, _WATCHDOG_MS = round(STEP_S * 1000), round(WATCHDOG_S * 1000)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robot.wire_lsc16 import CENTRE_US, Battery, BatteryRequest, Move, ServoDecoder, encode
+from robot.wire.lsc16 import CENTRE_US, Battery, BatteryRequest, Move, ServoDecoder, encode
 
 
 class SimulatedServos:

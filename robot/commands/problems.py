@@ -15,7 +15,7 @@ from text.plain import plain
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from robot.json_places import Path
+    from robot.commands.json_places import Path
 
 TEMPLATES: Mapping[str, str] = MappingProxyType(
     {

@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from robot.safety import Sight
+from robot.safety.distance import Sight
 
 if TYPE_CHECKING:
     from robot.words import DriveSetpoint

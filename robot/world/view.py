@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from robot.world_paint import (
+from robot.world.paint import (
     ACROSS,
     ALONG,
     CEILING,
@@ -33,8 +33,8 @@ from robot.world_paint import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from robot.odometry import Pose
-    from robot.world_room import Box, Room
+    from robot.motion.odometry import Pose
+    from robot.world.room import Box, Room
 
     Floats = NDArray[np.float32]
     Whole = NDArray[np.int32]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from robot.frames import HeadedReader, Kind, Piece, Words
-from robot.wire_crc import sum8
-from robot.wire_tfluna import SIZE, Model, TofFrame, decode
+from robot.frames.protocols import HeadedReader, Kind, Piece, Words
+from robot.wire.crc import sum8
+from robot.wire.tfluna import SIZE, Model, TofFrame, decode
 
 _HEAD = b"\x59\x59"
 _PHRASES = {

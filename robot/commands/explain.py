@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ValidationError
 
-from robot.json_places import Path, PlacedJson, line_column
+from robot.commands.json_places import Path, PlacedJson, line_column
+from robot.commands.problems import Problem
 from robot.limits import HEAD_ANGLE, MAX_COMMANDS, SPEED, STEERING
-from robot.problems import Problem
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

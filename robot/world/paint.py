@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from robot.world_room import Box
+    from robot.world.room import Box
 
     Canvas = NDArray[np.uint8]
     Colour = tuple[int, int, int]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from robot.frames import HeadedReader, Kind, Piece, Words
-from robot.wire_lsc16 import (
+from robot.frames.protocols import HeadedReader, Kind, Piece, Words
+from robot.wire.lsc16 import (
     ActionComplete,
     ActionRun,
     ActionStop,

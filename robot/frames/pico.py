@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 
-from robot.frames import Kind, Piece, Words, noise
-from robot.wire_crc import crc16
-from robot.wire_line import LONGEST, unwrap
-from robot.wire_pico import (
+from robot.frames.protocols import Kind, Piece, Words, noise
+from robot.wire.crc import crc16
+from robot.wire.line import LONGEST, unwrap
+from robot.wire.pico import (
     FLAGS,
     Drive,
     Halt,

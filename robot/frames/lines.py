@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robot.frames import Kind
+from robot.frames.protocols import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

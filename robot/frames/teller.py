@@ -6,13 +6,13 @@ from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from robot.frame_lines import MOST, WAYS, FrameLine
-from robot.frames import Kind, Words, noise
+from robot.frames.lines import MOST, WAYS, FrameLine
+from robot.frames.protocols import Kind, Words, noise
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from robot.frames import FrameReader, Piece
+    from robot.frames.protocols import FrameReader, Piece
 
 GIVE_UP_S = 0.3
 """The rest of a frame that has not come after this long does not come any more."""

@@ -1,0 +1,1 @@
+"""What may be asked of the robot in words or JSON: the schema, and what is wrong with a text."""

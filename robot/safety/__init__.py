@@ -1,0 +1,1 @@
+"""When the robot may move: distances, sources, the emergency stop."""
