@@ -1,7 +1,7 @@
 """The lesson nodes: one file each, and each runs alone: `python -m nodes.mock_sonar`.
 
-Modules with an underscore are what they share: how a node lives and ends (`_life`), its
-parameters (`_parameters`), its words (`_speech`).
+What they share is in the folders: `parts` (how a node lives and ends, its parameters, its words),
+`drivers` (real devices), `simulated` (devices that are not there), `safety` and `driving`.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ def _leave(_number: int, _frame: FrameType | None) -> None:
     os._exit(0)
 
 
-__preload__ = ("_life", "_node", "_parameters", "_speech", "_topics")
+__preload__ = ("parts.life", "parts.node", "parts.parameters", "parts.speech", "parts.topics")
 """What nearly every node imports: the launcher's spawn server may import it ahead for all."""
 __preload_idle__ = (
-    "_refusals",
-    "_emergency",
-    "_drive_repeat",
-    "_safety_gate",
-    "_sole_publisher",
-    "_head_client",
-    "_room_scene",
-    "_scene",
-    "_servo_client",
-    "_sound",
+    "parts.refusals",
+    "parts.emergency",
+    "driving.repeat",
+    "safety.gate",
+    "parts.sole_publisher",
+    "parts.head_client",
+    "simulated.room_scene",
+    "simulated.scene",
+    "drivers.servos",
+    "parts.sound",
 )
 """What some nodes import: the spawn server may import it while nobody waits for a node."""
 

@@ -15,14 +15,14 @@ import time
 from sensor_msgs.msg import Image
 from std_msgs.msg import ByteMultiArray, Float32, String
 
-from nodes._head_client import HeadAnswer, HeadClient
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._parameters import Number
-from nodes._sensor import SensorListener
-from nodes._sound import from_message, to_message
-from nodes._speech import Phrase
-from nodes._topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, SONAR_FRONT, SPEAKER
+from nodes.parts.head_client import HeadAnswer, HeadClient
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.parameters import Number
+from nodes.parts.sensor import SensorListener
+from nodes.parts.sound import from_message, to_message
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, SONAR_FRONT, SPEAKER
 from robot.commands.brain import Decision, decide, spoken
 from robot.safety.distance import Reading, look
 from robot.sound import text_in

@@ -11,11 +11,11 @@ import sys
 
 from std_msgs.msg import String
 
-from nodes._drive_repeat import REPEAT_FOR_S, DriveVoice
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._speech import Phrase
-from nodes._topics import AI_COMMAND, DEPTH
+from nodes.driving.repeat import REPEAT_FOR_S, DriveVoice
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import AI_COMMAND, DEPTH
 from robot.words import WORDS, parse_word
 
 _STARTED = Phrase("Translating words into motion: {words}", "Перевожу слова в движение: {words}")

@@ -14,17 +14,17 @@ from dataclasses import dataclass
 
 from std_msgs.msg import ByteMultiArray, Float32
 
-from nodes._diagnostics import tell_every_second
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._parameters import Number, Text, Whole
-from nodes._portaudio import IN, OUT
-from nodes._sound import from_message, to_message
-from nodes._sound_port import SoundPort
-from nodes._sound_status import PortStatus
-from nodes._sound_words import EMPTY, LATE, ODD, UNPLAYED, WORDS
-from nodes._speech import Phrase
-from nodes._topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
+from nodes.drivers.portaudio import IN, OUT
+from nodes.drivers.sound_port import SoundPort
+from nodes.drivers.sound_status import PortStatus
+from nodes.drivers.sound_words import EMPTY, LATE, ODD, UNPLAYED, WORDS
+from nodes.parts.diagnostics import tell_every_second
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.parameters import Number, Text, Whole
+from nodes.parts.sound import from_message, to_message
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, text_in
 
 _STARTED = Phrase(

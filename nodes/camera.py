@@ -19,15 +19,15 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from sensor_msgs.msg import Image
 
-from nodes._camera_source import CameraSource, SourceSetting
-from nodes._capture import SILENT_S, THREAD, Capture
-from nodes._diagnostics import tell_every_second
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._parameters import Choice, Number, Switch, Text, Whole
-from nodes._pictures import CHANNELS, fit
-from nodes._speech import Phrase
-from nodes._topics import CAMERA, NEWEST
+from nodes.drivers.camera_source import CameraSource, SourceSetting
+from nodes.drivers.capture import SILENT_S, THREAD, Capture
+from nodes.parts.diagnostics import tell_every_second
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.parameters import Choice, Number, Switch, Text, Whole
+from nodes.parts.pictures import CHANNELS, fit
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import CAMERA, NEWEST
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

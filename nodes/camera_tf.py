@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._parameters import Number, Text, Value
-from nodes._speech import Phrase
-from nodes._topics import LATCHED, TF_STATIC
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.parameters import Number, Text, Value
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import LATCHED, TF_STATIC
 from robot.motion.geometry import quaternion_from_rpy
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
-from nodes._chassis_messages import JOINTS, DeadReckoning, battery
-from nodes._chassis_words import (
+from nodes.drivers.chassis_messages import JOINTS, DeadReckoning, battery
+from nodes.drivers.chassis_words import (
     COMMAND_OLD,
     EMERGENCY,
     RELEASED,
@@ -33,18 +33,18 @@ from nodes._chassis_words import (
     Standing,
     diagnosis,
 )
-from nodes._diagnostics import tell_every_second
-from nodes._emergency import PICO, EmergencyStop
-from nodes._life import run
-from nodes._nap import Nap
-from nodes._node import LessonNode
-from nodes._pace import Pace
-from nodes._parameters import Number, Text, Whole
-from nodes._pico_client import PicoClient
-from nodes._refusals import MAX_WHEEL_SPEED, Refusals
-from nodes._topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
-from robot.limits import STEERING, wheel_limits
+from nodes.drivers.pico import PicoClient
+from nodes.parts.diagnostics import tell_every_second
+from nodes.parts.emergency import PICO, EmergencyStop
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.pace import Pace
+from nodes.parts.parameters import Number, Text, Whole
+from nodes.parts.refusals import MAX_WHEEL_SPEED, Refusals
+from nodes.parts.stall_detector import Nap
+from nodes.parts.topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
+from robot.limits import STEERING, wheel_limits
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus

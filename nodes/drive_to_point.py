@@ -3,10 +3,10 @@
 It reads /odom and publishes /drive `rate` times a second while it has a goal, and a stop when it
 has none any more. The way is found by `robot.motion.approach`: forward, in reverse for a point
 close behind, and backing away first from a point inside of the turning circle. A drive is aborted,
-with the reason in the result's message, at an emergency stop, without odometry or with one that is too
-old, when the robot stands though it should drive, and when it drives and does not arrive. A new
-goal takes the place of the old one. A goal that is no number or too far away is refused; so is any
-while the emergency stop is held.
+with the reason in the result's message, at an emergency stop, without odometry or with one that is
+too old, when the robot stands though it should drive, and when it drives and does not arrive. A
+new goal takes the place of the old one. A goal that is no number or too far away is refused; so is
+any while the emergency stop is held.
 
 /goal_pose tells where it drives to, latched; a pose without a frame says that it drives nowhere.
 
@@ -26,20 +26,20 @@ from rclpy.action.server import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 
-from nodes import _drive_to_point_words as words
-from nodes._drive import to_message
-from nodes._drive_goal import DriveGoal
-from nodes._drive_goal_pose import GoalPose
-from nodes._emergency import EmergencyStop
-from nodes._life import run
-from nodes._node import LessonNode, change_period
-from nodes._odometry import OdometryListener
-from nodes._parameters import Choice, Number, Text
-from nodes._simulated_base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
-from nodes._topics import DEPTH, DRIVE, DRIVE_TO_POINT, ODOMETRY
+from nodes.driving import words
+from nodes.driving.goal import DriveGoal
+from nodes.driving.goal_pose import GoalPose
+from nodes.parts.drive import to_message
+from nodes.parts.emergency import EmergencyStop
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.odometry import OdometryListener
+from nodes.parts.parameters import Choice, Number, Text
+from nodes.parts.topics import DEPTH, DRIVE, DRIVE_TO_POINT, ODOMETRY
+from nodes.simulated.base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
+from robot.kinematics import WHEELBASE_M
 from robot.limits import SPEED, STEERING
 from robot.motion.approach import Approach, Chassis
-from robot.kinematics import WHEELBASE_M
 from robot.motion.odometry import Point, Pose
 from robot.words import STOP
 
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from rclpy.action.server import ServerGoalHandle
     from rclpy.task import Future
 
-    from nodes._speech import Phrase
+    from nodes.parts.speech import Phrase
     from robot.words import DriveSetpoint
 
 _FINEST_M, _COARSEST_M = 0.02, 2.0

@@ -19,17 +19,16 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 
-from nodes._drive import FRAME, from_message
-from nodes._emergency import EmergencyStop
-from nodes._life import run
-from nodes._nap import Nap
-from nodes._node import LessonNode, change_period
-from nodes._parameters import Number, Text
-from nodes._refusals import MAX_WHEEL_SPEED, Refusals
-from nodes._sole_publisher import SolePublisher
-from nodes._speech import Phrase
-from nodes._topics import DEPTH, DRIVE, WHEEL_COMMANDS
-from robot.limits import RIM_M_S, SPEED, STEERING, Limits
+from nodes.parts.drive import FRAME, from_message
+from nodes.parts.emergency import EmergencyStop
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Number, Text
+from nodes.parts.refusals import MAX_WHEEL_SPEED, Refusals
+from nodes.parts.sole_publisher import SolePublisher
+from nodes.parts.speech import Phrase
+from nodes.parts.stall_detector import Nap
+from nodes.parts.topics import DEPTH, DRIVE, WHEEL_COMMANDS
 from robot.kinematics import (
     STRAIGHT_BELOW_RAD,
     TRACK_M,
@@ -38,6 +37,7 @@ from robot.kinematics import (
     WheelSpeeds,
     wheel_speeds,
 )
+from robot.limits import RIM_M_S, SPEED, STEERING, Limits
 from robot.words import STOP, DriveSetpoint
 
 JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")

@@ -25,20 +25,20 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
 
-from nodes import _head_words as words
-from nodes._diagnostics import tell_every_second
-from nodes._life import run
-from nodes._node import LessonNode, change_period
-from nodes._parameters import Number, Whole
-from nodes._servo_client import WAS_AWAY, ServoClient
-from nodes._topics import DEPTH, HEAD_SERVICE, HEAD_STATE
+from nodes.drivers import head_words as words
+from nodes.drivers.servos import WAS_AWAY, ServoClient
+from nodes.parts.diagnostics import tell_every_second
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Number, Whole
+from nodes.parts.topics import DEPTH, HEAD_SERVICE, HEAD_STATE
 from robot.motion.head import turn_ms
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from nodes._parameters import Value
-    from nodes._speech import Phrase
+    from nodes.parts.parameters import Value
+    from nodes.parts.speech import Phrase
 
 JOINTS = ("pan_joint", "tilt_joint")
 _SETTLE_S = 0.1

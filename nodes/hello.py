@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._parameters import Number
-from nodes._speech import Phrase
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.parameters import Number
+from nodes.parts.speech import Phrase
 
 _AWAKE = Phrase("Hello! The first node is awake.", "Привет! Первый узел проснулся.")
 _COUNT = Phrase("{seconds:g} s passed, all is well.", "Прошло {seconds:g} с, всё хорошо.")

@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING
 
 from std_msgs.msg import String
 
-from nodes._drive_repeat import REPEAT_FOR_S, DriveVoice
-from nodes._head_client import HeadAnswer, HeadClient
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._parameters import Number
-from nodes._speech import Phrase
-from nodes._topics import DEPTH, LLM_RAW_JSON, LLM_RESULT
+from nodes.driving.repeat import REPEAT_FOR_S, DriveVoice
+from nodes.parts.head_client import HeadAnswer, HeadClient
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.parameters import Number
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import DEPTH, LLM_RAW_JSON, LLM_RESULT
 from robot.commands.schema import (
     MAX_COMMANDS,
     CommandError,

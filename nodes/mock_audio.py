@@ -14,12 +14,12 @@ import time
 
 from std_msgs.msg import ByteMultiArray, Float32
 
-from nodes._life import run
-from nodes._node import LessonNode, change_period
-from nodes._parameters import Number, Text
-from nodes._sound import from_message, to_message
-from nodes._speech import Phrase
-from nodes._topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Number, Text
+from nodes.parts.sound import from_message, to_message
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
 from robot.sound import LEVEL_S, mock_level_dbfs
 
 _STARTED = Phrase("Microphone and loudspeaker are on", "Микрофон и динамик включены")

@@ -15,13 +15,13 @@ from array import array
 import numpy as np
 from sensor_msgs.msg import Image
 
-from nodes._life import run
-from nodes._node import LessonNode, change_period
-from nodes._parameters import Choice, Number, Text, Whole
-from nodes._room_scene import RoomScene
-from nodes._scene import Scene
-from nodes._speech import Phrase
-from nodes._topics import CAMERA, NEWEST
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Choice, Number, Text, Whole
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import CAMERA, NEWEST
+from nodes.simulated.room_scene import RoomScene
+from nodes.simulated.scene import Scene
 
 FILM, ROOM = "film", "room"
 

@@ -19,15 +19,15 @@ from pathlib import Path
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
 
-from nodes._device_fault import FAULTS, FINE, FaultyLine
-from nodes._life import run
-from nodes._map_message import occupancy_grid
-from nodes._mock_motors import MockMotors
-from nodes._node import LessonNode, UsageError
-from nodes._parameters import Choice, Number, Setting, Text, Whole
-from nodes._pty import PseudoSerial
-from nodes._speech import Phrase
-from nodes._topics import DEPTH, LATCHED, MAP, MOCK_POSE
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, UsageError
+from nodes.parts.parameters import Choice, Number, Setting, Text, Whole
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import DEPTH, LATCHED, MAP, MOCK_POSE
+from nodes.simulated.device_fault import FAULTS, FINE, FaultyLine
+from nodes.simulated.map_message import occupancy_grid
+from nodes.simulated.motors import MockMotors
+from nodes.simulated.pseudo_terminal import PseudoSerial
 from robot.motion.geometry import quaternion_from_rpy
 from robot.wire.tfluna import TofFrame, encode
 from robot.world.grid import grid_of

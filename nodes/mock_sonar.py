@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 from std_msgs.msg import Float32
 
-from nodes._life import run
-from nodes._node import LessonNode, change_period
-from nodes._parameters import Choice, Number, Text, Value
-from nodes._speech import Phrase
-from nodes._topics import DEPTH, SONAR_FRONT
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Choice, Number, Text, Value
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import DEPTH, SONAR_FRONT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

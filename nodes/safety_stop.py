@@ -27,21 +27,22 @@ from typing import TYPE_CHECKING
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32
 
-from nodes._emergency import EmergencyStop
-from nodes._life import run
-from nodes._node import LessonNode, change_period
-from nodes._parameters import Number, Switch, Text
-from nodes._safety_eyes import Eyes, shares
-from nodes._safety_gate import Gate, Moment
-from nodes._safety_words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
-from nodes._sensor import SensorListener
-from nodes._topics import DEPTH, SAFETY_STATE, SONAR_FRONT, SOURCES
+from nodes.parts.emergency import EmergencyStop
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Number, Switch, Text
+from nodes.parts.sensor import SensorListener
+from nodes.parts.topics import DEPTH, SAFETY_STATE, SONAR_FRONT, SOURCES
+from nodes.safety.eyes import Eyes, shares
+from nodes.safety.gate import Gate
+from nodes.safety.moment import Moment
+from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
 from robot.safety.distance import Sight, Verdict, Zone, allowed, where
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
 
-    from nodes._safety_eyes import View
+    from nodes.safety.eyes import View
 
 _STATE_EVERY_S = 1.0
 

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float32
 
-from nodes._diagnostics import tell_every_second
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._pace import Pace
-from nodes._parameters import Choice, Number, Text, Whole
-from nodes._serial_link import SerialLink
-from nodes._speech import Phrase
-from nodes._topics import DEPTH, SONAR_FRONT
+from nodes.drivers.serial_link import SerialLink
+from nodes.parts.diagnostics import tell_every_second
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.pace import Pace
+from nodes.parts.parameters import Choice, Number, Text, Whole
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import DEPTH, SONAR_FRONT
 from robot.frames.tof import TofReader
 from robot.wire.tfluna import BAUD, Model, TofDecoder
 

@@ -12,13 +12,13 @@ import sys
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
 
-from nodes._life import run
-from nodes._node import LessonNode, change_period
-from nodes._parameters import Number, Text, Whole
-from nodes._pictures import BadPictureError, bgr
-from nodes._sensor import SensorListener
-from nodes._speech import Phrase
-from nodes._topics import CAMERA
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode, change_period
+from nodes.parts.parameters import Number, Text, Whole
+from nodes.parts.pictures import BadPictureError, bgr
+from nodes.parts.sensor import SensorListener
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import CAMERA
 
 _STARTED = Phrase("Waiting for pictures on {topic}", "Жду кадры в {topic}")
 _NONE = Phrase("No picture yet on {topic}", "Кадров в {topic} пока нет")

@@ -13,8 +13,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robot.limits import SPEED, STEERING
 from robot.kinematics import WHEELBASE_M, turning_radius
+from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from nodes._life import run
-from nodes._safety_gate import Gate
+from nodes.parts.life import run
+from nodes.safety.gate import Gate
 from nodes.safety_stop import SafetyStop
 
 if TYPE_CHECKING:

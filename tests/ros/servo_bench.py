@@ -6,8 +6,8 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
-from nodes._device_fault import FINE, FaultyLine
-from nodes._pty import PseudoSerial
+from nodes.simulated.device_fault import FINE, FaultyLine
+from nodes.simulated.pseudo_terminal import PseudoSerial
 from robot.world.servos import SimulatedServos
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import ctypes
 import sys
 
-from nodes._life import run
-from nodes._node import LessonNode
-from nodes._speech import Phrase
+from nodes.parts.life import run
+from nodes.parts.node import LessonNode
+from nodes.parts.speech import Phrase
 
 
 class Stuck(LessonNode):

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from nodes import _speech
-from nodes._chassis_words import Standing
-from nodes._speech import Speech
+from nodes.drivers.chassis_words import Standing
+from nodes.parts import speech as _speech
+from nodes.parts.speech import Speech
 from robot.wire.pico import Telemetry
 from tests.ros.test_serial_link import Log
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from launcher.client.client import running
-from nodes._stop_memory import Stop, StopMemory
+from nodes.parts.stop_memory import Stop, StopMemory
 from tests.deck_process import DeckProcess, alive, deck
 from tests.ros.supervised import end_sessions
 from tests.unit.profile_files import written

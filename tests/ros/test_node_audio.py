@@ -15,7 +15,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import ByteMultiArray, Float32
 
-from nodes._sound import from_message, to_message
+from nodes.parts.sound import from_message, to_message
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
 from tests.ros.sound_card import RATE_HZ, SoundCard, build_stand_in, libraries, without_silence

@@ -15,7 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from example_interfaces.srv import AddTwoInts
 from sensor_msgs.msg import JointState
 
-from nodes._device_fault import FINE, NOISE, SILENT, UNPLUGGED
+from nodes.simulated.device_fault import FINE, NOISE, SILENT, UNPLUGGED
 from robot.wire.lsc16 import Move, ServoDecoder
 from robot.wire.tfluna import TofFrame, encode
 from tests.ros.devices import mock_robot, set_parameter

@@ -11,8 +11,8 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import JointState
 
-from nodes._device_fault import FAULTS
 from nodes.mock_robot import DEVICES
+from nodes.simulated.device_fault import FAULTS
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder
 from robot.wire.lsc16 import encode as encode_servo
 from robot.wire.pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode

@@ -6,7 +6,7 @@ import importlib
 
 import pytest
 
-from nodes._node import LessonNode
+from nodes.parts.node import LessonNode
 from tests.ros.peer import ROOT
 
 MODULES = sorted(path.stem for path in (ROOT / "nodes").glob("[!_]*.py"))

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 
-from nodes._node import LessonNode
-from nodes._parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
+from nodes.parts.node import LessonNode
+from nodes.parts.parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, ROOT, Peer
 from tui.catalogue import read_po

@@ -11,10 +11,10 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, Float32
 
-from nodes._safety_eyes import Eye
-from nodes._safety_gate import Moment
-from nodes._safety_words import diagnosis, tell_front
-from nodes._speech import Speech
+from nodes.parts.speech import Speech
+from nodes.safety.eyes import Eye
+from nodes.safety.moment import Moment
+from nodes.safety.words import diagnosis, tell_front
 from robot.safety.distance import Sight, Verdict, Zone
 from tests.ros.gate import FRONT, REAR, Gate, drive, values
 from tests.ros.node_process import NodeProcess

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from nodes import _pico_client
-from nodes._pico_client import SILENT_AFTER_S, PicoClient
-from nodes._speech import Speech
+from nodes.drivers import pico as _pico_client
+from nodes.drivers.pico import SILENT_AFTER_S, PicoClient
+from nodes.parts.speech import Speech
 from robot.wire.pico import Telemetry, encode
 from tests.ros.test_serial_link import Log
 

@@ -178,7 +178,7 @@ async def test_what_some_nodes_need_is_imported_while_nobody_waits(
     spawner = make(told, warm=True)
     spawner.preload(["nodes"])
     tell = tmp_path / "tell.py"
-    tell.write_text("import sys\nprint('nodes._safety_gate' in sys.modules)\n")
+    tell.write_text("import sys\nprint('nodes.safety.gate' in sys.modules)\n")
     out = tmp_path / "out"
 
     async def has_it() -> bool:

@@ -10,8 +10,8 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
-from nodes._serial_frames import SerialFrames
-from nodes._speech import Speech
+from nodes.drivers.serial_frames import SerialFrames
+from nodes.parts.speech import Speech
 from robot.frames.lines import decode
 from robot.frames.protocols import Kind, RawReader
 from tests.ros.devices import mock_robot, set_parameter
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from nodes._node import LessonNode
+    from nodes.parts.node import LessonNode
     from robot.frames.lines import FrameLine
 
 

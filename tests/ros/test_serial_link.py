@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import pytest
 import serial
 
-from nodes import _serial_link
-from nodes._serial_link import SerialLink
-from nodes._speech import Speech
+from nodes.drivers import serial_link as _serial_link
+from nodes.drivers.serial_link import SerialLink
+from nodes.parts.speech import Speech
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:

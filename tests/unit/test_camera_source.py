@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from nodes import _camera_source
-from nodes._camera_source import CameraSource, Kind, SourceSetting
-from nodes._parameters import BadValueError
-from nodes._pictures import fit
+from nodes.drivers import camera_source as _camera_source
+from nodes.drivers.camera_source import CameraSource, Kind, SourceSetting
+from nodes.parts.parameters import BadValueError
+from nodes.parts.pictures import fit
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes._head_words import SERVO_SETTINGS, contradiction
+from nodes.drivers.head_words import SERVO_SETTINGS, contradiction
 from robot.limits import Limits
 from robot.motion.head import HeadJoint, turn_ms
 from robot.wire.lsc16 import PULSE, Move, decode, encode

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 from robot.limits import (
     PICO_RAD_S,
     RIM_M_S,
@@ -20,7 +21,6 @@ from robot.limits import (
     first_excess,
     wheel_limits,
 )
-from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 
 CONFIG = Path(__file__).parents[2] / "firmware/pico2/config.py"
 speeds = st.floats(SPEED.low, SPEED.high)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from nodes._nap import Nap
+from nodes.parts.stall_detector import Nap
 
 
 @dataclass

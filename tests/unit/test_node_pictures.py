@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nodes._pictures import BadPictureError, bgr
-from nodes._scene import Scene
+from nodes.parts.pictures import BadPictureError, bgr
+from nodes.simulated.scene import Scene
 
 
 def message(**changes: Any) -> Any:

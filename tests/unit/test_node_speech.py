@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes._speech import LONGEST, Phrase, Speech, language, printable
+from nodes.parts.speech import LONGEST, Phrase, Speech, language, printable
 
 GREETING = Phrase("Hello {name}", "Привет {name}")
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from nodes._pty import PseudoSerial
+from nodes.simulated.pseudo_terminal import PseudoSerial
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from nodes import _sound_child, _sound_port
-from nodes._portaudio import IN, OUT, choose
-from nodes._sound_port import SoundPort
-from nodes._sound_queue import SoundQueue
-from nodes._speech import Speech
+from nodes.drivers import sound_child as _sound_child
+from nodes.drivers import sound_port as _sound_port
+from nodes.drivers.portaudio import IN, OUT, choose
+from nodes.drivers.sound_port import SoundPort
+from nodes.drivers.sound_queue import SoundQueue
+from nodes.parts.speech import Speech
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:

@@ -1,0 +1,1 @@
+"""What real devices need: serial ports, cameras and sound that come and go."""

@@ -1,0 +1,141 @@
+"""Where pictures come from: a camera by number or device, a video file, or a stream by its URL."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nodes.parts.parameters import Text
+from nodes.parts.speech import Phrase
+
+if TYPE_CHECKING:
+    import cv2
+
+_TIMEOUT_MS = 5000
+_NO_CAMERA = Phrase(
+    "no such camera; plug it in, or set the parameter source (v4l2-ctl --list-devices); {others}",
+    "нет такой камеры; подключите её или задайте параметр source (v4l2-ctl --list-devices);"
+    " {others}",
+)
+_NO_DEVICE = Phrase(
+    "it is no camera; v4l2-ctl --list-devices names them", "это не камера; v4l2-ctl --list-devices"
+)
+_NOT_IN_GROUP = Phrase(
+    "no permission; sudo usermod -aG video $USER, then log in again",
+    "нет прав; sudo usermod -aG video $USER, затем войдите заново",
+)
+_NO_PICTURES = Phrase(
+    "it gives no pictures: another program is using it (fuser -v {source}), or it is another device"
+    " of the same camera (v4l2-ctl --list-devices)",
+    "она не даёт кадров: занята другой программой (fuser -v {source}) или это другое устройство"
+    " той же камеры (v4l2-ctl --list-devices)",
+)
+_NO_FILE = Phrase("no such file", "нет такого файла")
+_NOT_READABLE = Phrase(
+    "no permission to read it (chmod +r {source})", "нет прав на чтение (chmod +r {source})"
+)
+_NO_VIDEO = Phrase(
+    "OpenCV finds no video in it; is it whole?", "OpenCV не находит в нём видео; цел ли он?"
+)
+_NO_ANSWER = Phrase(
+    "nobody answers there, or what comes is no video", "там никто не отвечает или это не видео"
+)
+
+
+class Kind(Enum):
+    """What a source is."""
+
+    DEVICE = "device"
+    FILE = "file"
+    STREAM = "stream"
+
+
+@dataclass(frozen=True)
+class CameraSource:
+    """A source as a person names it."""
+
+    name: str
+
+    @property
+    def kind(self) -> Kind:
+        """Told by its name alone."""
+        if self.name.isdecimal() or self.name.startswith("/dev/"):
+            return Kind.DEVICE
+        return Kind.STREAM if "://" in self.name else Kind.FILE
+
+    @property
+    def path(self) -> Path:
+        """Of a device or a file."""
+        if self.name.isdecimal():
+            return Path(f"/dev/video{int(self.name)}")
+        return Path(self.name).expanduser()
+
+    def __str__(self) -> str:
+        """To be shown: without the password of a URL."""
+        if self.kind is Kind.STREAM:
+            return re.sub(r"(://[^/@\s:]*):[^/@\s]*@", r"\1:***@", self.name)
+        return str(self.path)
+
+    def open(self, width: int, height: int) -> cv2.VideoCapture | None:
+        """Open it, None if that fails. A device is asked for a size. Takes seconds at times."""
+        capture = self._open()
+        if not capture.isOpened():
+            capture.release()
+            return None
+        if self.kind is Kind.DEVICE:
+            import cv2
+
+            capture.set(cv2.CAP_PROP_FRAME_WIDTH, width)
+            capture.set(cv2.CAP_PROP_FRAME_HEIGHT, height)
+        return capture
+
+    def why_not(self) -> Phrase:
+        """Why it does not open, or gives no picture, and the mend; for `source` and `others`."""
+        if self.kind is Kind.STREAM:
+            return _NO_ANSWER
+        there = self.path.exists()
+        if self.kind is Kind.DEVICE:
+            if not there:
+                return _NO_CAMERA
+            if not self.path.is_char_device():
+                return _NO_DEVICE
+            return _NO_PICTURES if os.access(self.path, os.R_OK | os.W_OK) else _NOT_IN_GROUP
+        if not there:
+            return _NO_FILE
+        return _NO_VIDEO if os.access(self.path, os.R_OK) else _NOT_READABLE
+
+    def _open(self) -> cv2.VideoCapture:
+        import cv2
+
+        if self.kind is Kind.DEVICE:
+            return cv2.VideoCapture(str(self.path), cv2.CAP_V4L2)
+        if self.kind is Kind.FILE:
+            return cv2.VideoCapture(str(self.path), cv2.CAP_FFMPEG)
+        patience = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, _TIMEOUT_MS]
+        patience += [cv2.CAP_PROP_READ_TIMEOUT_MSEC, _TIMEOUT_MS]
+        return cv2.VideoCapture(self.name, cv2.CAP_FFMPEG, patience)
+
+
+def cameras() -> list[str]:
+    """The video devices of this machine, in order of their numbers."""
+    found = [path for path in Path("/dev").glob("video*") if path.name[5:].isdecimal()]
+    return [str(path) for path in sorted(found, key=lambda path: int(path.name[5:]))]
+
+
+@dataclass(frozen=True)
+class SourceSetting(Text):
+    """A text that may as well be the number of a camera."""
+
+    def accept(self, value: object) -> str:
+        """A str; a number that was given without quotes becomes one."""
+        if isinstance(value, int) and not isinstance(value, bool) and value >= 0:
+            return str(value)
+        return super().accept(value)
+
+    def expected(self) -> str:
+        """What it takes."""
+        return "number, /dev path, file or URL"

@@ -1,0 +1,218 @@
+"""A source of pictures that comes and goes: a thread of its own reads it, and opens it for ever.
+
+Every picture is taken as it comes, so that none waits in a queue; those that nobody wants are not
+even unpacked. The callback runs on the thread. A read may block for seconds inside of OpenCV: the
+end does not wait for it.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from dataclasses import dataclass
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+from nodes.drivers.camera_source import Kind, cameras
+from nodes.parts.speech import Phrase
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import cv2
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from nodes.drivers.camera_source import CameraSource
+    from nodes.parts.speech import Speech
+
+THREAD = "capture"
+SILENT_S = 2.0
+"""Open, and yet no picture for so long, is trouble."""
+_FIRST_WAIT_S, _LONGEST_WAIT_S = 0.25, 4.0
+_EARLY = 0.25
+"""A picture may be this share of a period early."""
+_SAY_EVERY_S = 10.0
+_MOST_FPS = 240.0
+
+_OPEN = Phrase("The camera is {source}", "Камера — {source}")
+_LOST = Phrase(
+    "Lost {source}: no more pictures come", "Потерян источник {source}: кадров больше нет"
+)
+_CANNOT = Phrase("Cannot open {source}: {problem}", "Не удалось открыть {source}: {problem}")
+_OVER = Phrase("{source} is at its end", "{source}: запись закончилась")
+_BROKEN = Phrase("Bad picture from {source}: {problem}", "Испорченный кадр от {source}: {problem}")
+_THERE = Phrase("there is {cameras}", "есть {cameras}")
+_NONE = Phrase("there is no camera at all (/dev/video*)", "камер нет вообще (/dev/video*)")
+
+
+@dataclass
+class Pictures:
+    """What has come since the start of the node."""
+
+    came: int = 0
+    taken: int = 0
+    connections: int = 0
+
+
+class Capture:
+    """Keeps a source open; `start` it, and `close` it at the end."""
+
+    def __init__(
+        self,
+        say: Speech,
+        source: CameraSource,
+        size: tuple[int, int],
+        rate_hz: Callable[[], float],
+        taken: Callable[[NDArray[np.uint8]], None],
+        *,
+        loop: bool,
+    ) -> None:
+        """`size` is width and height to ask for; at most `rate_hz()` pictures are `taken`."""
+        self._say, self.source, self._size = say, source, size
+        self._rate_hz, self._taken, self._loop = rate_hz, taken, loop
+        self.pictures = Pictures()
+        self.connected = self.over = False
+        self.since = ""
+        """When the connection began, ISO 8601, empty without one."""
+        self.problem = ""
+        """Why there is none."""
+        self.changed_s = self.seen_s = time.monotonic()
+        """When it came or went, and when the newest picture came."""
+        self._next_s = 0.0
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._live, name=THREAD, daemon=True)
+
+    @property
+    def silent(self) -> bool:
+        """Whether it is open and yet gives no pictures."""
+        return self.connected and time.monotonic() - self.seen_s > SILENT_S
+
+    def start(self) -> None:
+        """Begin to open it."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """End the thread, unless it is in a read that does not come back."""
+        self._ending.set()
+        if self._thread.is_alive():
+            self._thread.join(0.3)
+
+    # ---------------------------------------------------------------- the thread
+
+    def _live(self) -> None:
+        _silence_opencv()
+        wait_s = _FIRST_WAIT_S
+        while not self._ending.is_set():
+            count = self._show()
+            if count and self.source.kind is Kind.FILE:
+                if self._loop:
+                    wait_s = _FIRST_WAIT_S
+                    continue
+                self._end()
+                return
+            if count:
+                wait_s = _FIRST_WAIT_S
+            self._ending.wait(wait_s)
+            wait_s = min(2 * wait_s, _LONGEST_WAIT_S)
+
+    def _show(self) -> int:
+        """Open it and take its pictures until there are no more; how many there were."""
+        film = self._open()
+        if film is None:
+            return 0
+        import cv2
+
+        before = self.pictures.came
+        try:
+            self._read(film)
+        except cv2.error as error:
+            self._say.warn(_BROKEN, every_s=_SAY_EVERY_S, source=self.source, problem=error)
+        finally:
+            film.release()
+        count = self.pictures.came - before
+        if not self._ending.is_set() and not (count and self.source.kind is Kind.FILE):
+            self._lose(count)
+        return count
+
+    def _open(self) -> cv2.VideoCapture | None:
+        film = self.source.open(*self._size)
+        if film is None:
+            self._complain()
+        return film
+
+    def _read(self, film: cv2.VideoCapture) -> None:
+        pace_s = self._pace_s(film)
+        due_s = time.monotonic()
+        # Every file that OpenCV opens it knows a rate of; only files are read by the clock.
+        while not self._ending.is_set() and film.grab():
+            self._came()
+            if self._is_wanted():
+                read, picture = film.retrieve()
+                if read and not self._ending.is_set():
+                    self.pictures.taken += 1
+                    self._taken(picture)  # type: ignore[arg-type]
+            if pace_s:
+                due_s = max(due_s + pace_s, time.monotonic() - 1.0)
+                self._ending.wait(max(0.0, due_s - time.monotonic()))
+
+    def _pace_s(self, film: cv2.VideoCapture) -> float:
+        """Seconds between two pictures of a file, 0 for what has a pace of its own."""
+        import cv2
+
+        if self.source.kind is not Kind.FILE:
+            return 0.0
+        fps = film.get(cv2.CAP_PROP_FPS)
+        return 1.0 / fps if 0.0 < fps <= _MOST_FPS else 1.0 / self._rate_hz()
+
+    def _came(self) -> None:
+        self.seen_s = time.monotonic()
+        self.pictures.came += 1
+        if not self.connected:
+            # Only a picture proves that there is a camera.
+            self.pictures.connections += 1
+            self.changed_s, self.connected, self.problem = self.seen_s, True, ""
+            self.since = datetime.now().astimezone().isoformat(timespec="seconds")
+            self._say.info(_OPEN, source=self.source)
+
+    def _is_wanted(self) -> bool:
+        period_s = 1.0 / self._rate_hz()
+        now_s = time.monotonic()
+        if now_s < self._next_s - _EARLY * period_s:
+            return False
+        self._next_s += period_s
+        if self._next_s < now_s:
+            self._next_s = now_s + period_s
+        return True
+
+    def _end(self) -> None:
+        self._away()
+        self.over, self.problem = True, self._say.text(_OVER, source=self.source)
+        self._say.info(_OVER, source=self.source)
+
+    def _lose(self, count: int) -> None:
+        self._complain(_LOST if count else _CANNOT)
+
+    def _complain(self, phrase: Phrase = _CANNOT) -> None:
+        self._away()
+        there = ", ".join(cameras())
+        others = self._say.text(_THERE if there else _NONE, cameras=there)
+        reason = self._say.text(self.source.why_not(), source=self.source, others=others)
+        self.problem = self._say.text(phrase, source=self.source, problem=reason)
+        every_s = _SAY_EVERY_S if phrase is _CANNOT else 0.0
+        self._say.warn(phrase, every_s=every_s, source=self.source, problem=reason)
+
+    def _away(self) -> None:
+        if self.connected:
+            self.changed_s = time.monotonic()
+        self.connected, self.since = False, ""
+
+
+def _silence_opencv() -> None:
+    """It and FFmpeg write to stderr in words of their own; what matters is told in ours."""
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "OFF")
+    import cv2
+
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)

@@ -1,0 +1,118 @@
+"""What the Pico tells, as ROS messages."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from geometry_msgs.msg import Quaternion, TransformStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import BatteryState, JointState
+from std_msgs.msg import Header
+
+from nodes.parts.drive import FRAME
+from nodes.parts.odometry import ODOM
+from robot.kinematics import turning_radius
+from robot.motion.geometry import quaternion_from_rpy
+from robot.motion.odometry import Pose, advance
+from robot.words import DriveSetpoint
+
+if TYPE_CHECKING:
+    from builtin_interfaces.msg import Time
+
+    from robot.wire.pico import Telemetry
+
+JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
+_LONGEST_GAP_S = 1.0
+"""Over a longer silence nobody knows where the robot went."""
+_SHARPEST_RAD = 1.4
+
+
+class DeadReckoning:
+    """Adds up where the wheels have taken the robot."""
+
+    def __init__(self, wheelbase_m: float, radius_m: float) -> None:
+        self._wheelbase_m, self._radius_m = wheelbase_m, radius_m
+        self._uptime_ms: int | None = None
+        self._angles = [0.0, 0.0]
+        self._odometry = Odometry(header=Header(frame_id=ODOM), child_frame_id=FRAME)
+        self.pose = Pose()
+
+    def take(self, telemetry: Telemetry) -> None:
+        """Go on to the time of this telemetry."""
+        before, self._uptime_ms = self._uptime_ms, telemetry.uptime_ms
+        passed_s = ((telemetry.uptime_ms - before) % 2**32) / 1000 if before is not None else 0.0
+        if passed_s > _LONGEST_GAP_S:
+            return
+        self.pose = advance(self.pose, self._command(telemetry), passed_s, self._wheelbase_m)
+        for side, speed in enumerate((telemetry.left_rad_s, telemetry.right_rad_s)):
+            self._angles[side] += speed * passed_s
+
+    def forget_time(self) -> None:
+        """The clock of the Pico begins anew."""
+        self._uptime_ms = None
+
+    def joints(self, telemetry: Telemetry, stamp: Time) -> JointState:
+        """For /joint_states: positions and speeds in the order of `JOINTS`."""
+        message = JointState(name=list(JOINTS))
+        message.header.stamp = stamp
+        message.position = [*self._angles, telemetry.steering_rad]
+        message.velocity = [telemetry.left_rad_s, telemetry.right_rad_s, math.nan]
+        return message
+
+    def odometry(self, telemetry: Telemetry, stamp: Time) -> Odometry:
+        """For /odom: the same message each time, filled anew."""
+        message = self._odometry
+        message.header.stamp = stamp
+        message.pose.pose.position.x = self.pose.x_m
+        message.pose.pose.position.y = self.pose.y_m
+        message.pose.pose.orientation = self._orientation()
+        command = self._command(telemetry)
+        radius_m = turning_radius(command.steering_rad, self._wheelbase_m)
+        message.twist.twist.linear.x = command.speed_m_s
+        message.twist.twist.angular.z = command.speed_m_s / radius_m
+        return message
+
+    def transform(self, stamp: Time) -> TransformStamped:
+        """For /tf: odom to base_link."""
+        message = TransformStamped()
+        message.header = Header(stamp=stamp, frame_id=ODOM)
+        message.child_frame_id = FRAME
+        moved = message.transform.translation
+        moved.x, moved.y = self.pose.x_m, self.pose.y_m
+        message.transform.rotation = self._orientation()
+        return message
+
+    def _orientation(self) -> Quaternion:
+        turn = quaternion_from_rpy(0.0, 0.0, self.pose.heading_rad)
+        return Quaternion(x=turn.x, y=turn.y, z=turn.z, w=turn.w)
+
+    def _command(self, telemetry: Telemetry) -> DriveSetpoint:
+        """What the robot does, as a drive."""
+        mean_rad_s = (telemetry.left_rad_s + telemetry.right_rad_s) / 2
+        steering = max(-_SHARPEST_RAD, min(_SHARPEST_RAD, telemetry.steering_rad))
+        return DriveSetpoint(mean_rad_s * self._radius_m, steering)
+
+
+def battery(telemetry: Telemetry, stamp: Time) -> BatteryState:
+    """For /battery; nan for what is not measured."""
+    message = BatteryState()
+    message.header.stamp = stamp
+    known = telemetry.battery_v is not None
+    message.voltage = telemetry.battery_v if known else math.nan
+    currents = (telemetry.left_a, telemetry.right_a)
+    told = [current for current in currents if current is not None]
+    # By the message: negative while it is discharged.
+    message.current = -sum(told) if told else math.nan
+    for field in ("temperature", "charge", "capacity", "design_capacity", "percentage"):
+        setattr(message, field, math.nan)
+    message.power_supply_status = BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
+    message.power_supply_health = (
+        BatteryState.POWER_SUPPLY_HEALTH_DEAD
+        if "U" in telemetry.flags
+        else BatteryState.POWER_SUPPLY_HEALTH_GOOD
+        if known
+        else BatteryState.POWER_SUPPLY_HEALTH_UNKNOWN
+    )
+    message.present = known
+    return message

@@ -1,0 +1,133 @@
+"""What the chassis says, and how it tells its state."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+from nodes.parts.speech import Phrase
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from nodes.drivers.pico import PicoClient
+    from nodes.parts.refusals import Refusal
+    from nodes.parts.speech import Speech
+    from robot.wire.pico import Telemetry
+
+STARTED = Phrase("The chassis at {port} obeys {topic}", "Шасси на {port} исполняет команды {topic}")
+COMMAND_OLD = Phrase(
+    "No wheel command for {seconds:g} s: stop", "Нет команд колёсам дольше {seconds:g} с: стоп"
+)
+TOO_FAST = Phrase(
+    "A wheel is asked for {speed:.1f} rad/s of {fastest:g}: both are slowed",
+    "От колеса требуют {speed:.1f} рад/с из {fastest:g}: замедляю оба",
+)
+EMERGENCY = Phrase(
+    "EMERGENCY STOP: the wheels stand until it is released",
+    "АВАРИЙНЫЙ СТОП: колёса стоят, пока его не снимут",
+)
+RELEASED = Phrase(
+    "The emergency stop is released; waiting for a new command",
+    "Аварийный стоп снят; жду новой команды",
+)
+_REFUSED_BY_PICO = Phrase(
+    "The Pico has refused {count} lines: damaged on their way, or more than its config.py allows",
+    "Pico отверг строк: {count}; они повреждены по пути или требуют больше, чем в его config.py",
+)
+STANDS = Phrase("The wheels stand: {reasons}", "Колёса стоят: {reasons}")
+_DRIVES = Phrase("ready to drive", "готово к движению")
+_NO_ANSWER = Phrase("no Pico answers at {port}", "Pico не отвечает на {port}")
+_REFUSED = Phrase("refused: {refused}", "отказано: {refused}")
+_FLAGS = {
+    "E": Phrase("emergency stop", "аварийный стоп"),
+    "W": Phrase("no drive line for 250 ms", "нет строк управления 250 мс"),
+    "L": Phrase("fault of the left motor driver", "авария драйвера левого мотора"),
+    "R": Phrase("fault of the right motor driver", "авария драйвера правого мотора"),
+    "U": Phrase("the battery is weak", "батарея разряжена"),
+    "H": Phrase("no handshake", "нет рукопожатия"),
+    "A": Phrase("waiting for a stop", "ждёт команды стоп"),
+}
+_BAD = frozenset("LRUH")
+"""Flags of what is not in order."""
+_SAY_EVERY_S = 10.0
+
+
+def reasons(say: Speech, flags: Iterable[str]) -> str:
+    """Why the wheels stand, in words."""
+    return ", ".join(say.text(phrase) for flag, phrase in _FLAGS.items() if flag in flags)
+
+
+class Standing:
+    """Tells in the log why the wheels stand: at once, and again for who looks later.
+
+    And what the Pico refuses, which makes them stand for a moment.
+    """
+
+    def __init__(self, say: Speech) -> None:
+        self._say = say
+        self._flags: frozenset[str] = frozenset()
+        self._refused: int | None = None
+
+    def tell(self, telemetry: Telemetry | None) -> None:
+        """Take the newest of the Pico, as often as it pleases; None if there is none."""
+        flags = telemetry.flags & _BAD if telemetry is not None else frozenset()
+        if flags:
+            every_s = 0.0 if flags - self._flags else _SAY_EVERY_S
+            self._say.error(STANDS, every_s=every_s, reasons=reasons(self._say, flags))
+        self._flags = flags
+        self._tell_refused(None if telemetry is None else telemetry.refused)
+
+    def _tell_refused(self, count: int | None) -> None:
+        """Take how many lines the Pico has refused since its start, None if that is not known."""
+        before = self._refused
+        if (
+            count is None
+            or before is None
+            or count < before
+            or (
+                count > before
+                and self._say.warn(_REFUSED_BY_PICO, every_s=_SAY_EVERY_S, count=count - before)
+            )
+        ):
+            self._refused = count
+
+
+def diagnosis(
+    say: Speech,
+    status: DiagnosticStatus,
+    pico: PicoClient,
+    emergency: bool,
+    refused: Refusal | None,
+) -> DiagnosticStatus:
+    """Add to the state of the port how the Pico is, for programs and for people."""
+    telemetry = pico.telemetry
+    status.values.append(KeyValue(key="emergency_stop", value=str(emergency).lower()))
+    status.values.append(KeyValue(key="refused", value=refused.told if refused else ""))
+    if telemetry is None or not pico.answers:
+        if pico.link.connected:
+            status.level = DiagnosticStatus.ERROR
+            status.message = say.text(_NO_ANSWER, port=pico.link.port)
+        return status
+    measured = {
+        "battery_v": telemetry.battery_v,
+        "left_a": telemetry.left_a,
+        "right_a": telemetry.right_a,
+    }
+    values = {
+        "flags": "".join(sorted(telemetry.flags)) or "-",
+        "refused_by_pico": str(telemetry.refused),
+        "lost": str(pico.lost),
+        **{key: "" if value is None else f"{value:.2f}" for key, value in measured.items()},
+    }
+    status.values += [KeyValue(key=key, value=value) for key, value in values.items()]
+    why = reasons(say, telemetry.flags)
+    status.message = say.text(STANDS, reasons=why) if why else say.text(_DRIVES)
+    if refused:
+        status.message += "; " + say.text(_REFUSED, refused=refused.words)
+        status.level = DiagnosticStatus.WARN
+    if why:
+        bad = telemetry.flags & _BAD
+        status.level = DiagnosticStatus.ERROR if bad else DiagnosticStatus.WARN
+    return status

@@ -1,0 +1,145 @@
+"""What the head says, and which parameters its servos have."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nodes.parts.parameters import Number, Setting, Switch, Text, Whole
+from nodes.parts.speech import Phrase
+from robot.limits import HEAD_ANGLE, Limits
+from robot.motion.head import HeadJoint
+from robot.wire.lsc16 import BAUD, SERVO
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from nodes.parts.parameters import Value
+
+STARTED = Phrase("The head is ready for {service}", "Голова готова, сервис {service}")
+STARTED_AT_PORT = Phrase(
+    "The head at {port}: {service}; /head_state is what was commanded, for servos do not tell"
+    " where they are",
+    "Голова на {port}: {service}; /head_state — это заданное положение: где они на деле,"
+    " сервоприводы не сообщают",
+)
+TURNING = Phrase(
+    "Turning the head to pan {pan}°, tilt {tilt}°", "Поворачиваю голову: pan {pan}°, tilt {tilt}°"
+)
+DONE = Phrase(
+    "The head is there: pan {pan}°, tilt {tilt}°", "Голова на месте: pan {pan}°, tilt {tilt}°"
+)
+WAITING = Phrase(
+    "The head is moving; pan {pan}°, tilt {tilt}° waits for its turn",
+    "Голова движется; pan {pan}°, tilt {tilt}° ждёт своей очереди",
+)
+OUT_OF_RANGE = Phrase(
+    "Refused: pan {pan}°, tilt {tilt}° — pan must be from {pan_low:g}° to {pan_high:g}°,"
+    " tilt from {tilt_low:g}° to {tilt_high:g}°",
+    "Отказ: pan {pan}°, tilt {tilt}° — pan нужно от {pan_low:g}° до {pan_high:g}°,"
+    " tilt — от {tilt_low:g}° до {tilt_high:g}°",
+)
+BUSY = Phrase(
+    "Refused: pan {pan}°, tilt {tilt}° — {count} requests are waiting already",
+    "Отказ: pan {pan}°, tilt {tilt}° — в очереди уже {count}",
+)
+NO_HEAD = Phrase(
+    "Refused: pan {pan}°, tilt {tilt}° — {reason}", "Отказ: pan {pan}°, tilt {tilt}° — {reason}"
+)
+
+SAME_SERVO = Phrase(
+    "pan_servo and tilt_servo are both {pan_servo}; each joint has a servo of its own",
+    "pan_servo и tilt_servo — оба {pan_servo}; у каждого сочленения свой сервопривод",
+)
+_NO_ROOM = {
+    "pan": Phrase(
+        "nothing is left between pan_min and pan_max, with pan_trim {pan_trim:g}",
+        "между pan_min и pan_max ничего не остаётся при pan_trim {pan_trim:g}",
+    ),
+    "tilt": Phrase(
+        "nothing is left between tilt_min and tilt_max, with tilt_trim {tilt_trim:g}",
+        "между tilt_min и tilt_max ничего не остаётся при tilt_trim {tilt_trim:g}",
+    ),
+}
+
+
+def _joint_settings(joint: str, servo: int, way: str) -> tuple[Setting, ...]:
+    low, high = float(HEAD_ANGLE.low), float(HEAD_ANGLE.high)
+    return (
+        Whole(
+            f"{joint}_servo",
+            servo,
+            f"Where the {joint} servo is plugged in",
+            fixed=True,
+            low=int(SERVO.low),
+            high=int(SERVO.high),
+        ),
+        Number(f"{joint}_min", low, f"Least {joint}", fixed=True, low=low, high=high, unit="deg"),
+        Number(f"{joint}_max", high, f"Most {joint}", fixed=True, low=low, high=high, unit="deg"),
+        Number(
+            f"{joint}_trim",
+            0.0,
+            f"What the {joint} servo turns for the head to look straight",
+            low=-45.0,
+            high=45.0,
+            unit="deg",
+        ),
+        Switch(
+            f"{joint}_reversed", False, f"Whether a longer pulse turns the head {way}", fixed=True
+        ),
+    )
+
+
+SERVO_SETTINGS: tuple[Setting, ...] = (
+    Text(
+        "port",
+        "",
+        "Of an LSC-16, as in /dev/serial/by-id; empty: simulated",
+        True,
+        may_be_empty=True,
+    ),
+    Whole("baud", BAUD, "Speed of the port", fixed=True, low=9600, high=921_600),
+    Number("speed", 90.0, "Of the servos, with a port", low=10.0, high=360.0, unit="deg/s"),
+    *_joint_settings("pan", 1, "right"),
+    *_joint_settings("tilt", 2, "down"),
+    Number(
+        "servo_turn",
+        180.0,
+        "Of a servo from its shortest to its longest pulse",
+        fixed=True,
+        low=90.0,
+        high=360.0,
+        unit="deg",
+    ),
+    Number(
+        "battery_every_s",
+        1.0,
+        "Asks for the voltage, which proves that there is a controller; 0: never",
+        fixed=True,
+        low=0.0,
+        high=60.0,
+        unit="s",
+    ),
+    Number("battery_low", 6.0, "Below this it warns", low=0.0, high=30.0, unit="V"),
+)
+
+
+def joint(values: Mapping[str, Value], name: str) -> HeadJoint:
+    """The joint that the parameters describe; `name` is pan or tilt."""
+    return HeadJoint(
+        servo=int(values[f"{name}_servo"]),
+        limits=Limits(float(values[f"{name}_min"]), float(values[f"{name}_max"]), "deg"),
+        trim_deg=float(values[f"{name}_trim"]),
+        reversed=bool(values[f"{name}_reversed"]),
+        turn_deg=float(values["servo_turn"]),
+    )
+
+
+def contradiction(values: Mapping[str, Value]) -> Phrase | None:
+    """What is wrong with these parameters taken together."""
+    if values["pan_servo"] == values["tilt_servo"]:
+        return SAME_SERVO
+    for name, phrase in _NO_ROOM.items():
+        reach = joint(values, name).reach
+        if reach.low >= reach.high:
+            return phrase
+    return None

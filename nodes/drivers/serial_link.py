@@ -1,0 +1,238 @@
+"""A serial port that comes and goes: a thread of its own reads it, and opens it again for ever.
+
+Only one program at a time gets a port (an advisory lock, which pyserial and we respect). The
+callbacks run on the reader's thread. What goes over it is told on `~/frames` to whoever listens.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import termios
+import threading
+import time
+from dataclasses import dataclass
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import serial
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+from nodes.drivers.serial_frames import SerialFrames
+from nodes.drivers.serial_reads import SerialReads
+from nodes.parts.speech import Phrase
+from robot.frames.protocols import RawReader
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from nodes.parts.node import LessonNode
+    from robot.frames.protocols import FrameReader
+
+BAD = (OSError, termios.error, serial.SerialException, TypeError)
+"""What pyserial raises when a cable is pulled; TypeError is how it sees its port closed."""
+_FIRST_WAIT_S, _LONGEST_WAIT_S = 0.1, 1.0
+_WRITE_S = 0.1
+_SAY_EVERY_S = 10.0
+
+_OPEN = Phrase("Connected to {port}, {baud} baud", "Подключено: {port}, {baud} бод")
+_LOST = Phrase("Lost {port}: {problem}", "Потерян {port}: {problem}")
+_PROBLEMS = {
+    errno.ENOENT: Phrase(
+        "no such port; plug it in, or set the parameter port (ls /dev/serial/by-id)",
+        "нет такого порта; подключите его или задайте параметр port (ls /dev/serial/by-id)",
+    ),
+    errno.EACCES: Phrase(
+        "no permission; sudo usermod -aG dialout $USER, then log in again",
+        "нет прав; sudo usermod -aG dialout $USER, затем войдите заново",
+    ),
+    errno.EAGAIN: Phrase(
+        "another program is using it; close that one (fuser -v {port})",
+        "занят другой программой; закройте её (fuser -v {port})",
+    ),
+    errno.ENOTTY: Phrase("it is not a serial port", "это не последовательный порт"),
+}
+_PROBLEMS[errno.EBUSY] = _PROBLEMS[errno.EAGAIN]
+_PROBLEMS[errno.EPERM] = _PROBLEMS[errno.EACCES]
+_OTHER = Phrase("{problem}", "{problem}")
+_NOT_YET = Phrase("not yet connected to {port}", "ещё не подключено: {port}")
+_CANNOT = Phrase("Cannot open {port}: {problem}", "Не удалось открыть {port}: {problem}")
+_SINCE = Phrase("connected to {port} for {seconds:.0f} s", "подключено: {port}, {seconds:.0f} с")
+
+
+@dataclass
+class Traffic:
+    """What went through since the start of the node."""
+
+    octets_in: int = 0
+    octets_out: int = 0
+    connections: int = 0
+
+
+class SerialLink:
+    """Keeps a port open; `start` it, and `close` it at the end."""
+
+    def __init__(
+        self,
+        node: LessonNode,
+        baud: int,
+        heard: Callable[[bytes], None],
+        opened: Callable[[], None],
+        lost: Callable[[], None],
+        frames: Callable[[str], FrameReader] = RawReader,
+    ) -> None:
+        """The port is the node's parameter `port`.
+
+        `frames` makes what reads the frames of this device, for people, and speaks a language.
+        """
+        self._say, self.port, self.baud = node.say, node.text("port"), baud
+        self._heard, self._opened, self._lost = heard, opened, lost
+        self.traffic = Traffic()
+        self._frames = SerialFrames(node, frames)
+        self._serial: serial.Serial | None = None
+        self._since_s, self._since = time.monotonic(), ""
+        self._problem = ""
+        self._writes = threading.Lock()
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._live, name="serial", daemon=True)
+        self._told = (time.monotonic(), (0, 0, 0, 0))
+
+    @property
+    def connected(self) -> bool:
+        """Whether the port is open."""
+        return self._serial is not None
+
+    def start(self) -> None:
+        """Begin to open the port, and to read it."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """End the thread and close the port."""
+        self._ending.set()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(0.4)
+
+    def write(self, data: bytes) -> bool:
+        """Send, False if that is not possible now. From any thread."""
+        with self._writes:
+            if self._serial is None:
+                return False
+            try:
+                self._serial.write(data)
+            except BAD as error:
+                # The reader finds out by itself, and opens the port anew.
+                self._problem = _words(error)
+                return False
+            self.traffic.octets_out += len(data)
+            self._frames.note("out", data)
+            return True
+
+    def status(self, name: str, errors: int, frames: int = 0) -> DiagnosticStatus:
+        """For /diagnostics: to what it is connected, since when, bytes and errors a second.
+
+        `errors` and `frames` that came in are counted by the caller, since the start.
+        """
+        seconds = time.monotonic() - self._since_s
+        connected = self.connected
+        message = self._told_state(connected, seconds)
+        rates = self._rates(errors, frames)
+        values = {
+            "port": self.port,
+            "connected": str(connected).lower(),
+            "connected_since": self._since,
+            "seconds": f"{seconds:.1f}",
+            "connections": str(self.traffic.connections),
+            "reconnects": str(max(0, self.traffic.connections - 1)),
+            "bytes_in_per_s": f"{rates[0]:.0f}",
+            "bytes_out_per_s": f"{rates[1]:.0f}",
+            "frames_in_per_s": f"{rates[2]:.1f}",
+            "errors_per_s": f"{rates[3]:.1f}",
+            "errors": str(errors),
+        }
+        return DiagnosticStatus(
+            level=DiagnosticStatus.OK if connected else DiagnosticStatus.ERROR,
+            name=name,
+            message=message,
+            hardware_id=self.port,
+            values=[KeyValue(key=key, value=value) for key, value in values.items()],
+        )
+
+    def _told_state(self, connected: bool, seconds: float) -> str:
+        if connected:
+            return self._say.text(_SINCE, port=self.port, seconds=seconds)
+        phrase = _CANNOT if self._problem else _NOT_YET
+        return self._say.text(phrase, port=self.port, problem=self._problem)
+
+    def _rates(self, errors: int, frames: int) -> list[float]:
+        """Bytes in, bytes out, frames and errors a second, since this was asked before."""
+        now_s = time.monotonic()
+        counts = (self.traffic.octets_in, self.traffic.octets_out, frames, errors)
+        told_s, told = self._told
+        self._told = (now_s, counts)
+        passed_s = max(1e-3, now_s - told_s)
+        # A device that has started anew counts its errors anew.
+        return [max(0, new - old) / passed_s for new, old in zip(counts, told, strict=True)]
+
+    # ---------------------------------------------------------------- the reader's thread
+
+    def _live(self) -> None:
+        wait_s = _FIRST_WAIT_S
+        while not self._ending.is_set():
+            port = self._open()
+            if port is not None:
+                wait_s = _FIRST_WAIT_S
+                self._read(port)
+            self._ending.wait(wait_s)
+            wait_s = min(2 * wait_s, _LONGEST_WAIT_S)
+
+    def _open(self) -> serial.Serial | None:
+        try:
+            port = serial.Serial(self.port, self.baud, write_timeout=_WRITE_S, exclusive=True)
+        except (*BAD, ValueError) as error:
+            self._problem = self._explain(error)
+            self._say.warn(_CANNOT, every_s=_SAY_EVERY_S, port=self.port, problem=self._problem)
+            return None
+        self.traffic.connections += 1
+        self._since = datetime.now().astimezone().isoformat(timespec="seconds")
+        self._since_s, self._serial = time.monotonic(), port
+        self._say.info(_OPEN, port=self.port, baud=self.baud)
+        self._opened()
+        return port
+
+    def _read(self, port: serial.Serial) -> None:
+        try:
+            reads = SerialReads(port)
+            while not self._ending.is_set():
+                data = reads.read()
+                if data:
+                    self.traffic.octets_in += len(data)
+                    self._frames.note("in", data)
+                    self._heard(data)
+                elif not _is_there(self.port):
+                    raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+        except BAD as error:
+            self._problem = self._explain(error)
+            if not self._ending.is_set():
+                self._say.warn(_LOST, port=self.port, problem=self._problem)
+        finally:
+            with self._writes:
+                self._serial, self._since_s, self._since = None, time.monotonic(), ""
+                with contextlib.suppress(*BAD):
+                    port.close()
+            self._lost()
+
+    def _explain(self, error: BaseException) -> str:
+        cause = error.__context__ if isinstance(error.__context__, termios.error) else error
+        number = cause.args[0] if cause.args and isinstance(cause.args[0], int) else None
+        phrase = _PROBLEMS.get(number, _OTHER) if number is not None else _OTHER
+        return self._say.text(phrase, port=self.port, problem=_words(error))
+
+
+def _is_there(port: str) -> bool:
+    """Whether a port still has its name; one that has none (`socket://`) always is."""
+    return "://" in port or os.path.lexists(port)
+
+
+def _words(error: BaseException) -> str:
+    return str(error).splitlines()[0] if str(error) else type(error).__name__

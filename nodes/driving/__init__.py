@@ -1,0 +1,1 @@
+"""Driving to a point, and driving for a while: goals, repetition, words."""

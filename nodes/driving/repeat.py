@@ -1,0 +1,90 @@
+"""Says on /drive what a word or a model asks for: once, as in the course, or for a while.
+
+A gate obeys no command that is old, so that a source that has died stops the robot. Who speaks
+once a command then has to repeat it; how long a word moves the robot is for the parameter to say.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from ackermann_msgs.msg import AckermannDriveStamped
+from rclpy.duration import Duration
+
+from nodes.parts.drive import to_message
+from nodes.parts.emergency import EmergencyStop
+from nodes.parts.parameters import Number
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import DEPTH, DRIVE
+from robot.words import STOP
+
+if TYPE_CHECKING:
+    from nodes.parts.node import LessonNode
+    from robot.words import DriveSetpoint
+
+REPEAT_FOR_S = Number(
+    "repeat_for_s",
+    0.0,
+    "A command is said 10 times a second for so long, then a stop; 0: it is said once",
+    fixed=True,
+    high=60.0,
+    unit="s",
+)
+_EVERY_S = 0.1
+_LAST_STOP = Duration(seconds=0.2)
+"""How long the last stop may take to reach everybody."""
+_OVER = Phrase(
+    "The command was repeated for {seconds:g} s: stop", "Команда длилась {seconds:g} с: стоп"
+)
+
+
+class DriveVoice:
+    """Publishes /drive for a node that has `REPEAT_FOR_S` among its settings."""
+
+    def __init__(self, node: LessonNode) -> None:
+        self._node, self._for_s = node, node.number(REPEAT_FOR_S.name)
+        self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
+        self._setpoint, self._until_s = STOP, 0.0
+        if self._for_s:
+            self._emergency = EmergencyStop(node, self._emergency_changed)
+            self._timer = node.every(_EVERY_S, self._again)
+            self._timer.cancel()
+
+    def say(self, setpoint: DriveSetpoint) -> None:
+        """Ask for this from now on, in place of what was asked for before."""
+        self._publish(setpoint)
+        if not self._for_s:
+            return
+        if setpoint == STOP or self._emergency.active:
+            self._timer.cancel()
+        else:
+            self._until_s = time.monotonic() + self._for_s
+            self._timer.reset()
+
+    def hush(self) -> None:
+        """Stop, if something is being repeated."""
+        if self._for_s and not self._timer.is_canceled():
+            self._timer.cancel()
+            self._publish(STOP)
+
+    def end(self) -> None:
+        """Stop as `hush` does, and see to it that it is heard: the node is about to end."""
+        if self._for_s and not self._timer.is_canceled():
+            self.hush()
+            self._publisher.wait_for_all_acked(_LAST_STOP)
+
+    def _again(self) -> None:
+        if time.monotonic() < self._until_s:
+            self._publish(self._setpoint)
+        else:
+            self.hush()
+            self._node.say.info(_OVER, seconds=self._for_s)
+
+    def _emergency_changed(self, active: bool) -> None:
+        if active:
+            self.hush()
+
+    def _publish(self, setpoint: DriveSetpoint) -> None:
+        self._setpoint = setpoint
+        self._publisher.publish(to_message(self._node, setpoint))

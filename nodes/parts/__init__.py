@@ -1,0 +1,1 @@
+"""What nodes are made of: their life, parameters, voice, and how they obey the emergency stop."""

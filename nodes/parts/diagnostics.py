@@ -1,0 +1,29 @@
+"""/diagnostics, where every driver says how it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from diagnostic_msgs.msg import DiagnosticArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from diagnostic_msgs.msg import DiagnosticStatus
+
+    from nodes.parts.node import LessonNode
+
+DIAGNOSTICS = "/diagnostics"
+_EVERY_S = 1.0
+
+
+def tell_every_second(node: LessonNode, status: Callable[[], DiagnosticStatus]) -> None:
+    """Publish a status once a second from now on."""
+    publisher = node.quick_publisher(DiagnosticArray, DIAGNOSTICS)
+
+    def tell() -> None:
+        message = DiagnosticArray(status=[status()])
+        message.header.stamp = node.get_clock().now().to_msg()
+        publisher.publish(message)
+
+    node.every(_EVERY_S, tell)

@@ -1,0 +1,121 @@
+"""Asks the head to turn, one request after the other, and never waits for it.
+
+A service that is not there (yet), and an answer that does not come, end in a word after a while.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from example_interfaces.srv import AddTwoInts
+
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import HEAD_SERVICE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.task import Future
+
+    from nodes.parts.node import LessonNode
+
+APPEAR_S = 1.0
+"""How long a service that is not there may take to appear: discovery has a tail."""
+_CHECK_EVERY_S = 0.1
+
+ABSENT = Phrase(
+    "the service {service} is not there: is head_controller running?",
+    "сервиса {service} нет: запущен ли head_controller?",
+)
+LATE = Phrase(
+    "no answer from {service} for {seconds:g} s", "нет ответа от {service} дольше {seconds:g} с"
+)
+
+DROPPED = Phrase("dropped for newer commands", "отброшено ради новых команд")
+
+
+@dataclass(frozen=True)
+class HeadAnswer:
+    """What came of one request."""
+
+    pan: int
+    tilt: int
+    sum: int | None = None
+    """1 done, 0 refused, None if there was no answer."""
+    trouble: str = ""
+    """Why there was none, in the language of the node."""
+
+
+@dataclass(frozen=True)
+class _Request:
+    pan: int
+    tilt: int
+    report: Callable[[HeadAnswer], None]
+
+
+class HeadClient:
+    """A queue of requests to the head of which one is under way."""
+
+    def __init__(self, node: LessonNode, timeout_s: Callable[[], float]) -> None:
+        self._node = node
+        self._timeout_s = timeout_s
+        self._client = node.create_client(AddTwoInts, HEAD_SERVICE)
+        self._queue: deque[_Request] = deque()
+        self._call: Future | None = None
+        self._asked_s = 0.0
+        self._timer = node.every(_CHECK_EVERY_S, self._check)
+        self._timer.cancel()
+
+    def turn(self, pan: int, tilt: int, report: Callable[[HeadAnswer], None]) -> None:
+        """Ask for a pose, in degrees, after those asked for before; `report` tells the end."""
+        self._queue.append(_Request(pan, tilt, report))
+        if len(self._queue) == 1:
+            self._ask()
+
+    def forget(self) -> None:
+        """Drop what has not been asked yet."""
+        under_way = self._queue.popleft() if self._queue else None
+        dropped, self._queue = self._queue, deque([under_way] if under_way else [])
+        for request in dropped:
+            trouble = self._node.say.text(DROPPED)
+            request.report(HeadAnswer(request.pan, request.tilt, trouble=trouble))
+
+    def _ask(self) -> None:
+        self._asked_s = time.monotonic()
+        self._timer.reset()
+        self._call_if_there()
+
+    def _call_if_there(self) -> None:
+        if self._client.service_is_ready():
+            request = self._queue[0]
+            self._asked_s = time.monotonic()
+            self._call = self._client.call_async(AddTwoInts.Request(a=request.pan, b=request.tilt))
+            self._call.add_done_callback(self._answered)
+
+    def _check(self) -> None:
+        if self._call is None:
+            self._call_if_there()
+        waited_s = time.monotonic() - self._asked_s
+        if self._call is None and waited_s > APPEAR_S:
+            self._finish(trouble=self._node.say.text(ABSENT, service=HEAD_SERVICE))
+        elif self._call is not None and waited_s > self._timeout_s():
+            self._client.remove_pending_request(self._call)
+            late = self._node.say.text(LATE, service=HEAD_SERVICE, seconds=self._timeout_s())
+            self._finish(trouble=late)
+
+    def _answered(self, call: Future) -> None:
+        # An answer may come in after it was given up.
+        if call is self._call:
+            response = call.result()
+            self._finish(total=None if response is None else response.sum)
+
+    def _finish(self, total: int | None = None, trouble: str = "") -> None:
+        self._call = None
+        self._timer.cancel()
+        request = self._queue.popleft()
+        request.report(HeadAnswer(request.pan, request.tilt, total, trouble))
+        if self._queue and self._call is None:
+            self._ask()

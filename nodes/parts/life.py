@@ -1,0 +1,148 @@
+"""How a node lives: it starts or says in one line why not, and ends when asked to, in order.
+
+Signals do not interrupt a node anywhere in its code. They reach a thread through a pipe
+(`signal.set_wakeup_fd`), which asks the loop to end after the callback of the moment; the context
+is still valid then, so a node that moves something can send a last stop. A callback that does not
+come back is not waited for.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import gc
+import os
+import signal
+import sys
+import threading
+from typing import TYPE_CHECKING
+
+import rclpy
+from rclpy.exceptions import NameValidationException
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.logging import get_logger
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args, try_shutdown
+
+from nodes.parts.node import LessonNode, UsageError
+from nodes.parts.speech import Phrase, Speech, language
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+GRACE_S = 0.7
+"""How long the callback of the moment, and the good-byes after it, may take."""
+DDS_GRACE_S = 3.0
+"""How long the middleware may take to close a node."""
+USAGE = 2
+"""Exit code for arguments and parameters that make no sense."""
+
+_FAILED = Phrase("{problem}", "{problem}")
+_NO_ARGUMENTS = Phrase(
+    "does not know {extra}: parameters are given as --ros-args -p name:=value (see --help)",
+    "не знает {extra}: параметры задаются так: --ros-args -p имя:=значение (см. --help)",
+)
+
+
+def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
+    """Live as a node until SIGINT or SIGTERM; the exit code comes back.
+
+    `args` are the arguments without the program's name, by default those of this process. The
+    process belongs to the node from here on, signal handlers included.
+    """
+    arguments = sys.argv[1:] if args is None else list(args)
+    if {"-h", "--help"} & set(arguments):
+        sys.stdout.write(node_type.usage())
+        return 0
+    ending = Ending()
+    try:
+        return _live(node_type, arguments, ending)
+    except UsageError as error:
+        speech = Speech(get_logger(node_type.NAME), language(os.environ))
+        speech.fatal(error.phrase, **error.values)
+        return USAGE
+    finally:
+        try_shutdown()
+        faulthandler.cancel_dump_traceback_later()
+        ending.done()
+
+
+def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> int:
+    try:
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        # rclpy's own error types are not public; the tail of the message is a place in C code.
+        raise UsageError(_FAILED, problem=str(error).split(", at /")[0]) from None
+    extra = [word for word in remove_ros_args(arguments) if word]
+    if extra:
+        raise UsageError(_NO_ARGUMENTS, extra=" ".join(extra))
+    try:
+        node = node_type()
+    except NameValidationException as error:
+        raise UsageError(_FAILED, problem=" ".join(str(error).split())) from None
+    # What is there by now stays: to look through it for garbage would hold up a callback.
+    gc.freeze()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    ending.wake_with(lambda: executor.create_task(_nothing))
+    try:
+        while not ending.asked:
+            executor.spin_once()
+        node.before_end()
+    except ExternalShutdownException:
+        pass
+    _give_dds_time()
+    executor.shutdown()
+    node.destroy_node()  # type: ignore[no-untyped-call]
+    return 0
+
+
+def _give_dds_time() -> None:
+    """End the process, with code 1, if closing the node takes longer than `DDS_GRACE_S`.
+
+    Fast DDS 2.14 has been seen to spin without end while it closes a participant, in C with the
+    interpreter's lock held: no Python thread gets to end the process then, faulthandler's does.
+    """
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    faulthandler.dump_traceback_later(DDS_GRACE_S, exit=True, file=nowhere)
+
+
+class Ending:
+    """Turns the first SIGINT or SIGTERM into a wish to end, and sees to it that it is granted."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        """Whether a signal came."""
+        self._wake: Callable[[], object] = _nothing
+        self._done = threading.Event()
+        self._pipe, writer = os.pipe()
+        os.set_blocking(writer, False)
+        signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+        for number in SIGNALS:
+            signal.signal(number, _ignore)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+        threading.Thread(target=self._watch, name="signals", daemon=True).start()
+
+    def wake_with(self, wake: Callable[[], object]) -> None:
+        """Call `wake`, from another thread, when the signal comes."""
+        self._wake = wake
+
+    def done(self) -> None:
+        """Everything is said and closed."""
+        self._done.set()
+
+    def _watch(self) -> None:
+        os.read(self._pipe, 1)
+        self.asked = True
+        self._wake()
+        if not self._done.wait(GRACE_S):
+            os._exit(0)
+
+
+def _nothing() -> None:
+    pass
+
+
+def _ignore(_number: int, _frame: FrameType | None) -> None:
+    """Let the signal go through the pipe alone."""

@@ -1,0 +1,205 @@
+"""What every lesson node is: a ROS node with described parameters and a voice."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import os
+import sys
+from typing import TYPE_CHECKING, ClassVar
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from nodes.parts.parameters import BadValueError, Setting, Value
+from nodes.parts.speech import Phrase, Speech, language
+from nodes.parts.topics import DEPTH
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from rclpy.publisher import Publisher
+    from rclpy.timer import Timer
+
+_BAD_VALUE = Phrase(
+    "parameter {name} is {value!r}, but must be {expected}; for example: -p {name}:={example}",
+    "параметр {name} равен {value!r}, а должен быть {expected}; например: -p {name}:={example}",
+)
+_UNKNOWN_NEAR = Phrase(
+    "there is no parameter {name}; did you mean {near}?",
+    "нет параметра {name}; может быть, {near}?",
+)
+_UNKNOWN = Phrase(
+    "there is no parameter {name}; there are: {known}",
+    "нет параметра {name}; есть: {known}",
+)
+_OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")
+"""Beginnings of names that rclpy sees to by itself."""
+
+
+class UsageError(Exception):
+    """The node cannot start as it was asked to; nothing is wrong with its code."""
+
+    def __init__(self, phrase: Phrase, **values: object) -> None:
+        super().__init__(phrase.en.format(**values))
+        self.phrase = phrase
+        self.values = values
+
+
+def change_period(timer: Timer, period_s: float) -> None:
+    """Let a timer run at another pace from now on."""
+    timer.timer_period_ns = int(period_s * 1e9)
+    timer.reset()
+
+
+class LessonNode(Node):
+    """Base of the lesson nodes; raises `UsageError` for parameters that make no sense."""
+
+    NAME: ClassVar[str]
+    """Name in the graph, unless it is remapped."""
+    SETTINGS: ClassVar[tuple[Setting, ...]] = ()
+
+    def __init__(self) -> None:
+        super().__init__(self.NAME, automatically_declare_parameters_from_overrides=True)
+        logger = self.get_logger()  # type: ignore[no-untyped-call]
+        self.say = Speech(logger, language(os.environ))
+        self._settings = {setting.name: setting for setting in self.SETTINGS}
+        self._values: dict[str, Value] = {}
+        self._declare()
+        self.add_pre_set_parameters_callback(self._with_points)
+        self.add_on_set_parameters_callback(self._check)
+        self.add_post_set_parameters_callback(self._take)
+
+    def number(self, name: str) -> float:
+        """Current value of a `Number` or a `Whole`."""
+        return float(self._values[name])
+
+    def text(self, name: str) -> str:
+        """Current value of a `Text` or a `Choice`."""
+        return str(self._values[name])
+
+    def switch(self, name: str) -> bool:
+        """Current value of a `Switch`."""
+        return bool(self._values[name])
+
+    def contradiction(self, _values: Mapping[str, Value]) -> Phrase | None:
+        """What is wrong with these values taken together, None if nothing is."""
+        return None
+
+    def parameters_changed(self) -> None:
+        """New values have just been taken, at run time."""
+
+    def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
+        """Call back by a clock that never jumps: a Pi sets its own when it finds a network."""
+        return self.create_timer(period_s, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def quick_publisher(self, kind: type, topic: str) -> Publisher:
+        """A publisher that does not tell of subscriptions that do not fit: they do so themselves.
+
+        A node looks at all that may be told each time it wakes up, which is most of what waking up
+        costs: worth it for one that does so 20 times a second and more.
+        """
+        quiet = PublisherEventCallbacks(use_default_callbacks=False)
+        return self.create_publisher(kind, topic, DEPTH, event_callbacks=quiet)
+
+    def before_end(self) -> None:
+        """The node is about to end; the graph can still be talked to."""
+
+    @classmethod
+    def usage(cls) -> str:
+        """What the node is for and which parameters it has, for a terminal."""
+        module = sys.modules[cls.__module__]
+        name = module.__spec__.name if module.__spec__ else cls.__module__
+        lines = [
+            inspect.getdoc(module) or "",
+            "",
+            f"python -m {name} --ros-args -p NAME:=VALUE",
+            "",
+        ]
+        for setting in cls.SETTINGS:
+            lines.append(f"  {setting.name} = {setting.default!r}  ({setting.expected()})")
+            lines.append(f"      {setting.about}")
+        return "\n".join(lines) + "\n"
+
+    # ---------------------------------------------------------------- parameters
+
+    def _declare(self) -> None:
+        given = {name: self.get_parameter(name).value for name in self.get_parameters_by_prefix("")}
+        for name in given:
+            if name not in self._settings and not name.startswith(_OWN_TO_ROS):
+                raise self._unknown(name)
+        for name, setting in self._settings.items():
+            if name in given:
+                self.undeclare_parameter(name)
+            value = given.get(name, setting.default)
+            try:
+                self._values[name] = setting.accept(value)
+            except BadValueError as error:
+                raise UsageError(_BAD_VALUE, **self._complaint(setting, value, error)) from None
+            self.declare_parameter(
+                name, self._values[name], setting.descriptor(), ignore_override=True
+            )
+        problem = self.contradiction(self._values)
+        if problem is not None:
+            raise UsageError(problem, **self._values)
+
+    def _unknown(self, name: str) -> UsageError:
+        near = difflib.get_close_matches(name, self._settings, n=1)
+        if near:
+            return UsageError(_UNKNOWN_NEAR, name=name, near=near[0])
+        return UsageError(_UNKNOWN, name=name, known=", ".join(self._settings) or "-")
+
+    def _complaint(
+        self, setting: Setting, value: object, error: BadValueError
+    ) -> dict[str, object]:
+        return {
+            "name": setting.name,
+            "value": value,
+            "expected": self.say.text(error.expected, **error.values).rstrip(),
+            "example": str(setting.default).lower()
+            if isinstance(setting.default, bool)
+            else setting.default,
+        }
+
+    def _with_points(self, parameters: Sequence[Parameter]) -> list[Parameter]:
+        """Take `rate:=2` for `rate:=2.0`: ROS itself is strict about it."""
+        return [self._with_point(parameter) for parameter in parameters]
+
+    def _with_point(self, parameter: Parameter) -> Parameter:
+        setting = self._settings.get(parameter.name)
+        if (
+            setting is not None
+            and setting.kind == Parameter.Type.DOUBLE
+            and parameter.type_ == Parameter.Type.INTEGER
+        ):
+            return Parameter(parameter.name, Parameter.Type.DOUBLE, float(parameter.value))
+        return parameter
+
+    def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
+        wanted = dict(self._values)
+        for parameter in parameters:
+            setting = self._settings.get(parameter.name)
+            if setting is None:
+                continue
+            try:
+                wanted[parameter.name] = setting.accept(parameter.value)
+            except BadValueError as error:
+                reason = self.say.text(
+                    _BAD_VALUE, **self._complaint(setting, parameter.value, error)
+                )
+                return SetParametersResult(successful=False, reason=reason)
+        problem = self.contradiction(wanted)
+        if problem is not None:
+            return SetParametersResult(successful=False, reason=self.say.text(problem, **wanted))
+        return SetParametersResult(successful=True)
+
+    def _take(self, parameters: Sequence[Parameter]) -> None:
+        mine = [parameter for parameter in parameters if parameter.name in self._settings]
+        for parameter in mine:
+            self._values[parameter.name] = self._settings[parameter.name].accept(parameter.value)
+        if mine:
+            self.parameters_changed()

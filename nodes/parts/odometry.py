@@ -1,0 +1,43 @@
+"""/odom as a node hears it: where the robot is, how old that is, and who says so."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from nav_msgs.msg import Odometry
+
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import NEWEST_OF_ANY, ODOMETRY
+from robot.motion.odometry import Pose, yaw_from_quaternion
+
+if TYPE_CHECKING:
+    from nodes.parts.node import LessonNode
+
+ODOM = "odom"
+"""The frame in which /odom tells where the robot is (REP-105)."""
+_NO_NUMBER = Phrase("{topic} is no number, not believed", "В {topic} не числа: сообщение не учтено")
+
+
+class OdometryListener:
+    """Keeps the newest pose; one that is no number counts as none."""
+
+    def __init__(self, node: LessonNode) -> None:
+        self._say = node.say
+        self._heard_s = time.monotonic()
+        self.pose: Pose | None = None
+        """The newest one, None before the first."""
+        node.create_subscription(Odometry, ODOMETRY, self._hear, NEWEST_OF_ANY)
+
+    @property
+    def age_s(self) -> float:
+        """Seconds since the newest pose, or since the start if there is none."""
+        return time.monotonic() - self._heard_s
+
+    def _hear(self, message: Odometry) -> None:
+        place, turn = message.pose.pose.position, message.pose.pose.orientation
+        pose = Pose(place.x, place.y, yaw_from_quaternion(turn.x, turn.y, turn.z, turn.w))
+        if pose.is_finite:
+            self.pose, self._heard_s = pose, time.monotonic()
+        else:
+            self._say.warn(_NO_NUMBER, every_s=1.0, topic=ODOMETRY)

@@ -1,0 +1,194 @@
+"""Parameters that say what they mean, and refuse values that mean nothing.
+
+A node lists its parameters as data. ROS gets descriptors with ranges from that list, and a value
+that does not fit is refused at the start and at run time, with a sentence that names the mend.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Union
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.parameter import Parameter
+
+from nodes.parts.speech import Phrase
+
+Value = Union[bool, int, float, str]  # noqa: UP007 - evaluated, and Python 3.10 takes it
+
+_KINDS = {
+    bool: Parameter.Type.BOOL,
+    int: Parameter.Type.INTEGER,
+    float: Parameter.Type.DOUBLE,
+    str: Parameter.Type.STRING,
+}
+
+
+class BadValueError(ValueError):
+    """A value that a parameter cannot take."""
+
+    def __init__(self, expected: Phrase, **values: object) -> None:
+        super().__init__(expected.en.format(**values))
+        self.expected = expected
+        """What would be right, to follow "is X, but must be"."""
+        self.values = values
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One parameter of a node."""
+
+    name: str
+    default: Value
+    about: str
+    fixed: bool = False
+    """Whether it can be set at the start only."""
+
+    @property
+    def kind(self) -> Parameter.Type:
+        """The type that ROS shows."""
+        return _KINDS[type(self.default)]
+
+    def accept(self, value: object) -> Value:
+        """The value as this parameter keeps it; raises `BadValueError`."""
+        raise NotImplementedError
+
+    def expected(self) -> str:
+        """What it takes, in a few words, for the help."""
+        raise NotImplementedError
+
+    def descriptor(self) -> ParameterDescriptor:
+        """How it describes itself to ROS tools."""
+        return ParameterDescriptor(
+            name=self.name,
+            type=self.kind.value,
+            description=self.about,
+            read_only=self.fixed,
+            additional_constraints=self.expected(),
+        )
+
+
+@dataclass(frozen=True)
+class Number(Setting):
+    """A measure with a range; a whole number is taken as well as one with a point."""
+
+    low: float = 0.0
+    high: float = 0.0
+    unit: str = ""
+
+    def accept(self, value: object) -> float:
+        """A float inside the range."""
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            number = float(value)
+            # Written so that nan is refused.
+            if self.low <= number <= self.high:
+                return number
+        raise BadValueError(
+            Phrase("a number from {low} to {high} {unit}", "числом от {low} до {high} {unit}"),
+            # As one types them.
+            low=f"{self.low:g}",
+            high=f"{self.high:g}",
+            unit=self.unit,
+        )
+
+    def expected(self) -> str:
+        """The range and the unit."""
+        return f"{self.low:g} .. {self.high:g} {self.unit}".rstrip()
+
+    def descriptor(self) -> ParameterDescriptor:
+        """With a floating point range."""
+        descriptor = super().descriptor()
+        descriptor.floating_point_range = [
+            FloatingPointRange(from_value=float(self.low), to_value=float(self.high))
+        ]
+        return descriptor
+
+
+@dataclass(frozen=True)
+class Whole(Setting):
+    """A whole number with a range."""
+
+    low: int = 0
+    high: int = 0
+    unit: str = ""
+
+    def accept(self, value: object) -> int:
+        """An int inside the range."""
+        if (
+            isinstance(value, int)
+            and not isinstance(value, bool)
+            and self.low <= value <= self.high
+        ):
+            return value
+        raise BadValueError(
+            Phrase(
+                "a whole number from {low} to {high} {unit}",
+                "целым числом от {low} до {high} {unit}",
+            ),
+            low=self.low,
+            high=self.high,
+            unit=self.unit,
+        )
+
+    def expected(self) -> str:
+        """The range and the unit."""
+        return f"{self.low} .. {self.high} {self.unit}".rstrip()
+
+    def descriptor(self) -> ParameterDescriptor:
+        """With an integer range."""
+        descriptor = super().descriptor()
+        descriptor.integer_range = [IntegerRange(from_value=self.low, to_value=self.high)]
+        return descriptor
+
+
+@dataclass(frozen=True)
+class Switch(Setting):
+    """True or false."""
+
+    def accept(self, value: object) -> bool:
+        """A bool, and nothing that is merely like one."""
+        if isinstance(value, bool):
+            return value
+        raise BadValueError(Phrase("true or false", "true или false"))
+
+    def expected(self) -> str:
+        """The two values."""
+        return "true, false"
+
+
+@dataclass(frozen=True)
+class Text(Setting):
+    """A text; an empty one only where `may_be_empty`."""
+
+    may_be_empty: bool = False
+
+    def accept(self, value: object) -> str:
+        """A str."""
+        if isinstance(value, str) and (value.strip() or self.may_be_empty):
+            return value
+        raise BadValueError(
+            Phrase("a text (in quotes if it looks like a number)", "текстом (число — в кавычках)")
+        )
+
+    def expected(self) -> str:
+        """Whether it may be empty."""
+        return "text, may be empty" if self.may_be_empty else "text"
+
+
+@dataclass(frozen=True)
+class Choice(Setting):
+    """One of a few words."""
+
+    choices: tuple[str, ...] = ()
+
+    def accept(self, value: object) -> str:
+        """One of `choices`."""
+        if isinstance(value, str) and value in self.choices:
+            return value
+        raise BadValueError(
+            Phrase("one of: {choices}", "одним из: {choices}"), choices=self.expected()
+        )
+
+    def expected(self) -> str:
+        """The words."""
+        return ", ".join(self.choices)

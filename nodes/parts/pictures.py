@@ -1,0 +1,69 @@
+"""sensor_msgs/Image to numpy, without cv_bridge."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nodes.parts.speech import Phrase
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from sensor_msgs.msg import Image
+
+CHANNELS = 3
+_BAD_ENCODING = Phrase(
+    "encoding {encoding}, but only bgr8 and rgb8 are understood",
+    "кодировка {encoding}, а понятны только bgr8 и rgb8",
+)
+_BAD_SIZE = Phrase(
+    "{width}x{height} pixels, {step} bytes a row and {size} bytes do not fit together",
+    "{width}x{height} точек, {step} байт в строке и {size} байт не подходят друг к другу",
+)
+
+
+class BadPictureError(ValueError):
+    """A message that is no picture; `phrase` and `values` say why."""
+
+    def __init__(self, phrase: Phrase, **values: object) -> None:
+        super().__init__(phrase.en.format(**values))
+        self.phrase = phrase
+        self.values = values
+
+
+def bgr(message: Image) -> NDArray[np.uint8]:
+    """The picture as (rows, columns, 3), blue first; a view where that is possible.
+
+    Raises `BadPictureError` for another encoding, or sizes that contradict each other.
+    """
+    if message.encoding not in ("bgr8", "rgb8"):
+        raise BadPictureError(_BAD_ENCODING, encoding=message.encoding[:40] or '""')
+    width, height, step = message.width, message.height, message.step
+    row = width * CHANNELS
+    if not width or not height or step < row or len(message.data) != step * height:
+        raise BadPictureError(
+            _BAD_SIZE, width=width, height=height, step=step, size=len(message.data)
+        )
+    rows = np.frombuffer(message.data, np.uint8).reshape(height, step)
+    picture = rows[:, :row].reshape(height, width, CHANNELS)
+    return picture if message.encoding == "bgr8" else picture[:, :, ::-1]
+
+
+def fit(picture: NDArray[np.uint8], into: NDArray[np.uint8]) -> None:
+    """Copy a picture into an array of (rows, columns, 3), blue first.
+
+    One of another size is scaled, with black bars where the shape differs; a grey one is taken too.
+    """
+    if picture.shape == into.shape:
+        into[:] = picture
+        return
+    import cv2
+
+    rows, columns = picture.shape[:2]
+    scale = min(into.shape[0] / rows, into.shape[1] / columns)
+    height, width = max(1, round(rows * scale)), max(1, round(columns * scale))
+    top, left = (into.shape[0] - height) // 2, (into.shape[1] - width) // 2
+    scaled = cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA)
+    into[:] = 0
+    into[top : top + height, left : left + width] = scaled.reshape(height, width, -1)

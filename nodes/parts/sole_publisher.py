@@ -1,0 +1,81 @@
+"""Whether somebody else publishes what only this node should: he drives past it.
+
+ROS lets anybody publish anything; all that a node can do is to name who does. It does not refuse to
+go on: of a node that was killed the endpoint stays for up to 20 s, and its successor must drive.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from nodes.parts.speech import Phrase
+
+if TYPE_CHECKING:
+    from rclpy.publisher import Publisher
+
+    from nodes.parts.node import LessonNode
+
+_LOOK_EVERY_S = 1.0
+_SAY_EVERY_S = 10.0
+_NAMELESS = "_NODE_NAME_UNKNOWN_"
+"""Source: rmw, `get_topic_endpoint_info.h`."""
+_NAMED_WITHIN_S = 3.0
+"""The name of an endpoint comes a little later than the endpoint; one of a program that is no node
+of ROS never does."""
+_FOUND_WITHIN_S = 5.0
+"""What is found so soon after the start may have been left by a node of this name that died."""
+_FORGOTTEN_S = 25.0
+"""After which the middleware has forgotten that."""
+
+_OTHERS = Phrase(
+    "{topic} is also published by {others}: the wheels obey whoever spoke last",
+    "в {topic} публикует ещё и {others}: колёса выполняют последнюю команду, чья бы она ни была",
+)
+_NO_NODE = Phrase("a program without a node's name", "программа без имени узла")
+_NAMESAKE = Phrase("another {name}", "ещё один {name}")
+
+
+class SolePublisher:
+    """Looks once a second for other publishers of what `publisher` publishes, and names them."""
+
+    def __init__(self, node: LessonNode, publisher: Publisher) -> None:
+        self._node, self._topic = node, publisher.topic_name
+        self._own = node.get_fully_qualified_name()
+        self._began_s = time.monotonic()
+        self._seen_s: dict[str, float] = {}
+        self._told: frozenset[str] = frozenset()
+        node.every(_LOOK_EVERY_S, self._look)
+
+    def _look(self) -> None:
+        others = self._others() if self._node.count_publishers(self._topic) > 1 else []
+        if others:
+            every_s = 0.0 if frozenset(others) - self._told else _SAY_EVERY_S
+            names = ", ".join(sorted(others))
+            self._node.say.warn(_OTHERS, every_s=every_s, topic=self._topic, others=names)
+        self._told = frozenset(others)
+
+    def _others(self) -> list[str]:
+        names = Counter(
+            f"{one.node_namespace.rstrip('/')}/{one.node_name}"
+            for one in self._node.get_publishers_info_by_topic(self._topic)
+        )
+        names[self._own] -= 1
+        now_s = time.monotonic()
+        self._seen_s = {name: self._seen_s.get(name, now_s) for name in +names}
+        return [
+            self._called(name) for name, at_s in self._seen_s.items() if self._is_sure(name, at_s)
+        ]
+
+    def _is_sure(self, name: str, seen_s: float) -> bool:
+        now_s = time.monotonic()
+        if name.endswith(_NAMELESS):
+            return now_s - seen_s > _NAMED_WITHIN_S
+        left_over = name == self._own and seen_s - self._began_s < _FOUND_WITHIN_S
+        return not left_over or now_s - self._began_s > _FORGOTTEN_S
+
+    def _called(self, name: str) -> str:
+        if name.endswith(_NAMELESS):
+            return self._node.say.text(_NO_NODE)
+        return self._node.say.text(_NAMESAKE, name=name) if name == self._own else name

@@ -1,0 +1,1 @@
+"""The gate of the safety node: what it sees, what it lets through, what it says."""

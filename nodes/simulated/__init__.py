@@ -1,0 +1,1 @@
+"""Devices and rooms that are not there."""

@@ -1,0 +1,152 @@
+"""A base that is not there: obeys drive commands by the model of a bicycle, tells /odom and /tf.
+
+With `auto` it takes the place of a real one only if nobody publishes /odom for two seconds after
+the start, and steps back when somebody does: a robot with two odometries drives into a wall. Once
+a real one was there it never comes back: where a robot really is cannot be made up.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from ackermann_msgs.msg import AckermannDriveStamped
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
+
+from nodes.parts.drive import FRAME, from_message
+from nodes.parts.odometry import ODOM
+from nodes.parts.speech import Phrase
+from nodes.parts.topics import DEPTH, ODOMETRY, TF
+from robot.kinematics import turning_radius
+from robot.limits import SPEED, STEERING, first_excess
+from robot.motion.geometry import quaternion_from_rpy
+from robot.motion.odometry import Pose, advance
+from robot.words import STOP
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.publisher import Publisher
+
+    from nodes.parts.node import LessonNode
+
+AUTO, ALWAYS, NEVER = "auto", "always", "never"
+"""Not `yes` and `no`: YAML, and with it ROS, takes those for true and false."""
+WAIT_S = 2.0
+"""How long somebody else has to bring an odometry."""
+_PERIOD_S = 0.05
+_LOOK_EVERY_S = 0.5
+
+_BEGAN = Phrase(
+    "Nobody publishes {topic}: a simulated base obeys {commands}",
+    "{topic} никто не публикует: команды {commands} исполняет имитатор базы",
+)
+_STEPPED_BACK = Phrase(
+    "Somebody else publishes {topic}: the simulated base is off",
+    "{topic} публикует кто-то другой: имитатор базы выключен",
+)
+
+
+class SimulatedBase:
+    """Drives as it is told by `commands`, until it is told otherwise."""
+
+    def __init__(
+        self,
+        node: LessonNode,
+        mode: str,
+        commands: str,
+        wheelbase_m: float,
+        held: Callable[[], bool],
+    ) -> None:
+        """Read /drive or another topic of `commands`; stand and hear nothing while `held`."""
+        self._node, self._commands, self._held = node, commands, held
+        self._wheelbase_m = wheelbase_m
+        self._pose, self._command = Pose(), STOP
+        self._started_s = self._stepped_s = time.monotonic()
+        self._publishers: tuple[Publisher, Publisher] | None = None
+        node.create_subscription(AckermannDriveStamped, commands, self._hear, DEPTH)
+        self._steps = node.every(_PERIOD_S, self._step)
+        self._steps.cancel()
+        self._looks = node.every(_LOOK_EVERY_S, self._look)
+        if mode == ALWAYS:
+            self._begin()
+        if mode != AUTO:
+            self._looks.cancel()
+
+    @property
+    def is_on(self) -> bool:
+        """Whether it is this base that tells /odom."""
+        return self._publishers is not None
+
+    def stop(self) -> None:
+        """Stand still, whatever was commanded."""
+        self._step()
+        self._command = STOP
+
+    def _hear(self, message: AckermannDriveStamped) -> None:
+        asked = from_message(message)
+        beyond = first_excess((asked.speed_m_s, SPEED), (asked.steering_rad, STEERING))
+        self.stop()
+        if not self._held() and beyond is None:
+            self._command = asked
+
+    def _look(self) -> None:
+        mine = 1 if self.is_on else 0
+        if self._node.count_publishers(ODOMETRY) > mine:
+            self._looks.cancel()
+            self._end()
+        elif not mine and time.monotonic() - self._started_s >= WAIT_S:
+            self._begin()
+
+    def _begin(self) -> None:
+        self._publishers = (
+            self._node.create_publisher(Odometry, ODOMETRY, DEPTH),
+            self._node.create_publisher(TFMessage, TF, DEPTH),
+        )
+        self._stepped_s = time.monotonic()
+        self._steps.reset()
+        self._node.say.info(_BEGAN, topic=ODOMETRY, commands=self._commands)
+
+    def _end(self) -> None:
+        if self._publishers is not None:
+            self._steps.cancel()
+            for publisher in self._publishers:
+                self._node.destroy_publisher(publisher)
+            self._publishers = None
+            self._node.say.warn(_STEPPED_BACK, topic=ODOMETRY)
+
+    def _step(self) -> None:
+        if self._publishers is None:
+            return
+        now_s = time.monotonic()
+        passed_s, self._stepped_s = now_s - self._stepped_s, now_s
+        self._pose = advance(self._pose, self._command, passed_s, self._wheelbase_m)
+        odometry, transforms = self._publishers
+        message = self._odometry()
+        odometry.publish(message)
+        transforms.publish(TFMessage(transforms=[_transform(message)]))
+
+    def _odometry(self) -> Odometry:
+        message = Odometry()
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.header.frame_id, message.child_frame_id = ODOM, FRAME
+        place, turn = message.pose.pose.position, message.pose.pose.orientation
+        place.x, place.y = self._pose.x_m, self._pose.y_m
+        rotation = quaternion_from_rpy(0.0, 0.0, self._pose.heading_rad)
+        turn.x, turn.y, turn.z, turn.w = rotation.x, rotation.y, rotation.z, rotation.w
+        radius_m = turning_radius(self._command.steering_rad, self._wheelbase_m)
+        message.twist.twist.linear.x = self._command.speed_m_s
+        message.twist.twist.angular.z = self._command.speed_m_s / radius_m
+        return message
+
+
+def _transform(odometry: Odometry) -> TransformStamped:
+    transform = TransformStamped()
+    transform.header, transform.child_frame_id = odometry.header, odometry.child_frame_id
+    place = odometry.pose.pose.position
+    moved = transform.transform.translation
+    moved.x, moved.y, moved.z = place.x, place.y, place.z
+    transform.transform.rotation = odometry.pose.pose.orientation
+    return transform

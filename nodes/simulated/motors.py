@@ -1,0 +1,57 @@
+"""/mock/motors: what the motors of the simulated robot truly do, whatever is told of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sensor_msgs.msg import JointState
+
+from nodes.parts.topics import DEPTH
+from robot.world.world import STEP_S
+
+if TYPE_CHECKING:
+    from nodes.parts.node import LessonNode
+    from robot.world.world import World
+
+MOTORS = "/mock/motors"
+JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
+_EVERY = 2
+
+
+class MockMotors:
+    """Publishes 50 times a second, while somebody listens.
+
+    `velocity` is rad/s of each wheel, `position` how far it has turned so far, in rad: the smallest
+    motion between two messages is to be seen there for good. `effort` is the fastest that the motor
+    was driven with since the last message, rad/s, 0 while it is off. The last joint is the
+    steering.
+    """
+
+    def __init__(self, node: LessonNode, world: World) -> None:
+        self._node, self._world = node, world
+        self._turned = [0.0, 0.0]
+        self._driven = [0.0, 0.0]
+        self._steps = 0
+        self._publisher = node.create_publisher(JointState, MOTORS, DEPTH)
+
+    def step(self) -> None:
+        """Take in what `STEP_S` has brought."""
+        wheels, asked = self._world.wheels, self._world.asked
+        self._turned[0] += wheels.left_rad_s * STEP_S
+        self._turned[1] += wheels.right_rad_s * STEP_S
+        self._driven[0] = max(self._driven[0], asked.left_rad_s, key=abs)
+        self._driven[1] = max(self._driven[1], asked.right_rad_s, key=abs)
+        self._steps += 1
+        if self._steps % _EVERY == 0:
+            if self._publisher.get_subscription_count():
+                self._publish()
+            self._driven = [0.0, 0.0]
+
+    def _publish(self) -> None:
+        wheels = self._world.wheels
+        message = JointState(name=list(JOINTS))
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.position = [*self._turned, wheels.steering_rad]
+        message.velocity = [wheels.left_rad_s, wheels.right_rad_s, 0.0]
+        message.effort = [*self._driven, 0.0]
+        self._publisher.publish(message)
