@@ -15,9 +15,9 @@ import time
 from textual.app import App, ComposeResult
 
 from launcher.status import LogLine, Severity
-from tui.widgets.log_filter import LogFilter
-from tui.widgets.log_view import LogView
-from tui.widgets.log_view_pane import LogPane
+from tui.logs.filter import LogFilter
+from tui.logs.pane import LogPane
+from tui.logs.view import LogView
 
 LINES_PER_S = 10_000
 BATCHES_PER_S = 20

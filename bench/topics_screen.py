@@ -22,9 +22,9 @@ from graph.data import GraphUpdate
 from tests.e2e.terminal import Terminal
 from tests.tui.recorded import RecordedGraph, RecordedPad, sample, topic
 from tui.app import DeckApp
-from tui.orders import Order
-from tui.terminal import DeckDriver
-from tui.widgets.topics_table import TopicsTable
+from tui.session.orders import Order
+from tui.terminal.driver import DeckDriver
+from tui.topics.table import TopicsTable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

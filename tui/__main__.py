@@ -7,6 +7,6 @@ import sys
 _HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # noqa: PTH100, PTH120
 sys.path[:] = [_HERE, *(place for place in sys.path if place not in ("", os.getcwd(), _HERE))]  # noqa: PTH109
 
-from tui.cli import main  # noqa: E402
+from cli import main  # noqa: E402
 
 sys.exit(main())

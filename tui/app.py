@@ -12,27 +12,27 @@ from textual.binding import Binding, BindingType
 from textual.events import Key, Paste
 from textual.widget import Widget
 
+from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
 from tui.actions import REGISTRY, Acting, Action, bindings
 from tui.actions.app import APP_ACTIONS, EmergencyStop
-from tui.actions.recording import RECORDING_ACTIONS
-from tui.actions.replay import REPLAY_ACTIONS
-from tui.bandwidth import Bandwidth
-from tui.brake import Brake
-from tui.faults import Faults
-from tui.feed import Feed, GraphReady
-from tui.harmless import Harmless
-from tui.i18n import LANGUAGES, _, language, set_language
-from tui.messages import EmergencyChanged, LanguageChanged
-from tui.nap import Nap
-from tui.orders import Order
-from tui.recording import Recording
-from tui.screens.opening import OpeningScreen
-from tui.sessions import Sessions
-from tui.strangers import Strangers
+from tui.dialogs.opening import OpeningScreen
+from tui.emergency.brake import Brake
+from tui.frame.replay_bar import ReplayBar
+from tui.recording.actions import RECORDING_ACTIONS
+from tui.recording.recording import Recording
+from tui.recording.replay_actions import REPLAY_ACTIONS
+from tui.session.faults import Faults
+from tui.session.feed import Feed, GraphReady
+from tui.session.messages import EmergencyChanged, LanguageChanged
+from tui.session.orders import Order
+from tui.session.sessions import Sessions
+from tui.session.strangers import Strangers
+from tui.terminal.bandwidth import Bandwidth
+from tui.terminal.harmless import Harmless
+from tui.terminal.key_queue import Typed
+from tui.terminal.stall_detector import Nap
 from tui.themes import HIGH_CONTRAST, after, few_colours
-from tui.typed import Typed
-from tui.widgets.replay_bar import ReplayBar
 
 if TYPE_CHECKING:
     from textual.command import Provider
@@ -42,27 +42,37 @@ if TYPE_CHECKING:
     from textual.notifications import SeverityLevel
     from textual.screen import Screen
 
-    from tui.faults import Journal
-    from tui.seams import Launchpad
+    from tui.session.faults import Journal
+    from tui.session.ports import Launchpad
 
 SCREENS = {
-    "picker": ("tui.screens.picker", "PickerScreen"),
-    "deck": ("tui.screens.deck", "LessonDeck"),
-    "topics": ("tui.screens.topics", "TopicsScreen"),
-    "composer": ("tui.screens.composer", "ComposerScreen"),
-    "logs": ("tui.screens.logs", "LogsScreen"),
-    "graph": ("tui.screens.graph", "GraphScreen"),
-    "flow": ("tui.screens.flow", "FlowScreen"),
-    "devices": ("tui.screens.devices", "DevicesScreen"),
+    "picker": ("tui.picker.screen", "PickerScreen"),
+    "deck": ("tui.deck.screen", "LessonDeck"),
+    "topics": ("tui.topics.screen", "TopicsScreen"),
+    "composer": ("tui.composer.screen", "ComposerScreen"),
+    "logs": ("tui.logs.screen", "LogsScreen"),
+    "graph": ("tui.graph.screen", "GraphScreen"),
+    "flow": ("tui.flow.screen", "FlowScreen"),
+    "devices": ("tui.devices.screen", "DevicesScreen"),
 }
 """Imported when first shown: the first frame needs only one of them."""
+
+DIALOGS = (
+    "tui.dialogs.end_session",
+    "tui.dialogs.stopping",
+    "tui.help.screen",
+    "tui.picker.domain_taken",
+    "tui.picker.refused",
+    "tui.picker.strays",
+)
+"""With actions of their own, imported when first shown."""
 
 STRANGERS_S = 20.0
 """How long it is told beside the title who publishes past the gate."""
 
 
 def _commands() -> type[Provider]:
-    from tui.palette import Commands
+    from tui.actions.palette import Commands
 
     return Commands
 
@@ -88,7 +98,7 @@ class DeckApp(App[int], Acting):
     ) -> None:
         """`pad` lists and opens; an `order` that names nothing is asked for by the picker.
 
-        With a `journal` the app outlives what its widgets raise, see `tui.faults`.
+        With a `journal` the app outlives what its widgets raise, see `tui.session.faults`.
         """
         super().__init__(driver_class=driver_class)
         self.faults = Faults(self, journal)
@@ -211,7 +221,7 @@ class DeckApp(App[int], Acting):
 
     async def show_safe_screen(self, broken: Screen[Any]) -> None:
         """Let go of a screen that cannot be drawn; it is made anew when it is asked for again."""
-        from tui.screens.safe import SafeScreen
+        from tui.dialogs.safe import SafeScreen
 
         if broken is not self.screen:
             return
@@ -229,7 +239,7 @@ class DeckApp(App[int], Acting):
 
     def show_help(self) -> None:
         """Explain the screen in front."""
-        from tui.screens.help import HelpScreen
+        from tui.help.screen import HelpScreen
 
         if not isinstance(self.screen, HelpScreen):
             self.push_screen(HelpScreen(self.screen))
@@ -322,8 +332,8 @@ def every_action() -> frozenset[str]:
     """Return the binding id of every action there is; it takes every screen to know them."""
     for module, _made in SCREENS.values():
         import_module(module)
-    for dialog in ("domain_taken", "end_session", "help", "refused", "stopping", "strays"):
-        import_module(f"tui.screens.{dialog}")
+    for dialog in DIALOGS:
+        import_module(dialog)
     return frozenset(REGISTRY)
 
 

@@ -15,23 +15,23 @@ from textual.theme import BUILTIN_THEMES
 from launcher.errors import LauncherError
 from launcher.rundir import log_dir
 from launcher.status import LogLine, Severity
+from text.i18n import _, detect, set_language
+from text.output import say_error
 from text.plain import plain
 from tui import clock
 from tui.app import DeckApp, every_action
-from tui.bandwidth import Bandwidth, default_limit
-from tui.cli.output import say_error
-from tui.i18n import _, detect, set_language
-from tui.isolation import isolating
-from tui.launchpad import LivePad
+from tui.session.isolation import isolating
+from tui.session.launchpad import LivePad
 from tui.settings import Settings, SettingsError, load, save, settings_path
-from tui.stray_output import StrayOutput
-from tui.terminal import DeckDriver
+from tui.terminal.bandwidth import Bandwidth, default_limit
+from tui.terminal.driver import DeckDriver
+from tui.terminal.stray_output import StrayOutput
 from tui.themes import HIGH_CONTRAST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.orders import Order
+    from tui.session.orders import Order
 
 LOOK_S = 0.5
 """How often the terminal is asked whether it is still there."""

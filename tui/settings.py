@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tui.i18n import LANGUAGES, _
+from text.i18n import LANGUAGES, _
 
 
 class SettingsError(Exception):

@@ -22,13 +22,13 @@ LESSON = "04b-electronic-differential"
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 BROKEN = """
 import sys
-from tui.widgets.wheels import WheelsPanel
+from tui.panels.wheels.widget import WheelsPanel
 
 def fail(self, width, height):
     raise OverflowError("broken on purpose")
 
 WheelsPanel.draw = fail
-from tui.cli import main
+from cli import main
 sys.exit(main())
 """
 """The program itself, with one drawing that cannot be drawn."""

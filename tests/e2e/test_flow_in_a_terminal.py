@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tests.e2e.conftest import Deck
 from tests.unit.profile_files import written
-from tui.flow import BURST_S
+from tui.flow.chains import BURST_S
 
 PROFILE = """
     extends: 09-brain

@@ -18,7 +18,7 @@ WITHOUT_ROS = """
 import sys
 for name in ("rclpy", "std_msgs", "sensor_msgs", "builtin_interfaces", "rcl_interfaces"):
     sys.modules[name] = None
-from tui.cli import main
+from cli import main
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -16,10 +16,10 @@ from graph.observer.observer import Observer
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tui.app import DeckApp
-from tui.brake import Brake
-from tui.emergency import FOLLOWED
-from tui.emergency_words import stop_words
-from tui.inbox import GraphInbox
+from tui.emergency.brake import Brake
+from tui.emergency.state import FOLLOWED
+from tui.emergency.words import stop_words
+from tui.session.inbox import GraphInbox
 
 WITHIN_S = 30.0
 NODE = "/electronic_differential"

@@ -18,9 +18,9 @@ from tests.ros.observing import Peer as Process
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
-from tui import emergency
 from tui.app import DeckApp
-from tui.brake import Brake
+from tui.emergency import state as emergency
+from tui.emergency.brake import Brake
 
 ADD = "example_interfaces/srv/AddTwoInts"
 DRIVE = "deck_interfaces/action/DriveToPoint"

@@ -255,7 +255,7 @@ def test_folders_and_topics_of_recordings_are_told_harmlessly(folder: Path) -> N
 
 def test_a_fault_of_its_own_is_told_harmlessly() -> None:
     program = (
-        "from tui.cli.output import make_streams_safe; make_streams_safe();"
+        "from text.output import make_streams_safe; make_streams_safe();"
         f"raise RuntimeError({WORST!r} + chr(0xD800))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)

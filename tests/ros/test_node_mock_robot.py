@@ -20,7 +20,7 @@ from robot.wire.tfluna import Model, TofDecoder
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
-from tui import device_trouble
+from tui.devices import trouble as device_trouble
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

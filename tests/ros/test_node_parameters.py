@@ -21,7 +21,7 @@ from nodes.parts.node import LessonNode
 from nodes.parts.parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, ROOT, Peer
-from tui.catalogue import read_po
+from text.catalogue import read_po
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tests.ros.observing import Peer
 from tests.ros.supervised import running_pid
 from tests.waiting import until
-from tui.outside import Outside
+from tui.session.outside import Outside
 
 if TYPE_CHECKING:
     from launcher.client.client import SupervisorClient

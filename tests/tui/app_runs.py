@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.orders import Order
+from tui.session.orders import Order
 
 LESSON_9 = Order(Path("profiles/09-brain.yaml"))
 

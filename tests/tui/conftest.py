@@ -17,8 +17,8 @@ from textual.css.stylesheet import Stylesheet
 from textual.css.types import CSSLocation
 
 from tests.tui.recorded import NOW_S
+from text.i18n import set_language
 from tui import clock
-from tui.i18n import set_language
 
 
 @pytest.fixture(autouse=True, scope="session")

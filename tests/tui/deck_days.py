@@ -19,7 +19,7 @@ from tests.tui.recorded import (
     line,
     sample,
 )
-from tui.widgets.outcome_story import SENT_TO
+from tui.composer.outcome_story import SENT_TO
 
 HELLO = replace(SESSION, name="01-hello", lesson="1", title={"en": "The first node"}, panels=())
 

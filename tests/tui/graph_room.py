@@ -11,7 +11,7 @@ import pytest
 from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import Look, settle
-from tui.screens.graph import GraphScreen
+from tui.graph.screen import GraphScreen
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot

@@ -29,8 +29,8 @@ from tests.tui.recorded_lesson import (
     sample,
     topic,
 )
-from tui.orders import Lesson, Order
-from tui.seams import GraphLink, SessionLink
+from tui.session.orders import Lesson, Order
+from tui.session.ports import GraphLink, SessionLink
 
 __all__ = [
     "LESSONS",

@@ -6,8 +6,8 @@ from typing import Any
 
 from graph.data import GraphUpdate, NodeRow, Sample
 from tests.tui.recorded import lesson_update, sample
-from tui.emergency import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
-from tui.emergency_nodes import STATE_TOPIC
+from tui.emergency.nodes import STATE_TOPIC
+from tui.emergency.state import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
 
 GATE, CHASSIS = "/safety_stop", "/chassis"
 

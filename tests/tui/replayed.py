@@ -15,9 +15,9 @@ from launcher.status import SessionInfo
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.launchpad import LivePad
-from tui.orders import Lesson, Order, ReplayOrder
-from tui.seams import SessionLink
+from tui.session.launchpad import LivePad
+from tui.session.orders import Lesson, Order, ReplayOrder
+from tui.session.ports import SessionLink
 
 
 @dataclass

@@ -22,10 +22,10 @@ import pytest
 from textual.pilot import Pilot
 
 from tests.tui.recorded import RecordedPad
+from text.i18n import set_language
 from tui.app import DeckApp
-from tui.i18n import set_language
-from tui.orders import Order
-from tui.screens.picker import PickerScreen
+from tui.picker.screen import PickerScreen
+from tui.session.orders import Order
 from tui.widgets.rows import Rows
 
 SnapCompare = Callable[..., bool]

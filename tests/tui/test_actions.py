@@ -12,13 +12,13 @@ from launcher.status import NodeState
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, every_look
+from text.i18n import N_
 from tui.actions import REGISTRY, Action, bindings
-from tui.actions.teleop import MoveAction
 from tui.app import DeckApp, every_action
-from tui.i18n import N_
-from tui.screens.help import HelpScreen
-from tui.screens.stopping import StoppingScreen
-from tui.widgets.key_bar import KeyBar
+from tui.dialogs.stopping import StoppingScreen
+from tui.frame.key_bar import KeyBar
+from tui.help.screen import HelpScreen
+from tui.teleop.actions import MoveAction
 from tui.widgets.page import Page
 
 
@@ -58,7 +58,7 @@ async def test_keys_keep_their_order_whatever_was_imported_first(
         shown = footer(app)
         assert "Restart" in shown
         assert "Drive" in shown
-        monkeypatch.setattr("tui.widgets.key_bar.REGISTRY", turned)
+        monkeypatch.setattr("tui.frame.key_bar.REGISTRY", turned)
         assert footer(app) == shown
 
 

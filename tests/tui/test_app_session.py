@@ -29,28 +29,28 @@ from tests.tui.recorded import (
     line,
 )
 from tests.tui.snapshots import settle
-from tui import title
-from tui.actions.deck import StartAll, WriteCommand
 from tui.app import DeckApp
-from tui.history import LogHistory
-from tui.inbox import GraphInbox
-from tui.orders import Order
-from tui.screens.deck import LessonDeck
-from tui.screens.end_session import EndSessionScreen
-from tui.screens.logs import LogsScreen
-from tui.screens.picker import PickerScreen
-from tui.screens.stopping import StoppingScreen
-from tui.screens.strays import StraysScreen
-from tui.screens.topics import TopicsScreen
-from tui.widgets.head import HeadPanel
-from tui.widgets.key_bar import KeyBar
-from tui.widgets.nodes_table import NodesTable
-from tui.widgets.wheels import WheelsPanel
+from tui.deck.actions import StartAll, WriteCommand
+from tui.deck.nodes_table import NodesTable
+from tui.deck.screen import LessonDeck
+from tui.dialogs.end_session import EndSessionScreen
+from tui.dialogs.stopping import StoppingScreen
+from tui.frame import title
+from tui.frame.key_bar import KeyBar
+from tui.logs.screen import LogsScreen
+from tui.panels.head.widget import HeadPanel
+from tui.panels.wheels.widget import WheelsPanel
+from tui.picker.screen import PickerScreen
+from tui.picker.strays import StraysScreen
+from tui.session.history import LogHistory
+from tui.session.inbox import GraphInbox
+from tui.session.orders import Order
+from tui.topics.screen import TopicsScreen
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot
 
-    from tui.seams import SessionLink
+    from tui.session.ports import SessionLink
 
 ATTACHED = replace(SESSION, foreground=False, started_by=Who(4000, "ann", "pts/2", "10.0.0.7"))
 STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")

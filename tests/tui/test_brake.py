@@ -19,11 +19,11 @@ from tests.tui.recorded import (
 )
 from tests.tui.recorded_emergency import GATE, gate_says, held, obeyed, said, word
 from tests.tui.snapshots import settle
-from tui import title
-from tui.emergency import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
-from tui.widgets.command_line import CommandLine
-from tui.widgets.key_bar import KeyBar
-from tui.widgets.title_bar import TitleBar
+from tui.deck.command_line import CommandLine
+from tui.emergency.state import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
+from tui.frame import title
+from tui.frame.key_bar import KeyBar
+from tui.frame.title_bar import TitleBar
 
 STOP = (TOPIC, TOPIC_TYPE, {"data": True}, True)
 GO = (TOPIC, TOPIC_TYPE, {"data": False}, True)

@@ -8,8 +8,8 @@ from textual.app import App, ComposeResult
 
 from tests.tui.panel_stage import Stage
 from tests.tui.snapshots import SnapCompare
-from tui.i18n import set_language
-from tui.widgets.command_line import CommandLine, WordSuggester
+from text.i18n import set_language
+from tui.deck.command_line import CommandLine, WordSuggester
 
 
 class LineApp(App[None]):

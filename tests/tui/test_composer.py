@@ -15,11 +15,11 @@ from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
 from tests.tui.snapshots import Look, settle
 from tests.tui.test_outcome import drive, result
 from tui import clock
-from tui.screens.composer import ComposerScreen
-from tui.screens.composer_templates import TemplatesDialog
-from tui.sent import KEPT, Sent, sent_path
-from tui.widgets.outcome_story import FOLLOWED
-from tui.widgets.templates import TEMPLATES
+from tui.composer.outcome_story import FOLLOWED
+from tui.composer.screen import ComposerScreen
+from tui.composer.sent import KEPT, Sent, sent_path
+from tui.composer.templates import TEMPLATES
+from tui.composer.templates_dialog import TemplatesDialog
 
 if TYPE_CHECKING:
     from pathlib import Path

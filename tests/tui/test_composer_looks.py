@@ -16,7 +16,7 @@ from tests.tui.test_composer import PARSER
 from tests.tui.test_outcome import drive, head, result, safety, wheels
 from tui import clock
 from tui.app import DeckApp
-from tui.screens.composer import ComposerScreen
+from tui.composer.screen import ComposerScreen
 
 BAD = """{
   "thought": "I am in a hurry",

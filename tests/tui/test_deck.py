@@ -23,25 +23,25 @@ from tests.tui.recorded import (
     topic,
 )
 from tests.tui.snapshots import settle
-from tui import title
+from text.i18n import set_language
 from tui.app import DeckApp
-from tui.i18n import set_language
+from tui.composer.outcome import Outcome
+from tui.deck.command_line import CommandLine
+from tui.deck.nodes_table import NodesTable, duration
+from tui.deck.screen import LessonDeck
+from tui.frame import title
+from tui.frame.key_bar import KeyBar
+from tui.frame.title_bar import TitleBar
 from tui.panels.camera import CameraFeed
-from tui.panels.head import HeadFeed
+from tui.panels.head.panel import HeadFeed
 from tui.panels.llm import LlmFeed
 from tui.panels.shelf import Shelf, heights, in_rows, paged
-from tui.panels.sonar import SonarFeed
-from tui.panels.voice import VoiceFeed
-from tui.panels.wheels import WheelsFeed
-from tui.screens.deck import LessonDeck
-from tui.widgets.command_line import CommandLine
+from tui.panels.sonar.panel import SonarFeed
+from tui.panels.sonar.widget import SonarPanel
+from tui.panels.voice.panel import VoiceFeed
+from tui.panels.wheels.panel import WheelsFeed
+from tui.panels.wheels.widget import WheelsPanel
 from tui.widgets.image_view import ImageView
-from tui.widgets.key_bar import KeyBar
-from tui.widgets.nodes_table import NodesTable, duration
-from tui.widgets.outcome import Outcome
-from tui.widgets.sonar import SonarPanel
-from tui.widgets.title_bar import TitleBar
-from tui.widgets.wheels import WheelsPanel
 
 
 def deck_of(app: DeckApp) -> LessonDeck:

@@ -17,8 +17,8 @@ from tests.tui.recorded_devices import STATUSES, pad, status, update
 from tests.tui.snapshots import settle
 from tui.actions import REGISTRY
 from tui.app import DeckApp
-from tui.screens.devices import DevicesScreen
-from tui.screens.help import HelpScreen
+from tui.devices.screen import DevicesScreen
+from tui.help.screen import HelpScreen
 from tui.widgets.page import Page
 
 MOCK = "/mock_robot"

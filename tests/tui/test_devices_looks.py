@@ -15,7 +15,7 @@ from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
 from tests.tui.recorded_devices import STATUSES, of_chassis, of_sonar, pad, update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
-from tui.widgets import devices_words
+from tui.devices import words as devices_words
 
 Before = Callable[[Pilot[Any]], Awaitable[None]]
 

@@ -30,9 +30,9 @@ from tests.tui.recorded_devices import (
 from tests.tui.snapshots import Look, settle
 from tui import clock
 from tui.app import DeckApp
-from tui.screens.devices import DevicesScreen
-from tui.widgets import devices_words
-from tui.widgets.key_bar import KeyBar
+from tui.devices import words as devices_words
+from tui.devices.screen import DevicesScreen
+from tui.frame.key_bar import KeyBar
 
 ESCAPE = "\x1b[31m[bold red]\x00\u202e"
 

@@ -9,8 +9,8 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
-from tui.widgets.echo_lines import MAX_LINES, EchoLine, echo_lines
-from tui.widgets.echo_tree import EchoTree
+from tui.topics.echo_lines import MAX_LINES, EchoLine, echo_lines
+from tui.topics.echo_tree import EchoTree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

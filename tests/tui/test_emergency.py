@@ -11,9 +11,9 @@ import pytest
 from graph.data import GraphUpdate, Sample
 from tests.tui.recorded import NOW_S, lesson_update
 from tests.tui.recorded_emergency import CHASSIS, GATE, gate_says, held, obeyed, said, word
-from tui.emergency import TOPIC, TOPIC_TYPE, Emergency, listeners
-from tui.emergency_nodes import STATE_TOPIC
-from tui.emergency_words import stop_words
+from tui.emergency.nodes import STATE_TOPIC
+from tui.emergency.state import TOPIC, TOPIC_TYPE, Emergency, listeners
+from tui.emergency.words import stop_words
 
 STATES = "diagnostic_msgs/msg/DiagnosticArray"
 NOTHING = Emergency()

@@ -26,20 +26,20 @@ from tests.tui.recorded import (
 )
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
-from tui.isolation import isolating
+from tui.deck.command_line import CommandLine
+from tui.deck.screen import LessonDeck
+from tui.dialogs.safe import Plainly, SafeScreen
+from tui.frame.key_bar import KeyBar
+from tui.frame.title_bar import TitleBar
+from tui.panels.head.widget import HeadPanel
 from tui.panels.panel import Panel
-from tui.panels.wheels import WheelsFeed
-from tui.screens.deck import LessonDeck
-from tui.screens.safe import Plainly, SafeScreen
-from tui.screens.topics import TopicsScreen
-from tui.widgets.command_line import CommandLine
-from tui.widgets.head import HeadPanel
-from tui.widgets.key_bar import KeyBar
-from tui.widgets.sonar import Sonar
-from tui.widgets.title_bar import TitleBar
-from tui.widgets.topics_table import TopicsTable
-from tui.widgets.wheels import WheelsPanel
+from tui.panels.sonar.widget import Sonar
+from tui.panels.wheels.panel import WheelsFeed
+from tui.panels.wheels.widget import WheelsPanel
+from tui.session.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
+from tui.session.isolation import isolating
+from tui.topics.screen import TopicsScreen
+from tui.topics.table import TopicsTable
 
 
 @dataclass

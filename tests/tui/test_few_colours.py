@@ -12,8 +12,8 @@ from launcher.status import NodeState
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedPad
 from tui.app import DeckApp
+from tui.deck.nodes_table import NodesTable
 from tui.themes import CYCLE
-from tui.widgets.nodes_table import NodesTable
 
 
 @pytest.fixture(autouse=True)

@@ -15,9 +15,9 @@ from tests.tui.graph_room import opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import graph_update
 from text.plain import is_plain, plain
-from tui.screens.graph_parameter import ParameterDialog
+from tui.graph.parameter_dialog import ParameterDialog
+from tui.graph.parameter_words import meant, typed
 from tui.widgets.field import Field
-from tui.widgets.graph_parameter_words import meant, typed
 
 NODE = "/sonar_front"
 

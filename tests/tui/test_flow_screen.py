@@ -16,10 +16,10 @@ from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines,
 from tests.tui.snapshots import Look, settle
 from tui import clock
 from tui.app import DeckApp
-from tui.flow import Lane
-from tui.flow_reading import TOPICS
-from tui.screens.flow import FlowScreen
-from tui.widgets.flow_view import FlowView
+from tui.flow.chains import Lane
+from tui.flow.reading import TOPICS
+from tui.flow.screen import FlowScreen
+from tui.flow.view import FlowView
 
 
 class Stage:

@@ -15,8 +15,8 @@ from tests.tui.graph_room import Room, opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import SERVICES, graph_update
 from tests.tui.snapshots import Look
-from tui.widgets.graph_place import Kind, Place
-from tui.widgets.key_bar import KeyBar
+from tui.frame.key_bar import KeyBar
+from tui.graph.place import Kind, Place
 
 SERVICE, ADD = "/set_head_position", "example_interfaces/srv/AddTwoInts"
 ACTION, DRIVE = "/drive_to_point", "deck_interfaces/action/DriveToPoint"

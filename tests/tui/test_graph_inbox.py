@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from graph.data import GraphUpdate, Sample
-from tui.inbox import KEPT_BYTES, KEPT_SAMPLES, GraphInbox
+from tui.session.inbox import KEPT_BYTES, KEPT_SAMPLES, GraphInbox
 
 
 def put(inbox: GraphInbox, number: int, size_bytes: int = 8) -> None:

@@ -15,8 +15,8 @@ from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
-from tui.screens.graph import GraphScreen
-from tui.widgets.graph_place import Kind, Place
+from tui.graph.place import Kind, Place
+from tui.graph.screen import GraphScreen
 
 Step = Callable[[GraphScreen, RecordedGraph], object]
 NODE = Place(Kind.NODE, "/safety_stop")

@@ -10,9 +10,9 @@ from textual.events import Key
 from graph.data import GraphUpdate, NodeRow
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tui.widgets.graph_map_lines import Drawing, drawing
-from tui.widgets.graph_neighbours import neighbours, node_called
-from tui.widgets.graph_place import Kind, Place
+from tui.graph.map_lines import Drawing, drawing
+from tui.graph.neighbours import neighbours, node_called
+from tui.graph.place import Kind, Place
 
 BRAIN = """
 /audio/mic_raw ──────────────┐                ┌▶ /ai_command

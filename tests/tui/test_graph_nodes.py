@@ -10,8 +10,8 @@ import pytest
 from graph.data import GraphUpdate, NodeRow
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tui.screens.topics import TopicsScreen
-from tui.widgets.graph_place import Kind, Place
+from tui.graph.place import Kind, Place
+from tui.topics.screen import TopicsScreen
 
 
 @pytest.fixture

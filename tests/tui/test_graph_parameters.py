@@ -14,8 +14,8 @@ from graph.data import GraphUpdate, ParametersResult, Sample
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import settle
-from tui.screens.graph_parameter import ParameterDialog
-from tui.widgets.graph_parameters import PARAMETER_EVENTS
+from tui.graph.parameter_dialog import ParameterDialog
+from tui.graph.parameters import PARAMETER_EVENTS
 
 NODE = "/sonar_front"
 

@@ -9,9 +9,9 @@ import pytest
 from graph.data import Trouble
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
-from tui.i18n import set_language
-from tui.widgets.head import CAPTION_FROM, DRAWN_FROM, HeadPanel
-from tui.widgets.head_reading import Pose, head_in
+from text.i18n import set_language
+from tui.panels.head.reading import Pose, head_in
+from tui.panels.head.widget import CAPTION_FROM, DRAWN_FROM, HeadPanel
 
 
 def test_radians_become_degrees_left_and_up() -> None:

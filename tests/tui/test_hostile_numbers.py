@@ -19,26 +19,26 @@ from robot.motion.odometry import yaw_from_quaternion
 from tests.tui import hostile
 from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSession
+from text.figures import elapsed, figure, short, whole
 from tui.clock import time_of_day
-from tui.figures import elapsed, figure, short, whole
-from tui.panels.wheels import would_be
+from tui.composer.outcome import delay_text
+from tui.deck.nodes_table import duration, memory, percent
+from tui.panels.head.reading import Pose, head_in
+from tui.panels.head.widget import HeadPanel
+from tui.panels.map.reading import goal_in, ground_in, pose_in
+from tui.panels.map.widget import RoomMap
+from tui.panels.sonar.widget import Sonar
+from tui.panels.voice.widget import VoicePanel
+from tui.panels.wheels.panel import would_be
+from tui.panels.wheels.reading import wheels_in
+from tui.panels.wheels.widget import WheelsPanel, angle_words, radius_words, speed_words
+from tui.topics.figures import count_text, seconds_text
+from tui.topics.plot.field import PlotField
+from tui.topics.plot.legend import number_text
+from tui.topics.plot.plot import TopicPlot
+from tui.topics.table_columns import age_text, bandwidth_text, hz_text
 from tui.widgets.drawing import Drawing
-from tui.widgets.head import HeadPanel
-from tui.widgets.head_reading import Pose, head_in
-from tui.widgets.map_panel import RoomMap
-from tui.widgets.map_reading import goal_in, ground_in, pose_in
-from tui.widgets.nodes_table import duration, memory, percent
-from tui.widgets.outcome import delay_text
-from tui.widgets.sonar import Sonar
-from tui.widgets.topic_figures import count_text, seconds_text
-from tui.widgets.topic_plot import TopicPlot
-from tui.widgets.topic_plot_field import PlotField
-from tui.widgets.topic_plot_legend import number_text
-from tui.widgets.topics_table_columns import age_text, bandwidth_text, hz_text
 from tui.widgets.trouble import no_data_words
-from tui.widgets.voice import VoicePanel
-from tui.widgets.wheels import WheelsPanel, angle_words, radius_words, speed_words
-from tui.widgets.wheels_reading import wheels_in
 
 Said = tuple[GraphUpdate, tuple[NodeStatus, ...], tuple[LogLine, ...]]
 SIZES = ((1, 1), (12, 2), (34, 5), (44, 14), (120, 40))

@@ -13,7 +13,7 @@ from tests.tui.snapshots import settle
 from tests.tui.test_hostile_text import SIZE, Bare, Stage, Writing
 from tests.unit.bags import BEGIN_NS, SECOND_NS, store
 from tui.app import DeckApp
-from tui.orders import Order, ReplayOrder
+from tui.session.orders import Order, ReplayOrder
 
 WORDS, LOG = "std_msgs/msg/String", "rcl_interfaces/msg/Log"
 

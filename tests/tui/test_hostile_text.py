@@ -57,8 +57,8 @@ from tests.tui.recorded import (
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.orders import Lesson, Order
-from tui.widgets.json_editor import JsonEditor
+from tui.composer.json_editor import JsonEditor
+from tui.session.orders import Lesson, Order
 
 SIZE = (160, 50)
 STRING = "std_msgs/msg/String"

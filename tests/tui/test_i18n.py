@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from launcher.words import say
-from tui import catalogue
-from tui.catalogue import missing, po_path, read_po
-from tui.i18n import _, detect, language, ngettext, pick, said, set_language
+from text import catalogue
+from text.catalogue import missing, po_path, read_po
+from text.i18n import _, detect, language, ngettext, pick, said, set_language
 
 
 @pytest.mark.parametrize(
@@ -91,9 +91,9 @@ def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
             continue
         if entry.pluralizable:
             said = tuple(compiled.ngettext(*entry.id, number) for number in (1, 2, 5))
-            assert said == tuple(entry.string), "run: python -m tui.i18n compile"
+            assert said == tuple(entry.string), "run: python -m text.i18n compile"
         else:
-            assert compiled.gettext(entry.id) == entry.string, "run: python -m tui.i18n compile"
+            assert compiled.gettext(entry.id) == entry.string, "run: python -m text.i18n compile"
 
 
 def test_compiling_the_same_catalogue_again_makes_the_same_file(
@@ -120,6 +120,6 @@ def test_translations_fill_in_the_same_values() -> None:
 
 def test_asking_for_words_costs_no_heavy_import() -> None:
     heavy = ("textual", "rich", "numpy", "pydantic", "babel", "yaml", "rclpy")
-    code = f"import sys, tui.i18n; print([m for m in {heavy} if m in sys.modules])"
+    code = f"import sys, text.i18n; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

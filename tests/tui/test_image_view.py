@@ -13,7 +13,7 @@ from textual.app import App, ComposeResult
 from textual.geometry import Region
 
 from tests.waiting import until
-from tui.bandwidth import Bandwidth
+from tui.terminal.bandwidth import Bandwidth
 from tui.widgets.half_blocks import changed_spans, coarser, fitting_size
 from tui.widgets.image_view import ImageView
 

@@ -17,10 +17,10 @@ from tests.tui.recorded import (
     lesson_update,
     sample,
 )
+from tui.panels.head.widget import HeadPanel
 from tui.panels.joints import ANOTHER_S, Joints
-from tui.widgets.head import HeadPanel
-from tui.widgets.sonar import Sonar
-from tui.widgets.wheels import WheelsPanel
+from tui.panels.sonar.widget import Sonar
+from tui.panels.wheels.widget import WheelsPanel
 
 if TYPE_CHECKING:
     from graph.data import Sample

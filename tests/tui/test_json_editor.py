@@ -12,12 +12,12 @@ from textual.app import App, ComposeResult
 from textual.events import Paste
 
 from robot.commands.schema import CommandError, parse_llm
-from tui.i18n import set_language
-from tui.widgets.json_editor import JsonEditor, Place
-from tui.widgets.json_tokens import tokens
-from tui.widgets.json_verdict import JsonVerdict
+from text.i18n import set_language
+from tui.composer.json_editor import JsonEditor, Place
+from tui.composer.json_tokens import tokens
+from tui.composer.templates import TEMPLATES
+from tui.composer.verdict import JsonVerdict
 from tui.widgets.marked_editor import LONGEST_COLOURED, Token
-from tui.widgets.templates import TEMPLATES
 
 
 class EditorApp(App[None]):

@@ -13,11 +13,11 @@ from rich.cells import cell_len
 from textual.app import App, ComposeResult
 
 from launcher.status import LogLine, Severity
-from tui.widgets.log_filter import LogFilter
-from tui.widgets.log_view import LogView
-from tui.widgets.log_view_bar import LogBar
-from tui.widgets.log_view_pane import LogPane
-from tui.widgets.log_view_prompt import LogPrompt
+from tui.logs.bar import LogBar
+from tui.logs.filter import LogFilter
+from tui.logs.pane import LogPane
+from tui.logs.prompt import LogPrompt
+from tui.logs.view import LogView
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot

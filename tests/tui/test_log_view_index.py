@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from launcher.status import LogLine, Severity
-from tui.widgets.log_filter import LogFilter
-from tui.widgets.log_view_index import LogIndex, folded, folded_rows
-from tui.widgets.log_view_ring import Entry, LogRing
-from tui.widgets.log_view_rows import text_of
+from tui.logs.filter import LogFilter
+from tui.logs.index import LogIndex, folded, folded_rows
+from tui.logs.ring import Entry, LogRing
+from tui.logs.rows import text_of
 
 TEXTS = (
     "",

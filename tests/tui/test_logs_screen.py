@@ -15,9 +15,9 @@ from launcher.events import LogEvent
 from launcher.status import Severity
 from tests.tui.recorded import LINES, RecordedPad, RecordedSession, line
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
-from tui.screens.logs import LogsScreen
-from tui.widgets.key_bar import KeyBar
-from tui.widgets.log_view_bar import LogBar
+from tui.frame.key_bar import KeyBar
+from tui.logs.bar import LogBar
+from tui.logs.screen import LogsScreen
 
 HOME = Look((120, 40), "en")
 

@@ -12,9 +12,9 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, RecordedGraph, RecordedPad, RecordedSession, lesson_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
 from tui.app import DeckApp
-from tui.screens.deck import LessonDeck
-from tui.screens.graph import GraphScreen
-from tui.widgets.graph_pane import GraphHead
+from tui.deck.screen import LessonDeck
+from tui.graph.pane import GraphHead
+from tui.graph.screen import GraphScreen
 
 NAME = "/z_robot/" + "a_rather_long_name_of_a_node_" * 3 + "END"
 

@@ -23,10 +23,10 @@ from tests.tui.recorded_map import (
     stamped,
 )
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
-from tui.panel_needs import panels_for
-from tui.panels.map import MapFeed
+from tui.panels.map.panel import MapFeed
+from tui.panels.map.widget import RoomMap
 from tui.panels.panel import Panel
-from tui.widgets.map_panel import RoomMap
+from tui.session.panel_needs import panels_for
 
 
 class Alone(App[None]):

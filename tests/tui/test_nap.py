@@ -9,7 +9,7 @@ import pytest
 
 from tests.waiting import wait_until
 from tui import clock
-from tui.nap import DRAIN_S, LONGEST_S, Nap
+from tui.terminal.stall_detector import DRAIN_S, LONGEST_S, Nap
 
 STARTED_S = 1.0
 WOKE_S = STARTED_S + 6.0

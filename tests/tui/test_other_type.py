@@ -12,8 +12,8 @@ from tests.tui.recorded_map import map_update
 from tests.tui.test_map_panel import Alone
 from tui.panels.camera import CameraFeed
 from tui.panels.panel import Panel
-from tui.panels.voice import VoiceFeed
-from tui.panels.wheels import WheelsFeed
+from tui.panels.voice.panel import VoiceFeed
+from tui.panels.wheels.panel import WheelsFeed
 
 STRING = "std_msgs/msg/String"
 

@@ -12,9 +12,9 @@ from textual.app import App, ComposeResult
 from graph.data import Sample
 from robot.commands.schema import parse_llm
 from tests.tui.recorded import NOW_S, joints, sample
-from tui.i18n import set_language
-from tui.widgets.outcome import Outcome, delay_text
-from tui.widgets.outcome_story import Entry, Story
+from text.i18n import set_language
+from tui.composer.outcome import Outcome, delay_text
+from tui.composer.outcome_story import Entry, Story
 
 SENT_S = NOW_S + 100
 LOOK_AND_DRIVE = parse_llm(

@@ -13,13 +13,13 @@ from launcher.status import NodeState
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, NOW_S, RecordedPad, lesson_update, sample
 from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
-from tui import title
+from text.i18n import set_language
 from tui.app import DeckApp
-from tui.i18n import set_language
-from tui.outside import Outside
-from tui.screens.deck import LessonDeck
-from tui.screens.logs import LogsScreen
-from tui.widgets.key_bar import KeyBar
+from tui.deck.screen import LessonDeck
+from tui.frame import title
+from tui.frame.key_bar import KeyBar
+from tui.logs.screen import LogsScreen
+from tui.session.outside import Outside
 
 OWN = tuple(NodeRow(f"/{name}") for name in NODES)
 HELPERS = ("/_deck_observer_7", "/_deck_recorder_7", "/_ros2cli_daemon_42_1", "/a/_hidden")

@@ -14,12 +14,12 @@ from textual.widgets import OptionList
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedPad
 from tui.actions import REGISTRY
+from tui.actions.palette import PLACES, entries
 from tui.app import SCREENS, DeckApp
-from tui.orders import Order
-from tui.palette import PLACES, entries
-from tui.screens.composer import ComposerScreen
-from tui.screens.devices import DevicesScreen
-from tui.screens.topics import TopicsScreen
+from tui.composer.screen import ComposerScreen
+from tui.devices.screen import DevicesScreen
+from tui.session.orders import Order
+from tui.topics.screen import TopicsScreen
 
 
 async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:

@@ -14,9 +14,9 @@ from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
 from tests.tui.recorded_lesson import NOW_S
 from tests.tui.recorded_map import MAP_SESSION, map_update, odometry, reading
 from tui.panels.camera import CameraFeed
+from tui.panels.map.widget import RoomMap
 from tui.panels.panel import Panel
-from tui.widgets.map_panel import RoomMap
-from tui.widgets.sonar import Sonar
+from tui.panels.sonar.widget import Sonar
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample

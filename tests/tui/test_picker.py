@@ -17,10 +17,10 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
-from tui.orders import Order
-from tui.screens.domain_taken import DomainTakenScreen
-from tui.screens.picker import PickerScreen
-from tui.screens.refused import RefusedScreen
+from tui.picker.domain_taken import DomainTakenScreen
+from tui.picker.refused import RefusedScreen
+from tui.picker.screen import PickerScreen
+from tui.session.orders import Order
 from tui.widgets.rows import Rows
 
 PICK = Order(hardware="mock", domain=42)

@@ -14,15 +14,15 @@ from graph.messages.yaml_form import check
 from graph.publishing.outbox import PublishError
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
-from tui.actions.publish import PublishAtRate
-from tui.emergency import TOPIC, TOPIC_TYPE
-from tui.screens.help import HelpScreen
-from tui.screens.publish import PublishDialog
-from tui.screens.topics import TopicsScreen
-from tui.widgets import yaml_form
+from tui.emergency.state import TOPIC, TOPIC_TYPE
+from tui.frame.title_bar import TitleBar
+from tui.help.screen import HelpScreen
+from tui.topics.publications import Publications
+from tui.topics.publish import PublishDialog
+from tui.topics.publish_actions import PublishAtRate
+from tui.topics.screen import TopicsScreen
 from tui.widgets.page import Page
-from tui.widgets.publications import Publications
-from tui.widgets.title_bar import TitleBar
+from tui.yaml_form import form as yaml_form
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

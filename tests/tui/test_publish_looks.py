@@ -13,8 +13,8 @@ from graph.data import Publication
 from tests.tui.recorded import lesson_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
-from tui.screens.publish import PublishDialog
-from tui.screens.topics import TopicsScreen
+from tui.topics.publish import PublishDialog
+from tui.topics.screen import TopicsScreen
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
 RUNNING = (

@@ -17,7 +17,7 @@ from graph.recording.recorder import RecordedTopic, RecordingStatus
 from tests.tui.app_runs import opened
 from tests.tui.snapshots import Look, SnapCompare, both_languages
 from tui.app import DeckApp
-from tui.widgets.title_bar import TitleBar
+from tui.frame.title_bar import TitleBar
 
 ROW = RecordedTopic("/number", "std_msgs/msg/Float32", 240, 3_400_000)
 GOING = RecordingStatus("", 0.0, 12.0, 240, 3_400_000, (ROW,), bytes_per_s=280_000)

@@ -14,11 +14,11 @@ from graph.replay.replay import Replay
 from tests.tui.replayed import BagPad, replayed
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
 from tests.unit.bags import write_bag, write_robot_bag
+from text.i18n import set_language
 from tui.app import DeckApp
-from tui.i18n import set_language
-from tui.orders import Order, ReplayOrder
-from tui.widgets.key_bar import KeyBar
-from tui.widgets.replay_bar import ReplayBar
+from tui.frame.key_bar import KeyBar
+from tui.frame.replay_bar import ReplayBar
+from tui.session.orders import Order, ReplayOrder
 
 
 @pytest.fixture

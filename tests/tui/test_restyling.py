@@ -10,7 +10,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tests.tui.app_runs import opened
-from tui.widgets.key_bar import KeyBar
+from tui.frame.key_bar import KeyBar
 from tui.widgets.one_style import OneStyle
 
 

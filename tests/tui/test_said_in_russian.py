@@ -16,13 +16,13 @@ from graph.pictures.pixels import ImageError
 from graph.replay.refusals import Refusals
 from tests.tui.app_runs import opened
 from tests.tui.recorded import lesson_update, topic
-from tui.i18n import said, set_language
+from text.i18n import said, set_language
+from tui.deck.screen import LessonDeck
+from tui.graph.parameter_dialog import ParameterDialog
+from tui.graph.parameter_words import allowed_words
 from tui.panels.panel import trouble_of
-from tui.screens.deck import LessonDeck
-from tui.screens.graph_parameter import ParameterDialog
-from tui.widgets.graph_parameter_words import allowed_words
-from tui.widgets.topics_table_columns import state_text
-from tui.widgets.yaml_words import reason_words
+from tui.topics.table_columns import state_text
+from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from text.i18n import set_language
 from tui.app import every_action
-from tui.i18n import set_language
 from tui.settings import Settings, SettingsError, load, save
 
 THEMES = {"textual-dark", "textual-light"}

@@ -10,10 +10,10 @@ import pytest
 from graph.data import Trouble
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
-from tui.i18n import set_language
-from tui.widgets.sonar import Sonar, SonarPanel
-from tui.widgets.sonar_bar import bar, mark_cell, trend
-from tui.widgets.sonar_words import COURSE, Bounds, Zone, zone_of
+from text.i18n import set_language
+from tui.panels.sonar.bar import bar, mark_cell, trend
+from tui.panels.sonar.widget import Sonar, SonarPanel
+from tui.panels.sonar.words import COURSE, Bounds, Zone, zone_of
 
 INF, NAN = math.inf, math.nan
 

@@ -18,10 +18,10 @@ from tests.tui.recorded import (
     lesson_update,
     sample,
 )
-from tui.panels.bounds import bounds_of
-from tui.widgets.sonar import Sonar
-from tui.widgets.sonar_bar import scale
-from tui.widgets.sonar_words import COURSE, Bounds, Zone, zone_of
+from tui.panels.sonar.bar import scale
+from tui.panels.sonar.bounds import bounds_of
+from tui.panels.sonar.widget import Sonar
+from tui.panels.sonar.words import COURSE, Bounds, Zone, zone_of
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate

@@ -13,8 +13,8 @@ from launcher.status import NodeState, NodeStatus
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, TOPICS, RecordedGraph, RecordedPad, lesson_update, topic
 from tests.tui.snapshots import settle
-from tui.strangers import NAMELESS, Strangers
-from tui.widgets.title_bar import TitleBar
+from tui.frame.title_bar import TitleBar
+from tui.session.strangers import NAMELESS, Strangers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

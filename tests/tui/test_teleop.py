@@ -27,15 +27,15 @@ from tests.tui.recorded import (
 )
 from tests.tui.snapshots import Look, SnapCompare, every_look
 from tui import clock
-from tui.actions.teleop import OpenTeleop
 from tui.app import DeckApp
-from tui.emergency import SAFETY_TOPIC
-from tui.nap import DRAIN_S
-from tui.screens.deck import LessonDeck
-from tui.teleop import FIRST_HOLD_S, Move
-from tui.teleop_gate import gate_in, gate_words
-from tui.teleop_route import DRIVE, DRIVE_TYPE, TELEOP
-from tui.widgets.teleop import TeleopPanel
+from tui.deck.screen import LessonDeck
+from tui.emergency.state import SAFETY_TOPIC
+from tui.teleop.actions import OpenTeleop
+from tui.teleop.gate import gate_in, gate_words
+from tui.teleop.keys import FIRST_HOLD_S, Move
+from tui.teleop.route import DRIVE, DRIVE_TYPE, TELEOP
+from tui.teleop.widget import TeleopPanel
+from tui.terminal.stall_detector import DRAIN_S
 
 STARTED_S = 1.0
 """Long before any key is pressed: a key that is stamped later counts as pressed now."""

@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 from tests.waiting import wait_until
-from tui.bandwidth import Bandwidth
-from tui.stray_output import StrayOutput
-from tui.terminal import MOST_WAITING, Terminal
+from tui.terminal.bandwidth import Bandwidth
+from tui.terminal.driver import MOST_WAITING, Terminal
+from tui.terminal.stray_output import StrayOutput
 
 
 @pytest.fixture

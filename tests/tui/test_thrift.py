@@ -8,7 +8,7 @@ import pyte
 import pytest
 from rich.cells import set_cell_size
 
-from tui.thrift import Thrift
+from tui.terminal.terminal_diff import Thrift
 
 WIDTH, HEIGHT = 40, 8
 STYLES = (

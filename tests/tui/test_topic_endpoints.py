@@ -11,10 +11,10 @@ from rich.cells import cell_len
 from graph.data import EndpointInfo, TopicRow
 from tests.tui.recorded import TOPICS, lesson_update
 from tests.tui.snapshots import Look, settle
-from tui.screens.topics import TopicsScreen
-from tui.widgets.topic_endpoint_lines import endpoint_lines
-from tui.widgets.topic_figures import count_text, seconds_text
-from tui.widgets.topic_words import ends
+from tui.topics.endpoint_lines import endpoint_lines
+from tui.topics.figures import count_text, seconds_text
+from tui.topics.screen import TopicsScreen
+from tui.topics.words import ends
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,14 +14,14 @@ from textual.app import App, ComposeResult
 from graph.data import GraphUpdate, Sample
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
 from tests.tui.snapshots import Look, settle
-from tui.screens.topics import TopicsScreen
-from tui.screens.topics_plotting import PlotPlace
-from tui.widgets.topic_plot import TopicPlot
-from tui.widgets.topic_plot_axis import axis_for, steadied
-from tui.widgets.topic_plot_curve import curve
-from tui.widgets.topic_plot_field import PlotField
-from tui.widgets.topic_plot_history import SLOT_S, History
-from tui.widgets.topic_plot_legend import number_text
+from tui.topics.plot.axis import axis_for, steadied
+from tui.topics.plot.curve import curve
+from tui.topics.plot.field import PlotField
+from tui.topics.plot.history import SLOT_S, History
+from tui.topics.plot.legend import number_text
+from tui.topics.plot.plot import TopicPlot
+from tui.topics.plotting import PlotPlace
+from tui.topics.screen import TopicsScreen
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -15,9 +15,9 @@ from tests.tui.recorded import NOW_S, TOPICS, RecordedPad, lesson_update, sample
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tests.tui.topics_room import CAMERA, depth_message, jpeg_message, with_camera
 from tui.app import DeckApp
-from tui.screens.topics import TopicsScreen
+from tui.topics.detail import TopicDetail
+from tui.topics.screen import TopicsScreen
 from tui.widgets.image_view import ImageView
-from tui.widgets.topic_detail import TopicDetail
 
 HOSTILE = (
     "[red]красный[/red] \x1b[31m\x1b]52;c;aGVsbG8=\x07\x00 \ud800 \u202eназад " + "1 MB " * 200_000

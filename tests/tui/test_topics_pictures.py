@@ -21,7 +21,7 @@ from tests.tui.topics_room import (
     opened,
     with_camera,
 )
-from tui.screens import topics_pictures
+from tui.topics import pictures as topics_pictures
 
 
 @pytest.fixture

@@ -15,8 +15,8 @@ from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, TOPICS, RecordedSession, lesson_update, sample
 from tests.tui.snapshots import Look, settle
 from tests.tui.topics_room import CAMERA, SONAR, Room, opened, row, with_row
-from tui.widgets.key_bar import KeyBar
-from tui.widgets.topic_detail import TopicHead
+from tui.frame.key_bar import KeyBar
+from tui.topics.detail import TopicHead
 
 ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
 
@@ -74,10 +74,10 @@ async def test_walking_past_topics_subscribes_none_of_them(
     asked: list[set[str]] = []
     monkeypatch.setattr(room.graph, "watch", lambda topics: asked.append(set(topics)))
     # However long the keys take here, they come before the walk is over.
-    monkeypatch.setattr("tui.screens.topics.SETTLED_S", 3600.0)
+    monkeypatch.setattr("tui.topics.screen.SETTLED_S", 3600.0)
     await room.pilot.press("down", "down", "down")
     assert not asked
-    monkeypatch.setattr("tui.screens.topics.SETTLED_S", 0.01)
+    monkeypatch.setattr("tui.topics.screen.SETTLED_S", 0.01)
     await room.pilot.press("down")
     for _round in range(500):
         await room.pilot.pause(0.02)

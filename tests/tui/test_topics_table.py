@@ -12,9 +12,9 @@ from textual.geometry import Region
 
 from graph.data import TopicRow, Trouble
 from tests.tui.recorded import TOPICS, topic
-from tui.i18n import _, set_language
-from tui.widgets.topics_table import TopicsTable
-from tui.widgets.topics_table_columns import (
+from text.i18n import _, set_language
+from tui.topics.table import TopicsTable
+from tui.topics.table_columns import (
     COLUMNS,
     age_text,
     bandwidth_text,
@@ -22,7 +22,7 @@ from tui.widgets.topics_table_columns import (
     placed,
     state_text,
 )
-from tui.widgets.topics_table_order import Order
+from tui.topics.table_order import Order
 
 FLOAT = "std_msgs/msg/Float32"
 

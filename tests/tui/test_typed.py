@@ -11,7 +11,7 @@ from textual.widgets import Input, Static
 from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.snapshots import Look, settle
 from tests.waiting import until
-from tui import typed
+from tui.terminal import key_queue as typed
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

@@ -15,11 +15,11 @@ from graph.data import Sample, TopicRow, Trouble
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.recorded import NOW_S, lesson_update, sample, topic
 from tests.tui.snapshots import SnapCompare
-from tui.i18n import set_language
-from tui.panels.voice import VoiceFeed
-from tui.widgets.voice import VoicePanel
-from tui.widgets.voice_level import level_line
-from tui.widgets.voice_reading import heard
+from text.i18n import set_language
+from tui.panels.voice.level import level_line
+from tui.panels.voice.panel import VoiceFeed
+from tui.panels.voice.reading import heard
+from tui.panels.voice.widget import VoicePanel
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate

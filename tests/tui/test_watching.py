@@ -22,12 +22,12 @@ from tests.tui.recorded import (
 )
 from tests.tui.recorded_lesson import topic
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
-from tui import title
 from tui.app import DeckApp
-from tui.orders import Order, WatchOrder
-from tui.screens.deck import LessonDeck
-from tui.watching import WATCH, watched
-from tui.widgets.title_bar import TitleBar
+from tui.deck.screen import LessonDeck
+from tui.frame import title
+from tui.frame.title_bar import TitleBar
+from tui.session.orders import Order, WatchOrder
+from tui.session.watching import WATCH, watched
 
 NOTHING = lesson_update(topics=(), samples={}, nodes=(), services=())
 
@@ -200,14 +200,14 @@ def test_nobody_there(look: Look, snap_compare: SnapCompare) -> None:
 
 
 def test_a_node_s_name_is_harmless() -> None:
-    from tui.widgets.watched import watched_words
+    from tui.deck.watched import watched_words
 
     words = watched_words(lesson_update(nodes=(NodeRow("/a\x1b[31m"),)), 42)
     assert "a␛[31m" in words
 
 
 def test_a_name_that_is_too_long_for_the_line_is_seen_to_be_cut() -> None:
-    from tui.widgets.watched import watched_words
+    from tui.deck.watched import watched_words
 
     words = watched_words(lesson_update(nodes=(NodeRow("/" + "a" * 80), NodeRow("/b"))), 42)
     assert words.endswith(f" {'a' * 59}…, b")

@@ -12,11 +12,11 @@ from graph.data import Trouble
 from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
-from tui.i18n import set_language
+from text.i18n import set_language
+from tui.panels.wheels.reading import Wheels, wheels_in
+from tui.panels.wheels.view import speed_bar
+from tui.panels.wheels.widget import WheelsPanel
 from tui.widgets.dots import Dots, rectangle
-from tui.widgets.wheels import WheelsPanel
-from tui.widgets.wheels_reading import Wheels, wheels_in
-from tui.widgets.wheels_view import speed_bar
 
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 

@@ -9,12 +9,12 @@ import pkgutil
 import threading
 from types import FunctionType
 
+import tui.screens
 from textual.app import App, ComposeResult
 from textual.dom import DOMNode
 from textual.widget import Widget
 from textual.widgets import Static
 
-import tui.screens
 import tui.widgets
 from tests.waiting import until
 from tui.widgets.working import Working

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from textual.app import App, ComposeResult
 
 from graph.messages.yaml_form import prefilled
-from tui.i18n import set_language
-from tui.widgets import yaml_form
-from tui.widgets.yaml_form import YamlForm
-from tui.widgets.yaml_tokens import tokens
+from text.i18n import set_language
+from tui.yaml_form import form as yaml_form
+from tui.yaml_form.form import YamlForm
+from tui.yaml_form.tokens import tokens
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot

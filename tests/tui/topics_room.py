@@ -16,8 +16,8 @@ from graph.data import GraphUpdate, TopicRow
 from tests.tui.recorded import TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
 from tests.tui.recorded_image import colour_bars
 from tests.tui.snapshots import Look, settle
-from tui.screens.topics import TopicsScreen
-from tui.widgets.topic_detail import TopicHead
+from tui.topics.detail import TopicHead
+from tui.topics.screen import TopicsScreen
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot

@@ -13,7 +13,7 @@ from mcap.reader import make_reader
 from graph.bag.errors import BagError, unreadable
 from graph.bag.reading import open_bag
 from tests.unit.bags import write_bag
-from tui.i18n import said, set_language
+from text.i18n import said, set_language
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tui.bandwidth import MOST_DEBT_S, OVER_SSH, SAVED_S, Bandwidth, Pace, default_limit
+from tui.terminal.bandwidth import MOST_DEBT_S, OVER_SSH, SAVED_S, Bandwidth, Pace, default_limit
 
 
 class Clock:

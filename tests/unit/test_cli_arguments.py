@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tui.cli import main
-from tui.cli.arguments import COMMANDS, parser_of, split
-from tui.i18n import set_language
+from cli import main
+from cli.arguments import COMMANDS, parser_of, split
+from text.i18n import set_language
 
 
 @pytest.fixture(autouse=True)
@@ -202,14 +202,13 @@ def _imported_by(code: str, folder: Path) -> set[str]:
 
 
 def test_list_is_quick_because_it_imports_neither_textual_nor_ros(tmp_path: Path) -> None:
-    modules = _imported_by("from tui.cli import main; main(['list'])", tmp_path)
+    modules = _imported_by("from cli import main; main(['list'])", tmp_path)
     assert not modules & {"textual", "rich", "rclpy", "numpy", "psutil", "asyncio"}
 
 
 def test_nothing_heavy_is_imported_before_the_screen(tmp_path: Path) -> None:
     modules = _imported_by(
-        "import tui.cli.screen;"
-        "from launcher.profile.catalog import find_profile; find_profile('9')",
+        "import cli.screen;from launcher.profile.catalog import find_profile; find_profile('9')",
         tmp_path,
     )
     assert not modules & {"textual", "rclpy", "pydantic", "yaml", "numpy", "asyncio"}

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from cli.health import over, settled, well
 from launcher.status import NodeState, NodeStatus
 from launcher.supervisor.readiness import Condition, Seen
 from launcher.supervisor.words import instead, what
-from tui.cli.health import over, settled, well
 
 
 def node(name: str, state: NodeState, **more: object) -> NodeStatus:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from cli import main
 from tests.unit.profile_files import written
-from tui.cli import main
-from tui.i18n import set_language
+from text.i18n import set_language
 
 PROFILES = Path(__file__).parents[2] / "profiles"
 

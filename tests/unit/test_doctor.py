@@ -7,28 +7,28 @@ from dataclasses import replace
 
 import pytest
 
+from cli import main
+from cli.doctor import Finding, Level
+from cli.doctor.login import LoginFacts, before_logout, setting
+from cli.doctor.login import judge as judge_login
+from cli.doctor.media import MediaFacts, cards_in
+from cli.doctor.media import judge as judge_media
+from cli.doctor.network import NetworkFacts
+from cli.doctor.network import judge as judge_network
+from cli.doctor.python import PACKAGES, PythonFacts
+from cli.doctor.python import judge as judge_python
+from cli.doctor.ros import MESSAGES, RosFacts
+from cli.doctor.ros import judge as judge_ros
+from cli.doctor.runs import RunFacts
+from cli.doctor.runs import judge as judge_runs
+from cli.doctor.serial_ports import Access, SerialFacts
+from cli.doctor.serial_ports import judge as judge_serial
+from cli.doctor.shared_memory import SharedMemoryFacts
+from cli.doctor.shared_memory import judge as judge_shared_memory
+from cli.doctor.terminal import TerminalFacts
+from cli.doctor.terminal import judge as judge_terminal
 from launcher.domain.discovery import PROFILES
 from launcher.serial_ports import SerialPort
-from tui.cli import main
-from tui.doctor import Finding, Level
-from tui.doctor.login import LoginFacts, before_logout, setting
-from tui.doctor.login import judge as judge_login
-from tui.doctor.media import MediaFacts, cards_in
-from tui.doctor.media import judge as judge_media
-from tui.doctor.network import NetworkFacts
-from tui.doctor.network import judge as judge_network
-from tui.doctor.python import PACKAGES, PythonFacts
-from tui.doctor.python import judge as judge_python
-from tui.doctor.ros import MESSAGES, RosFacts
-from tui.doctor.ros import judge as judge_ros
-from tui.doctor.runs import RunFacts
-from tui.doctor.runs import judge as judge_runs
-from tui.doctor.serial_ports import Access, SerialFacts
-from tui.doctor.serial_ports import judge as judge_serial
-from tui.doctor.shared_memory import SharedMemoryFacts
-from tui.doctor.shared_memory import judge as judge_shared_memory
-from tui.doctor.terminal import TerminalFacts
-from tui.doctor.terminal import judge as judge_terminal
 
 EVERYTHING = dict.fromkeys(PACKAGES, "1.0") | {"textual": "8.2.8"}
 
@@ -328,7 +328,7 @@ def test_the_lines_say_the_level_in_words(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     findings = [Finding("a", Level.OK, "fine"), Finding("b", Level.FAIL, "gone", "bring it")]
-    monkeypatch.setattr("tui.cli.doctor.examine", lambda: findings)
+    monkeypatch.setattr("cli.doctor.command.examine", lambda: findings)
     assert main(["doctor"]) == 1
     assert capsys.readouterr().out.splitlines() == [
         "ok    fine",

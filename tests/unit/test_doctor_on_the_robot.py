@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from cli.doctor import groups, power, serial_ports
+from cli.doctor.groups import GroupFacts
+from cli.doctor.power import PowerFacts
+from cli.doctor.serial_ports import Access, SerialFacts
 from launcher.serial_ports import SerialPort
 from tests.unit.test_doctor import bad, text
-from tui.doctor import groups, power, serial_ports
-from tui.doctor.groups import GroupFacts
-from tui.doctor.power import PowerFacts
-from tui.doctor.serial_ports import Access, SerialFacts
 
 PI = "Raspberry Pi 5 Model B Rev 1.0"
 

@@ -24,11 +24,11 @@ from tests.tui.recorded_flow import (
     wheels,
     word,
 )
-from tui.flow import EARLY_S, LONGEST_S, MOST_STEPS, Chain, Kind, Lane, Step
-from tui.flow_book import MOST_CHAINS, FlowBook
-from tui.flow_reading import FlowReader, log_steps
-from tui.widgets.flow_lines import Axis, columns, fit
-from tui.widgets.flow_words import said_by
+from tui.flow.book import MOST_CHAINS, FlowBook
+from tui.flow.chains import EARLY_S, LONGEST_S, MOST_STEPS, Chain, Kind, Lane, Step
+from tui.flow.lines import Axis, columns, fit
+from tui.flow.reading import FlowReader, log_steps
+from tui.flow.words import said_by
 
 PROGRAMS = {"brain": "nodes.ai_brain", "ai_driver": "nodes.ai_driver"}
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from cli.sessions import show
 from graph.bag.reading import open_bag
 from launcher.status import NodeState, NodeStatus, SessionInfo
 from tests.unit.bags import write_bag
 from text.fractions import with_comma
-from tui.cli.sessions import show
-from tui.i18n import said, set_language
-from tui.widgets.log_filter_nodes import short_count
+from text.i18n import said, set_language
+from tui.logs.filter_nodes import short_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

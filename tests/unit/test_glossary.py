@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tui.catalogue import read_po
+from text.catalogue import read_po
 
 ROOT = Path(__file__).parents[2]
 DOCS = (ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.ru.md")))

@@ -11,15 +11,15 @@ from tui.launchpad import LivePad
 
 OPENED = """
 import asyncio, sys
-from tui.launchpad import LivePad
+from tui.session.launchpad import LivePad
 
 async def main():
     pad = LivePad()
     pad._start_ahead = lambda: asyncio.sleep(0)
     await pad.prepare()
     before = set(sys.modules)
-    import tui.screens.deck
-    from tui.panels.made import PANELS, make_panel
+    import tui.deck.screen
+    from tui.panels.registry import PANELS, make_panel
     for name in PANELS:
         make_panel(name)
     print(sorted(set(sys.modules) - before))

@@ -147,7 +147,7 @@ def test_another_python_is_set_up_again(tree: Path, tmp_path: Path, make: Make) 
 
 
 def test_clean_removes_what_make_has_made_and_nothing_else(make: Make, tree: Path) -> None:
-    rooms = ("bench", "graph", "launcher", "nodes", "robot", "tests", "text", "tui")
+    rooms = ("bench", "cli", "graph", "launcher", "nodes", "robot", "tests", "text", "tui")
     for room in rooms:
         (tree / room / "__pycache__").mkdir(parents=True)
         (tree / room / "__pycache__" / "a.cpython-311.pyc").touch()

@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from robot.motion.odometry import Point, Pose
 from robot.world.grid import grid_of
 from robot.world.room import LIVING_ROOM
+from tui.panels.map.canvas import Canvas
+from tui.panels.map.field import Extent, Field, bar_length_m, fitted
+from tui.panels.map.layers import Layers
+from tui.panels.map.legend import column, entries, rows, scale_bar
+from tui.panels.map.reading import Ground, goal_in, ground_in, pose_in
+from tui.panels.map.scene import FRONT, REAR, Scene, draw_scene, robot_corners
+from tui.panels.map.trail import LEAST_M, MOST, Trail
 from tui.widgets.drawing import Line, cells_of
-from tui.widgets.map_canvas import Canvas
-from tui.widgets.map_field import Extent, Field, bar_length_m, fitted
-from tui.widgets.map_layers import Layers
-from tui.widgets.map_legend import column, entries, rows, scale_bar
-from tui.widgets.map_reading import Ground, goal_in, ground_in, pose_in
-from tui.widgets.map_scene import FRONT, REAR, Scene, draw_scene, robot_corners
-from tui.widgets.map_trail import LEAST_M, MOST, Trail
 
 ROOM = Extent(-1.0, 4.0, -2.0, 2.0)
 NEST = {"position": {"x": 0.0, "y": 0.0, "z": 0.0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}

@@ -8,15 +8,15 @@ from typing import cast
 
 import pytest
 
+from cli.doctor import Level
+from cli.preflight.answers import Answer, ask
+from cli.preflight.line import Line
 from robot.wire.lsc16 import Battery
 from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import Telemetry, Welcome
 from robot.wire.pico import encode as encode_pico
 from robot.wire.tfluna import TofFrame
 from robot.wire.tfluna import encode as encode_tof
-from tui.doctor import Level
-from tui.preflight.answers import Answer, ask
-from tui.preflight.line import Line
 
 HELLO, BATTERY = b"$V,0,1*119B\n", b"\x55\x55\x02\x0f"
 READING = encode_tof(TofFrame(123, 1000, 25.0))

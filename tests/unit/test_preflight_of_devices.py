@@ -12,15 +12,15 @@ from pathlib import Path
 
 import pytest
 
+from cli import main
+from cli.doctor import Finding, Level
+from cli.preflight import examine
+from cli.preflight.answers import Answer
+from cli.preflight.holders import holders
+from cli.preflight.line import Line
+from cli.preflight.opening import opened
 from launcher.profile.load import Profile
 from launcher.serial_ports import SerialPort
-from tui.cli import main
-from tui.doctor import Finding, Level
-from tui.preflight import examine
-from tui.preflight.answers import Answer
-from tui.preflight.holders import holders
-from tui.preflight.line import Line
-from tui.preflight.opening import opened
 
 
 @pytest.fixture
@@ -179,7 +179,7 @@ def test_findings_for_programs(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = [Finding("device.pico", Level.FAIL, "gone", "bring it")]
-    monkeypatch.setattr("tui.preflight.examine", lambda _profile: found)
+    monkeypatch.setattr("cli.preflight.examine", lambda _profile: found)
     assert main(["check", "robot", "--hardware", "real", "--preflight", "--json"]) == 2
     assert json.loads(capsys.readouterr().out) == [
         {"key": "device.pico", "level": "fail", "text": "gone", "mend": "bring it"}

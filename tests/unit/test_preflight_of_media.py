@@ -7,10 +7,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from tui.preflight import examine
 
+from cli.doctor import Level
+from cli.preflight import media
 from tests.unit.test_preflight_of_devices import robot
-from tui.doctor import Level
-from tui.preflight import examine, media
 
 
 def test_a_camera_is_asked_for_a_picture(tmp_path: Path) -> None:

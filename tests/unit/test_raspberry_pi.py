@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from cli.arguments import COMMANDS, parser_of, split
 from launcher.profile.device_variables import variable
 from launcher.profile.load import load_profile
 from launcher.rundir import OWN_RUN_DIR
-from tui.cli.arguments import COMMANDS, parser_of, split
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 SERVICE = DOCS / "deck-robot@.service"

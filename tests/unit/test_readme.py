@@ -8,12 +8,12 @@ from typing import get_args
 
 import pytest
 
+from cli.arguments import COMMANDS
 from launcher.profile.catalog import list_profiles
 from launcher.profile.load import load_profile
 from launcher.profile.model import NodeDocument, Panel, ProfileDocument
 from tui.actions import REGISTRY
 from tui.app import DeckApp
-from tui.cli.arguments import COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
 READMES = ["README.md", "README.ru.md"]

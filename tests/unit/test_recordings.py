@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from cli import main
+from cli.recordings import find_recording
 from launcher.rundir import new_recording, recordings_path
 from tests.unit.bags import write_bag
-from tui.cli import main
-from tui.cli.recordings import find_recording
-from tui.i18n import set_language
+from text.i18n import set_language
 
 
 @pytest.fixture(autouse=True)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from graph.data import Sample
 from launcher.status import Severity
-from tui.rosout import TOPIC, RosoutReader
+from tui.session.rosout import TOPIC, RosoutReader
 
 
 def message(**value: Any) -> Sample:

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from graph.publishing.dead_man_switch import Grip, Holding
 from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
-from tui.teleop import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits
-from tui.teleop_route import RATE_HZ, command
+from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits
+from tui.teleop.route import RATE_HZ, command
 
 LIMITS = TeleopLimits()
 REPEAT_S = 0.033

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from tui.i18n import set_language
-from tui.teleop_gate import Gate, gate_words
+from text.i18n import set_language
+from tui.teleop.gate import Gate, gate_words
 
 
 @pytest.fixture(autouse=True)

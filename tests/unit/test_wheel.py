@@ -9,7 +9,7 @@ import pytest
 from hatchling.builders.wheel import WheelBuilder
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("graph", "launcher", "nodes", "profiles", "robot", "text", "tui")
+ROOMS = ("cli", "graph", "launcher", "nodes", "profiles", "robot", "text", "tui")
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_the_wheel_holds_nothing_besides(wheel: zipfile.ZipFile) -> None:
 
 def test_deck_is_a_command(wheel: zipfile.ZipFile) -> None:
     (points,) = (name for name in wheel.namelist() if name.endswith("entry_points.txt"))
-    assert "deck = tui.cli:main" in wheel.read(points).decode()
+    assert "deck = cli:main" in wheel.read(points).decode()
 
 
 def test_ros_is_asked_of_pypi_only_where_it_is_there(wheel: zipfile.ZipFile) -> None:

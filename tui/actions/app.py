@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from text.i18n import N_, _
 from tui.actions.action import Action
-from tui.i18n import N_, _
 
 if TYPE_CHECKING:
     from tui.app import DeckApp

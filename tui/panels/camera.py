@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from graph.pictures.images import to_rgb
 from graph.pictures.pixels import ImageError
-from tui.figures import whole
-from tui.i18n import N_, _, said
+from text.figures import whole
+from text.i18n import N_, _, said
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.image_view import ImageView

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from text.i18n import _
 from text.plain import plain
-from tui.i18n import _
 from tui.panels.other_type import other_type
 from tui.widgets.drawing import Instead
 

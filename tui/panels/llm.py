@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from text.i18n import N_, _
 from tui import clock
 from tui.actions.app import ShowComposer
-from tui.i18n import N_, _
+from tui.composer.outcome import Outcome
+from tui.composer.outcome_story import FOLLOWED, SENT_TO, Story
 from tui.panels.panel import Panel, row_of
-from tui.widgets.outcome import Outcome
-from tui.widgets.outcome_story import FOLLOWED, SENT_TO, Story
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from text.i18n import _
 from text.plain import plain
-from tui.i18n import _
 from tui.widgets.drawing import Instead
 
 if TYPE_CHECKING:

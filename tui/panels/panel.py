@@ -10,9 +10,9 @@ from textual.containers import Vertical
 from textual.content import Content
 
 from graph.data import Trouble
+from text.i18n import _
 from text.plain import plain
-from tui.faults import bear
-from tui.i18n import _
+from tui.session.faults import bear
 
 if TYPE_CHECKING:
     from textual.visual import VisualType
@@ -153,7 +153,7 @@ def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, fl
     if row.trouble in {None, Trouble.NO_PUBLISHER, Trouble.QUIET} or not row.detail:
         return row.trouble, topic, row.age_s
     # The first frame does without.
-    from tui.widgets.topic_words import advice
+    from tui.topics.words import advice
 
     return row.trouble, f"{topic}: {advice(row)[1]}", row.age_s
 

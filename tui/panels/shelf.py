@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from textual.containers import Container
 
-from tui.i18n import _
+from text.i18n import _
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,11 +13,11 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from graph.pictures.images import shrink
+from text.figures import figure
+from text.i18n import _, decimal
 from text.plain import plain
 from tui import clock
-from tui.bandwidth import Pace
-from tui.figures import figure
-from tui.i18n import _, decimal
+from tui.terminal.bandwidth import Pace
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, in_row, word_strips
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from textual.timer import Timer
 
     from tui.app import DeckApp
-    from tui.bandwidth import Bandwidth
+    from tui.terminal.bandwidth import Bandwidth
     from tui.widgets.half_blocks import Pixels
 
 CAPTION_FROM = 4

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from graph.data import Trouble
-from tui.figures import elapsed
-from tui.i18n import N_, _
+from text.figures import elapsed
+from text.i18n import N_, _
 
 _HEADLINES = {
     Trouble.NO_PUBLISHER: N_("nobody publishes this topic"),

@@ -1,0 +1,346 @@
+"""What can be typed after `deck`: its commands, their options, and help in both languages.
+
+`deck PROFILE` needs no command word, so the word is looked for first and each command has a
+parser of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import IO, TYPE_CHECKING, NoReturn
+
+from cli.values import bandwidth, count, domain, folder, rate, seconds
+from text.i18n import LANGUAGES, N_, _, ngettext
+from text.output import harmless
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+OPEN = "open"
+"""What `deck` does without a command word: the screen."""
+COMMANDS = {
+    "run": N_("start a profile without a screen: prefixed logs, then a summary"),
+    "list": N_("profiles with their titles"),
+    "check": N_("say what is wrong in a profile: file:line:column"),
+    "up": N_("start a profile in the background"),
+    "ps": N_("what runs in the background"),
+    "logs": N_("the log of a node that runs in the background"),
+    "attach": N_("the screen of what runs in the background"),
+    "down": N_("stop what runs in the background"),
+    "watch": N_("the screen of what others have started in a ROS domain"),
+    "record": N_("record topics of what runs into a folder that `ros2 bag` reads"),
+    "replay": N_("the screen on a recording, with no robot at all"),
+    "doctor": N_("what is installed, which ROS, which ports, and how to mend what is missing"),
+}
+HELP = "help"
+"""`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
+WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
+"""Options that may stand before the command word."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that speaks the language of the screen and names the help."""
+
+    def _print_message(self, message: str, file: IO[str] | None = None) -> None:  # type: ignore[override]
+        """Repeat nothing as it was typed: it may have been pasted."""
+        super()._print_message(harmless(message), file)
+
+    def error(self, message: str) -> NoReturn:
+        """End with 2: what is wrong, and where the help is."""
+        self.exit(
+            2,
+            f"{self.prog}: {message}\n"
+            + _("{prog} --help tells more").format(prog=self.prog)
+            + "\n",
+        )
+
+
+def speak() -> None:
+    """Have argparse look its own sentences up in the catalogue of the screen."""
+    argparse._ = _  # type: ignore[attr-defined]
+    argparse.ngettext = ngettext  # type: ignore[attr-defined]
+
+
+def split(arguments: Sequence[str]) -> tuple[str, list[str]]:
+    """Return the command word and the rest; `open` where there is none."""
+    skip = False
+    for index, word in enumerate(arguments):
+        if skip:
+            skip = False
+        elif word in WITH_VALUE:
+            skip = True
+        elif word in COMMANDS:
+            return word, [*arguments[:index], *arguments[index + 1 :]]
+        elif word == HELP:
+            command, rest = split([*arguments[:index], *arguments[index + 1 :]])
+            return command, [*rest, "--help"]
+        elif not word.startswith("-"):
+            break
+    return OPEN, list(arguments)
+
+
+def wanted_language(arguments: Sequence[str]) -> str | None:
+    """Return what `--lang` says, before anything is parsed: errors speak it too."""
+    for word, following in zip(arguments, [*arguments[1:], ""], strict=False):
+        if word == "--lang":
+            return following
+        if word.startswith("--lang="):
+            return word.partition("=")[2]
+    return None
+
+
+def parser_of(command: str) -> Parser:
+    """Return the parser of a command."""
+    if command == OPEN:
+        return _open_parser()
+    parser = Parser(prog=f"deck {command}", description=_(COMMANDS[command]), allow_abbrev=False)
+    _ADD[command](parser)
+    _add_language(parser)
+    return parser
+
+
+def _open_parser() -> Parser:
+    lines = [f"  {name:<8} {_(help_text)}" for name, help_text in COMMANDS.items()]
+    parser = Parser(
+        prog="deck",
+        usage=_("deck [PROFILE] [options]\n       deck COMMAND ..."),
+        description=_(
+            "One screen for the lessons of ROS 2. Without a profile it lets you pick one."
+        ),
+        epilog=_("commands (deck COMMAND --help tells more):") + "\n" + "\n".join(lines),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "profile", nargs="?", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain")
+    )
+    _add_profile_options(parser)
+    _add_bandwidth(parser)
+    _add_language(parser)
+    parser.add_argument("--version", action="store_true", help=_("show the version and exit"))
+    return parser
+
+
+def _add_run(parser: Parser) -> None:
+    _add_profile(parser)
+    parser.add_argument(
+        "--for",
+        dest="seconds",
+        metavar="S",
+        type=seconds,
+        help=_("stop S seconds after all nodes are ready"),
+    )
+    _add_json(parser)
+    _add_profile_options(parser)
+    parser.epilog = _(
+        "Ctrl-C stops the nodes, dependants first; a second Ctrl-C does not wait. Exit code: 0 if"
+        " every node stayed healthy, 1 if one failed, 2 if nothing could be started."
+    )
+
+
+def _add_list(parser: Parser) -> None:
+    _add_json(parser)
+
+
+def _add_check(parser: Parser) -> None:
+    parser.add_argument(
+        "profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; without it all of them")
+    )
+    parser.add_argument(
+        "--preflight",
+        action="store_true",
+        help=_("ask the devices too, with --hardware real: found, permitted, free, answering"),
+    )
+    _add_json(parser)
+    _add_profile_options(parser)
+    parser.epilog = _("Exit code: 0 if all is well, 2 if not. It moves nothing.")
+
+
+def _add_up(parser: Parser) -> None:
+    _add_profile(parser)
+    _add_profile_options(parser)
+
+
+def _add_ps(parser: Parser) -> None:
+    _add_json(parser)
+
+
+def _add_logs(parser: Parser) -> None:
+    parser.add_argument(
+        "node", nargs="?", metavar=_("NODE"), help=_("name of the node; without it all of them")
+    )
+    parser.add_argument("-f", "--follow", action="store_true", help=_("go on with what comes"))
+    parser.add_argument(
+        "-n",
+        dest="lines",
+        metavar="N",
+        type=count,
+        default=100,
+        help=_("how many lines of the past, 100 by default"),
+    )
+    parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several run"))
+
+
+def _add_running(parser: Parser) -> None:
+    parser.add_argument(
+        "name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several run")
+    )
+
+
+def _add_attach(parser: Parser) -> None:
+    _add_running(parser)
+    _add_bandwidth(parser)
+
+
+def _add_watch(parser: Parser) -> None:
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain; by default ROS_DOMAIN_ID, else one of your own"),
+    )
+    parser.add_argument(
+        "--discovery",
+        choices=("localhost", "subnet"),
+        default="localhost",
+        help=_("look on this machine only, the default, or on the network too"),
+    )
+    _add_bandwidth(parser)
+    parser.epilog = _("Deck starts nothing here, and leaves running what runs.")
+
+
+def _add_record(parser: Parser) -> None:
+    parser.add_argument(
+        "topics", nargs="*", metavar=_("TOPIC"), help=_("what to record; without it all topics")
+    )
+    parser.add_argument(
+        "--hidden", action="store_true", help=_("hidden topics too: feedback and status of actions")
+    )
+    parser.add_argument(
+        "--no-images", dest="images", action="store_false", help=_("all topics without pictures")
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar=_("FOLDER"),
+        type=folder,
+        help=_(
+            "where to, a new folder; by default in DECK_RECORDINGS_DIR, else ~/deck-recordings,"
+            " named by lesson and time"
+        ),
+    )
+    parser.add_argument(
+        "--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds")
+    )
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("ROS domain; by default that of the robot which runs"),
+    )
+    _add_json(parser)
+    parser.epilog = _(
+        "Exit code: 0 if the recording is whole, 1 if it broke off or nothing came, 2 if nothing"
+        " could be started."
+    )
+
+
+def _add_replay(parser: Parser) -> None:
+    parser.add_argument(
+        "bag",
+        nargs="?",
+        metavar=_("BAG"),
+        help=_("name, folder with metadata.yaml, or .mcap file; without it: which ones there are"),
+    )
+    parser.add_argument(
+        "--rate", metavar="R", type=rate, default=1.0, help=_("how fast, 0.1 to 10 times")
+    )
+    parser.add_argument("--loop", action="store_true", help=_("start again at the end"))
+    parser.add_argument(
+        "--start",
+        metavar="S",
+        type=seconds,
+        default=0.0,
+        help=_("begin S seconds after the first message"),
+    )
+    parser.add_argument(
+        "--publish",
+        action="store_true",
+        help=_("onto the ROS graph instead of on a screen, but nothing that moves a robot"),
+    )
+    parser.add_argument(
+        "--motion", action="store_true", help=_("with --publish: also what moves a robot")
+    )
+    parser.add_argument(
+        "--domain",
+        metavar="N",
+        type=domain,
+        help=_("with --publish: ROS domain; by default that of the robot which runs"),
+    )
+    _add_bandwidth(parser)
+
+
+def _add_doctor(parser: Parser) -> None:
+    _add_json(parser)
+    parser.epilog = _("Exit code: 0, or 1 if something is missing that Deck cannot do without.")
+
+
+_ADD = {
+    "run": _add_run,
+    "list": _add_list,
+    "check": _add_check,
+    "up": _add_up,
+    "ps": _add_ps,
+    "logs": _add_logs,
+    "attach": _add_attach,
+    "down": _add_running,
+    "watch": _add_watch,
+    "record": _add_record,
+    "replay": _add_replay,
+    "doctor": _add_doctor,
+}
+
+
+def _add_profile(parser: Parser) -> None:
+    parser.add_argument(
+        "profile", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain")
+    )
+
+
+def _add_profile_options(parser: Parser) -> None:
+    parser.add_argument(
+        "--hardware",
+        choices=("mock", "real"),
+        default="mock",
+        help=_("which nodes to start: mocks, the default, or those of the real robot"),
+    )
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        metavar=_("NODE.PARAM=VALUE"),
+        action="append",
+        default=[],
+        help=_("a parameter of a node, the value as in YAML; may be repeated"),
+    )
+    parser.add_argument(
+        "--domain", metavar="N", type=domain, help=_("ROS domain, 0 to 232, best 1 to 101")
+    )
+
+
+def _add_bandwidth(parser: Parser) -> None:
+    parser.add_argument(
+        "--bandwidth",
+        metavar="KB",
+        type=bandwidth,
+        help=_("for pictures, kB/s to the terminal, or off; by default 40 over SSH, else off"),
+    )
+
+
+def _add_json(parser: Parser) -> None:
+    parser.add_argument("--json", action="store_true", help=_("for programs: JSON"))
+
+
+def _add_language(parser: Parser) -> None:
+    parser.add_argument(
+        "--lang", choices=LANGUAGES, help=_("language; by default that of the locale")
+    )

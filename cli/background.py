@@ -1,0 +1,218 @@
+"""`deck up`, `ps`, `logs` and `down`: profiles that run without a terminal."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from cli.company import warn_of_company
+from cli.doctor.login import before_logout, look
+from cli.health import settled, well
+from cli.report import TextReport
+from cli.sessions import as_json, show
+from cli.stop_in_force import stop_is_kept, stop_words
+from launcher.client import client
+from launcher.client.past import newer
+from launcher.errors import (
+    AlreadyRunningError,
+    ConnectionLostError,
+    NotRunningError,
+    SessionError,
+    UnknownNodeError,
+)
+from launcher.events import LogEvent
+from launcher.profile.catalog import find_profile
+from text.i18n import _, language, ngettext, said
+from text.output import RED, Paint, json_text, say_error, write
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from launcher.status import NodeState, NodeStatus, SessionInfo
+
+UP_WITHIN_S = 60.0
+"""When `up` stops waiting, whatever the profile's own limits are."""
+LOOK_S = 0.05
+STEADY_S = 0.5
+"""For so long nothing may change once all is up: what fails does so in its first moment."""
+
+
+def up_command(options: Namespace) -> int:
+    """Start a profile in the background, wait until it is up, show its nodes."""
+    return asyncio.run(_up(options))
+
+
+def ps_command(options: Namespace) -> int:
+    """Show what runs."""
+    return asyncio.run(_ps(options))
+
+
+def logs_command(options: Namespace) -> int:
+    """Show the log of a node, or of all."""
+    return asyncio.run(_logs(options))
+
+
+def down_command(options: Namespace) -> int:
+    """Stop what runs."""
+    return asyncio.run(_down(options))
+
+
+async def _up(options: Namespace) -> int:
+    # Validation takes pydantic along, which the other commands do without.
+    from launcher.profile.load import load_profile
+    from launcher.serial_ports import serial_ports
+
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+        ports=serial_ports,
+    )
+    warn_of_company(profile)
+    try:
+        link = await client.launch(
+            profile, foreground=False, node_lang=language(), supervisor=options.supervisor
+        )
+    except AlreadyRunningError as error:
+        say_error(said(error.args[0]))
+        # Nothing was wrong with what was asked for if that is up.
+        return 1 if error.session.profile == str(profile.path) else error.exit_code
+    try:
+        try:
+            await asyncio.wait_for(_settle(link), UP_WITHIN_S)
+        except asyncio.TimeoutError:
+            say_error(_("not everything is up yet; `deck ps` shows the progress"))
+        optional = {name for name, node in profile.nodes.items() if node.optional}
+        show(link.session, tuple(link.nodes.values()), optional)
+        healthy = all(well(node, optional) for node in link.nodes.values())
+    finally:
+        await link.aclose()
+    for line in before_logout(look(), os.environ):
+        say_error(line)
+    if stop_is_kept(profile.domain):
+        say_error(stop_words(profile.domain))
+    if healthy:
+        write(_("`deck attach` shows it, `deck down` stops it"))
+    else:
+        say_error(_("something is wrong; `deck logs NODE` tells more, `deck down` stops it"))
+    return 0 if healthy else 1
+
+
+async def _settle(link: client.SupervisorClient) -> None:
+    """Wait until every node is up, or has failed to come up, and stays so."""
+    listening = asyncio.ensure_future(_listen(link))
+    try:
+        while not settled(link.nodes) or _states(link) != await _states_later(link):
+            if listening.done():
+                raise ConnectionLostError(_("the supervisor ended while the nodes were starting"))
+            await asyncio.sleep(LOOK_S)
+    finally:
+        listening.cancel()
+
+
+async def _listen(link: client.SupervisorClient) -> None:
+    """Take what is said, so that what is known of the nodes is kept current."""
+    async for _event in link.events():
+        pass
+
+
+def _states(link: client.SupervisorClient) -> list[NodeState]:
+    return [node.state for node in link.nodes.values()]
+
+
+async def _states_later(link: client.SupervisorClient) -> list[NodeState]:
+    await asyncio.sleep(STEADY_S)
+    return _states(link)
+
+
+async def _ps(options: Namespace) -> int:
+    found: list[tuple[SessionInfo, tuple[NodeStatus, ...]]] = []
+    for session in client.running():
+        try:
+            link = await client.attach(session.run_id)
+        except SessionError:
+            continue  # It has ended just now.
+        found.append((link.session, tuple(link.nodes.values())))
+        await link.aclose()
+    if options.json:
+        write(json_text([as_json(*each) for each in found], indent=2))
+        return 0
+    if not found:
+        say_error(str(said(NotRunningError().args[0])))
+    names = [session.name for session, _nodes in found]
+    for index, (session, nodes) in enumerate(found):
+        if index:
+            write("")
+        show(session, nodes)
+        if stop_is_kept(session.domain):
+            write(Paint(sys.stdout)(stop_words(session.domain), RED))
+        if names.count(session.name) > 1:
+            write(_("to name this one: {run_id}").format(run_id=session.run_id))
+    return 0
+
+
+async def _logs(options: Namespace) -> int:
+    link = await _attached(options.profile, options.node)
+    try:
+        names = [options.node] if options.node else list(link.nodes)
+        report = TextReport(write, names, Paint(sys.stdout))
+        last: dict[str, int] = {}
+        if options.lines:
+            for line in await link.history(options.node, options.lines):
+                report.log(line)
+                last[line.node] = line.seq
+        if not options.follow:
+            return 0
+        async for event in link.events():
+            if isinstance(event, LogEvent):
+                news = newer(event, last)
+                for line in news.lines:
+                    if options.node in (None, line.node):
+                        report.log(line)
+                for node, count in news.skipped.items():
+                    if options.node in (None, node):
+                        report.skipped(node, count)
+        return 0
+    finally:
+        await link.aclose()
+
+
+async def _down(options: Namespace) -> int:
+    link = await client.attach(options.name)
+    session, count = link.session, len(link.nodes)
+    await link.shutdown()
+    words = ngettext("{name} stopped, {count} node", "{name} stopped, {count} nodes", count)
+    write(words.format(name=plain(session.name), count=count))
+    return 0
+
+
+async def _attached(name: str | None, node: str | None) -> client.SupervisorClient:
+    """Attach by name; without one, to the only session that has the node."""
+    sessions = client.running()
+    if name is not None or node is None or len(sessions) < 2:
+        link = await client.attach(name)
+        if node is not None and node not in link.nodes:
+            known = tuple(link.nodes)
+            await link.aclose()
+            raise UnknownNodeError(node, known)
+        return link
+    having: list[client.SupervisorClient] = []
+    known_nodes: list[str] = []
+    for session in sessions:
+        link = await client.attach(session.run_id)
+        known_nodes += link.nodes
+        if node in link.nodes:
+            having.append(link)
+        else:
+            await link.aclose()
+    if len(having) == 1:
+        return having[0]
+    for link in having:
+        await link.aclose()
+    if not having:
+        raise UnknownNodeError(node, known_nodes)
+    return await client.attach(None)

@@ -1,0 +1,23 @@
+"""Says on the command line that a profile is about to share its domain."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.errors import DomainTakenError
+from launcher.runs.beside import refuse_company
+from text.i18n import _, said
+from text.output import say_error
+
+if TYPE_CHECKING:
+    from launcher.profile.load import Profile
+
+
+def warn_of_company(profile: Profile) -> None:
+    """Name other sessions in the domain; those it cannot be shared with the supervisor refuses."""
+    try:
+        refuse_company(profile)
+    except DomainTakenError as taken:
+        if taken.can_share:
+            say_error(said(taken.args[0]))
+            say_error(_("their nodes will see and hear each other"))

@@ -1,0 +1,48 @@
+"""`deck doctor`: the findings as lines, or as JSON."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from cli.doctor import Level, examine
+from text.i18n import N_, _
+from text.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Iterable
+
+    from cli.doctor import Finding
+
+LOOKS = {
+    Level.OK: (N_("ok"), GREEN),
+    Level.WARN: (N_("warn"), YELLOW),
+    Level.FAIL: (N_("FAIL"), RED),
+}
+
+
+def doctor_command(options: Namespace) -> int:
+    """Examine everything; 1 if something is missing that Deck cannot do without."""
+    findings = examine()
+    if options.json:
+        write(json_text([asdict(finding) for finding in findings], indent=2))
+    else:
+        show(findings, Paint(sys.stdout))
+    return 1 if any(finding.level is Level.FAIL for finding in findings) else 0
+
+
+def show(findings: Iterable[Finding], paint: Paint) -> None:
+    """Write a line for each finding, and below it the mend."""
+    width = max(len(_(word)) for word, _colour in LOOKS.values())
+    for finding in findings:
+        _show(finding, paint, width)
+
+
+def _show(finding: Finding, paint: Paint, width: int) -> None:
+    word, colour = LOOKS[finding.level]
+    write(f"{paint(_(word).ljust(width), colour)}  {plain(finding.text)}")
+    if finding.mend:
+        write(f"{'':{width}}  {paint('-> ' + finding.mend, DIM)}")

@@ -1,0 +1,68 @@
+"""Groups that a user of the real robot needs: for serial ports, cameras and sound."""
+
+from __future__ import annotations
+
+import grp
+import os
+import pwd
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from cli.doctor.finding import ok, warn
+from cli.doctor.power import ROOT
+from cli.doctor.power import look as look_at_power
+from text.i18n import _
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from cli.doctor.finding import Finding
+
+NEEDED = ("dialout", "video", "audio")
+
+
+@dataclass(frozen=True)
+class GroupFacts:
+    """What is there."""
+
+    pi: bool = False
+    """Whether this is a Raspberry Pi, and so most likely the robot itself."""
+    user: str = ""
+    uid: int = 1000
+    existing: tuple[str, ...] = NEEDED
+    """Those of NEEDED that this machine knows."""
+    mine: tuple[str, ...] = ()
+    """Groups of this process: one joined a moment ago counts only after logging in again."""
+    written: tuple[str, ...] = ()
+    """Groups of the user as they will be at the next login."""
+
+
+def look(root: Path = ROOT) -> GroupFacts:
+    """Find out."""
+    groups = grp.getgrall()
+    try:
+        user = pwd.getpwuid(os.getuid()).pw_name
+    except KeyError:
+        user = os.environ.get("USER", "")
+    gids = {os.getgid(), *os.getgroups()}
+    return GroupFacts(
+        pi=bool(look_at_power(root, lambda: "").pi),
+        user=user,
+        uid=os.getuid(),
+        existing=tuple(name for name in NEEDED if any(each.gr_name == name for each in groups)),
+        mine=tuple(each.gr_name for each in groups if each.gr_gid in gids),
+        written=tuple(each.gr_name for each in groups if user in each.gr_mem),
+    )
+
+
+def judge(facts: GroupFacts) -> list[Finding]:
+    """Say what is well and what is not; off the robot nobody needs these groups."""
+    missing = [name for name in facts.existing if name not in facts.mine]
+    if facts.uid == 0 or not facts.pi or not missing:
+        return [] if not facts.pi else [ok("groups", _("you may use serial ports, camera, sound"))]
+    text = _("you are not in: {groups}").format(groups=", ".join(missing))
+    if set(missing) <= set(facts.written):
+        return [warn("groups", text, _("log out and in again: it is already set"))]
+    mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
+    mend = mend.format(group=",".join(missing), user=facts.user or "$USER")
+    return [warn("groups", text, mend)]

@@ -1,0 +1,86 @@
+"""Deck's own things: its directories, what runs, and what an earlier run left behind."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from cli.doctor.finding import fail, ok, warn
+from launcher.errors import LauncherError
+from launcher.rundir import check_writable, found_run_dir, log_path, run_path
+from text.i18n import Prose, _, said
+
+if TYPE_CHECKING:
+    from cli.doctor.finding import Finding
+
+LEAST_FREE = 200 * 10**6
+"""Bytes for logs, which are rotated but not without limit."""
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """What is there."""
+
+    run_dir: str = ""
+    log_dir: str = ""
+    free: int = 10**10
+    """Bytes where the logs are."""
+    error: str = ""
+    """Why a directory cannot be used."""
+    running: tuple[str, ...] = ()
+    strays: tuple[tuple[int, str], ...] = ()
+    """Process and node."""
+
+
+def look() -> RunFacts:
+    """Find out."""
+    from launcher.client.client import running
+    from launcher.runs.strays import find_strays
+
+    try:
+        here, logs = found_run_dir() or run_path(os.environ), log_path()
+        there = next(folder for folder in (logs, *logs.absolute().parents) if folder.exists())
+        check_writable(there)
+    except LauncherError as error:
+        return RunFacts(error=said(error.args[0]))
+    status = os.statvfs(there)
+    return RunFacts(
+        run_dir=str(here),
+        log_dir=str(logs),
+        free=status.f_bavail * status.f_frsize,
+        running=tuple(f"{each.name} ({each.domain})" for each in running()),
+        strays=tuple((stray.pid, stray.node) for stray in find_strays(here)),
+    )
+
+
+def judge(facts: RunFacts) -> list[Finding]:
+    """Say what is well and what is not."""
+    if facts.error:
+        return [fail("folders", facts.error, _("set DECK_RUN_DIR and DECK_LOG_DIR"))]
+    return [_folders(facts), _running(facts), *_strays(facts)]
+
+
+def _folders(facts: RunFacts) -> Finding:
+    text = _("logs in {path}, {size:.1f} GB free").format(
+        path=facts.log_dir, size=Prose(facts.free / 1e9)
+    )
+    if facts.free < LEAST_FREE:
+        return warn("folders", text, _("remove old logs there, or set DECK_LOG_DIR"))
+    return ok("folders", text)
+
+
+def _running(facts: RunFacts) -> Finding:
+    if not facts.running:
+        return ok("running", _("no profile runs"))
+    return ok("running", _("running: {names}").format(names=", ".join(facts.running)))
+
+
+def _strays(facts: RunFacts) -> list[Finding]:
+    if not facts.strays:
+        return []
+    names = ", ".join(f"{node} ({pid})" for pid, node in facts.strays)
+    text = _("left behind by an earlier run: {names}").format(names=names)
+    pids = " ".join(str(pid) for pid, _node in facts.strays)
+    mend = _("the screen offers to stop them; or: kill {pids}").format(pids=pids)
+    return [warn("strays", text, mend)]

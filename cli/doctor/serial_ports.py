@@ -1,0 +1,97 @@
+"""Serial ports: which there are, by which lasting name, and whether they may be opened."""
+
+from __future__ import annotations
+
+import grp
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from cli.doctor.finding import ok, warn
+from launcher.serial_ports import serial_ports
+from text.i18n import _, said
+
+if TYPE_CHECKING:
+    from cli.doctor.finding import Finding
+    from launcher.serial_ports import SerialPort
+
+
+class Access(NamedTuple):
+    """One port, and who may open it."""
+
+    port: SerialPort
+    group: str = ""
+    allowed: bool = True
+    """Whether this user may read and write it."""
+
+
+@dataclass(frozen=True)
+class SerialFacts:
+    """What is there."""
+
+    ports: tuple[Access, ...] = ()
+    user: str = ""
+    groups: tuple[str, ...] = ()
+    """Of this process: a group joined a moment ago counts only after logging in again."""
+    error: str = ""
+
+
+def look() -> SerialFacts:
+    """Find out; ports of the motherboard without anything behind them are left out."""
+    try:
+        found = serial_ports()
+    except ImportError as error:
+        return SerialFacts(error=str(error))
+    ports = tuple(
+        Access(port, _group_of(port.device), os.access(port.device, os.R_OK | os.W_OK))
+        for port in found
+    )
+    return SerialFacts(ports, os.environ.get("USER", ""), tuple(map(_name, os.getgroups())))
+
+
+def judge(facts: SerialFacts) -> list[Finding]:
+    """Say what is well and what is not."""
+    if facts.error:
+        return [warn("serial", facts.error, "pip install pyserial")]
+    if not facts.ports:
+        return [ok("serial", _("no serial port; mocks need none"))]
+    return [_port(access, facts) for access in facts.ports]
+
+
+def permission_mend(device: str) -> str:
+    """Return how this user comes to be allowed to open a device."""
+    groups = tuple(map(_name, os.getgroups()))
+    return _mend(_group_of(device), os.environ.get("USER", ""), groups)
+
+
+def _mend(group: str, user: str, groups: tuple[str, ...]) -> str:
+    user, group = user or "$USER", group or "dialout"
+    if group in groups:
+        mend = _("the group {group} is yours, but the port forbids it: look at its udev rule")
+        return mend.format(group=group)
+    mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
+    return mend.format(group=group, user=user)
+
+
+def _port(access: Access, facts: SerialFacts) -> Finding:
+    port = access.port
+    what = ", ".join(part for part in (port.description, said(port.kind)) if part)
+    text = _("serial port {name}").format(name=port.path) + (f" ({what})" if what else "")
+    if access.allowed:
+        return ok("serial", text)
+    text = _("{what}: no permission").format(what=text)
+    return warn("serial", text, _mend(access.group, facts.user, facts.groups))
+
+
+def _group_of(device: str) -> str:
+    try:
+        return _name(os.stat(device).st_gid)  # noqa: PTH116 - a device, not a file to be read
+    except OSError:
+        return ""
+
+
+def _name(gid: int) -> str:
+    try:
+        return grp.getgrgid(gid).gr_name
+    except KeyError:
+        return str(gid)

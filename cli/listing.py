@@ -1,0 +1,116 @@
+"""`deck list` and `deck check`: what there is to start, and what is wrong with it."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from launcher.errors import ProfileError
+from launcher.profile.catalog import find_profile, list_profiles
+from launcher.profile.load import load_profile
+from launcher.profile.text import shown
+from text.i18n import _, ngettext, pick, said
+from text.output import DIM, RED, YELLOW, Paint, json_text, write
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from pathlib import Path
+
+    from launcher.errors import ProfileProblem
+    from launcher.profile.catalog import ProfileEntry
+    from launcher.profile.load import Profile
+
+
+def list_command(options: Namespace) -> int:
+    """Show every profile; broken ones with their first problem."""
+    entries = list_profiles()
+    if options.json:
+        write(json_text([_as_json(entry) for entry in entries], indent=2))
+        return 0
+    width = max((len(entry.name) for entry in entries), default=0)
+    paint = Paint(sys.stdout)
+    for entry in entries:
+        name = plain(entry.name).ljust(width)
+        if entry.error:
+            first = said(entry.problems[0].words) if entry.problems else plain(entry.error)
+            write(f"{name}  {paint(_('broken'), RED)}: {first}")
+            continue
+        nodes = paint(_("nodes: {names}").format(names=", ".join(entry.nodes)), DIM)
+        write(f"{name}  {pick(entry.title)}")
+        write(f"{'':{width}}  {nodes}")
+    return 0
+
+
+def check_command(options: Namespace) -> int:
+    """Say what is wrong with one profile or with all, or with devices; 0 if nothing is."""
+    if options.preflight:
+        from cli.preflight.command import preflight_command
+
+        return preflight_command(options)
+    if options.profile:
+        paths = [find_profile(options.profile)]
+    else:
+        paths = [entry.path for entry in list_profiles()]
+    if options.json:
+        found = [_checked(path, options) for path in paths]
+        write(json_text(found, indent=2))
+        return 2 if any(each["problems"] for each in found) else 0
+    return max([_check(path, options) for path in paths], default=0)
+
+
+def _load(path: Path, options: Namespace) -> Profile:
+    return load_profile(
+        path, hardware=options.hardware, overrides=options.overrides, domain=options.domain
+    )
+
+
+def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]] | str]:
+    """Return what is wrong with a profile, for programs."""
+    problems: tuple[ProfileProblem, ...] = ()
+    warnings: tuple[ProfileProblem, ...] = ()
+    try:
+        warnings = _load(path, options).warnings
+    except ProfileError as error:
+        problems = error.problems
+    return {
+        "path": str(path),
+        "problems": [asdict(problem) for problem in problems],
+        "warnings": [asdict(problem) for problem in warnings],
+    }
+
+
+def _check(path: Path, options: Namespace) -> int:
+    paint = Paint(sys.stdout)
+    try:
+        profile = _load(path, options)
+    except ProfileError as error:
+        for problem in error.problems:
+            write(_line(problem, paint, RED))
+        return error.exit_code
+    for problem in profile.warnings:
+        write(_line(problem, paint, YELLOW, _("warning") + ": "))
+    count = len(profile.nodes)
+    nodes = ngettext("{count} node", "{count} nodes", count).format(count=count)
+    write(f"{plain(shown(path))}: {_('all is well')}, {nodes}")
+    return 0
+
+
+def _line(problem: ProfileProblem, paint: Paint, colour: str, kind: str = "") -> str:
+    words = said(problem.words)
+    where = plain(f"{problem.where}: ")
+    return paint(where, colour) + kind + words.removeprefix(where)
+
+
+def _as_json(entry: ProfileEntry) -> dict[str, object]:
+    return {
+        "name": entry.name,
+        "path": str(entry.path),
+        "title": dict(entry.title),
+        "about": dict(entry.about),
+        "lesson": entry.lesson,
+        "nodes": list(entry.nodes),
+        "panels": list(entry.panels),
+        "error": entry.error,
+    }

@@ -1,0 +1,50 @@
+"""`deck check --preflight`: each device of a profile found, permitted, free, and answering.
+
+Nothing moves by it: what is sent is told in `cli.preflight.answers`.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from typing import TYPE_CHECKING
+
+from cli.doctor.finding import Finding
+from cli.preflight.media import ask_camera, ask_sound
+from cli.preflight.ports import ask_ports
+from launcher.serial_ports import serial_ports
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from cli.preflight.answers import Answer
+    from launcher.profile.load import Profile
+    from launcher.serial_ports import SerialPort
+
+MEDIA = {"camera": ask_camera, "sound": ask_sound}
+"""Kinds of device without a serial port."""
+
+
+def examine(
+    profile: Profile, look: Callable[[], Sequence[SerialPort]] = serial_ports
+) -> list[Finding]:
+    """Look at every device that the profile's nodes name, all at the same time."""
+    devices = {name: profile.devices[name] for name in profile.used if name in profile.devices}
+    questions: dict[str, Callable[[], tuple[str, Answer]]] = {
+        **ask_ports(devices, look),
+        **{
+            name: partial(MEDIA[settings["kind"]], name, settings)
+            for name, settings in devices.items()
+            if settings.get("kind") in MEDIA
+        },
+    }
+    if not questions:
+        return []
+    with ThreadPoolExecutor(len(questions)) as pool:
+        answers = {name: pool.submit(question) for name, question in questions.items()}
+        return [_finding(name, *answers[name].result()) for name in devices if name in answers]
+
+
+def _finding(device: str, where: str, answer: Answer) -> Finding:
+    name = f"{device} {where}".rstrip()
+    return Finding(f"device.{device}", answer.level, f"{name}: {answer.text}", answer.mend)

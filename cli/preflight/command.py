@@ -1,0 +1,61 @@
+"""`deck check PROFILE --hardware real --preflight`: one line a device, and its mend."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from cli.doctor.command import show
+from cli.doctor.finding import Level
+from launcher.errors import UsageError
+from launcher.profile.catalog import find_profile
+from launcher.profile.load import load_profile
+from launcher.words import say
+from text.i18n import _, ngettext
+from text.output import Paint, json_text, write
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+NOT_READY = 2
+
+
+def preflight_command(options: Namespace) -> int:
+    """Ask every device of a profile; 2 if one of them is not as it should be.
+
+    Raises:
+        UsageError: without a profile, or on mock hardware, which has no devices before it runs.
+    """
+    if not options.profile:
+        raise UsageError(say("--preflight needs a profile: deck check robot --preflight"))
+    if options.hardware != "real":
+        raise UsageError(say("--preflight asks real devices: add --hardware real"))
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+    )
+    from cli.preflight import examine
+
+    findings = examine(profile)
+    bad = sum(finding.level is Level.FAIL for finding in findings)
+    if options.json:
+        write(json_text([asdict(finding) for finding in findings], indent=2))
+        return NOT_READY if bad else 0
+    if not findings:
+        write(_("{name} names no device").format(name=plain(profile.name)))
+        return 0
+    show(findings, Paint(sys.stdout))
+    if not bad:
+        write(_("every device answers; nothing was moved"))
+        return 0
+    words = ngettext(
+        "{count} device is not ready; nothing was moved",
+        "{count} devices are not ready; nothing was moved",
+        bad,
+    )
+    write(words.format(count=bad))
+    return NOT_READY

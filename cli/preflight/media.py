@@ -1,0 +1,134 @@
+"""Camera and sound of the real robot, asked in processes of their own: drivers hang and crash.
+
+A camera is asked for one picture; of sound only the devices' names are looked for, and nothing is
+recorded or played.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cli.child_python import python
+from cli.doctor.finding import Level
+from cli.doctor.serial_ports import permission_mend
+from cli.preflight.answers import Answer
+from cli.preflight.holders import holders
+from launcher.profile.device_variables import variable
+from text.i18n import _
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+WITHIN_S = 12.0
+OFF = "none"
+"""What the sound node takes for no device."""
+PICTURE = """
+import sys, cv2
+name = sys.argv[1]
+how = cv2.CAP_V4L2 if name.startswith("/dev/") else cv2.CAP_FFMPEG
+well, picture = cv2.VideoCapture(name, how).read()
+if well:
+    print("%dx%d" % (picture.shape[1], picture.shape[0]))
+"""
+SOUND = """
+import json, sys
+import sounddevice
+devices = [dict(device) for device in sounddevice.query_devices()]
+print(json.dumps([[d["name"], d["max_input_channels"], d["max_output_channels"]] for d in devices]))
+"""
+
+
+def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
+    """Ask a camera for a picture; its name goes before the answer."""
+    source = str(settings.get("source", "0"))
+    name = f"/dev/video{int(source)}" if source.isdecimal() else source
+    if "://" in name:
+        return _("a stream"), _picture(name)
+    path = Path(name).expanduser()
+    if not path.exists():
+        there = ", ".join(map(str, sorted(Path("/dev").glob("video[0-9]*")))) or _("none")
+        text = _("there is no such camera; cameras: {cameras}").format(cameras=there)
+        mend = _("plug it in, or choose with {variable}=/dev/v4l/by-id/...")
+        return name, Answer(Level.FAIL, text, mend.format(variable=variable(device, "source")))
+    if not os.access(path, os.R_OK):
+        return name, Answer(Level.FAIL, _("no permission"), permission_mend(str(path)))
+    return name, _picture(str(path))
+
+
+def _picture(name: str) -> Answer:
+    size = _run(PICTURE, name).strip()
+    if size:
+        return Answer(Level.OK, _("a picture of {size}").format(size=size))
+    others = holders(name)
+    if others:
+        text = _("{names} has it open").format(names=", ".join(map(str, others)))
+        return Answer(Level.FAIL, text, _("close it; if it is a running robot: deck down"))
+    mend = _("is it a video, and does it answer?")
+    if name.startswith("/dev/"):
+        mend = _("it may be another device of the same camera: v4l2-ctl --list-devices")
+    return Answer(Level.FAIL, _("it gives no picture"), mend)
+
+
+def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
+    """Look for microphone and loudspeaker."""
+    wanted = [(setting, str(settings.get(setting, ""))) for setting in ("microphone", "speaker")]
+    wanted = [(setting, name) for setting, name in wanted if name != OFF]
+    if not wanted:
+        return "", Answer(Level.OK, _("switched off"))
+    try:
+        there = json.loads(_run(SOUND) or "[]")
+    except ValueError:
+        there = []
+    found: list[str] = []
+    missing: list[tuple[str, str]] = []
+    for setting, name in wanted:
+        at = 1 if setting == "microphone" else 2
+        fitting = [
+            str(each[0])
+            for index, each in enumerate(there)
+            if each[at] and _is(name, index, str(each[0]))
+        ]
+        if fitting:
+            found.append(fitting[0])
+        else:
+            missing.append((setting, name))
+    if not missing:
+        return "", Answer(Level.OK, ", ".join(dict.fromkeys(found)))
+    return "", _no_sound(device, missing, [str(each[0]) for each in there])
+
+
+def _no_sound(device: str, missing: Sequence[tuple[str, str]], there: Sequence[str]) -> Answer:
+    titles = {"microphone": _("microphone"), "speaker": _("loudspeaker")}
+    wishes = [f"{titles[setting]} {name}".rstrip() for setting, name in missing]
+    text = _("not found: {missing}; sound devices: {names}").format(
+        missing=", ".join(wishes), names=", ".join(there) or _("none")
+    )
+    mend = _("plug it in, or give a part of its name to {variables}; `none` goes without")
+    variables = ", ".join(variable(device, setting) for setting, _name in missing)
+    return Answer(Level.FAIL, text, mend.format(variables=variables))
+
+
+def _is(wanted: str, index: int, name: str) -> bool:
+    if wanted.isdecimal():
+        return int(wanted) == index
+    return wanted.casefold() in name.casefold()
+
+
+def _run(program: str, *arguments: str) -> str:
+    """Return what a small program prints, nothing if it fails or takes too long."""
+    try:
+        done = subprocess.run(
+            python(program, *arguments),
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=WITHIN_S,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return done.stdout if done.returncode == 0 else ""

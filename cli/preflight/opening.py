@@ -1,0 +1,94 @@
+"""Opening the port of a device; why it cannot be opened, with the mend for just that."""
+
+from __future__ import annotations
+
+import errno
+import os
+import termios
+from typing import TYPE_CHECKING
+
+from cli.doctor.finding import Level
+from cli.doctor.serial_ports import permission_mend
+from cli.preflight.answers import Answer
+from cli.preflight.holders import holders
+from cli.preflight.line import Line
+from launcher.profile.serial_choice import how_to_choose
+from launcher.serial_ports import lasting_names
+from text.i18n import _, said
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from cli.preflight.holders import Holder
+    from launcher.serial_ports import SerialPort
+
+TAKEN = (errno.EAGAIN, errno.EBUSY)
+DENIED = (errno.EACCES, errno.EPERM)
+GONE = (errno.ENOENT, errno.ENXIO, errno.ENODEV)
+
+
+def opened(
+    device: str,
+    path: str,
+    baud: int,
+    ports: Sequence[SerialPort],
+    opening: Callable[[str, int], Line] = Line,
+) -> Line | Answer:
+    """Return the open port of a device, or why there is none; `ports`: what there is instead."""
+    if not os.path.lexists(path):
+        return _missing(device, path, ports)
+    try:
+        line = opening(path, baud)
+    except (OSError, ValueError, termios.error) as error:
+        return _refused(device, path, error, ports)
+    others = holders(path)
+    if others:
+        line.close()
+        return _taken(path, others)
+    return line
+
+
+def advice(path: str) -> str:
+    """Return the name to write in place of one that changes from plugging to plugging, if any."""
+    if path.startswith("/dev/tty"):
+        return lasting_names().get(os.path.realpath(path), "")
+    return ""
+
+
+def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPort]) -> Answer:
+    number = _number(error)
+    if number in TAKEN:
+        return _taken(path, holders(path))
+    if number in DENIED:
+        return Answer(Level.FAIL, _("no permission"), permission_mend(path))
+    if number in GONE:
+        return _missing(device, path, ports)
+    if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
+        return Answer(Level.FAIL, _("it is not a serial port"), str(said(how_to_choose(device))))
+    words = str(error).splitlines()[0] if str(error) else type(error).__name__
+    mend = _("unplug the device, plug it in again, and look at: dmesg | tail")
+    return Answer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), mend)
+
+
+def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> Answer:
+    dangling = os.path.islink(path)  # noqa: PTH114 - a device, not a file
+    text = _("it has gone, only its name is left") if dangling else _("there is no such port")
+    there = "; ".join(map(str, ports)) or _("none")
+    text = _("{text}; ports: {ports}").format(text=text, ports=there)
+    mend = _("plug it in, try another cable; or {choose}")
+    return Answer(Level.FAIL, text, mend.format(choose=said(how_to_choose(device))))
+
+
+def _taken(path: str, others: Sequence[Holder]) -> Answer:
+    if not others:
+        mend = _("close that program; sudo fuser -v {path} tells which it is").format(path=path)
+        return Answer(Level.FAIL, _("another program is using it"), mend)
+    names = ", ".join(map(str, others))
+    mend = _("close it; if it is a running robot: deck down")
+    return Answer(Level.FAIL, _("{names} has it open").format(names=names), mend)
+
+
+def _number(error: Exception) -> int | None:
+    cause = error.__context__ if isinstance(error.__context__, termios.error) else error
+    number = cause.args[0] if cause.args else None
+    return number if isinstance(number, int) else None

@@ -1,0 +1,90 @@
+"""The serial devices of a profile: which port each has, and what it says there."""
+
+from __future__ import annotations
+
+import os
+from contextlib import closing
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from cli.doctor.finding import Level
+from cli.preflight.answers import Answer, ask
+from cli.preflight.opening import advice, opened
+from launcher.profile.devices import wanted
+from launcher.profile.serial_choice import AUTO, Unclear, choose
+from text.i18n import _, said
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from launcher.serial_ports import SerialPort
+
+BAUD = 115_200
+
+
+def ask_ports(
+    devices: Mapping[str, Mapping[str, Any]], look: Callable[[], Sequence[SerialPort]]
+) -> dict[str, Callable[[], tuple[str, Answer]]]:
+    """Return, for each device with a port, how to ask it: the port's name and the answer."""
+    serial = wanted(devices)
+    if not serial:
+        return {}
+    ports = look()
+    chosen = choose(serial, ports)
+    paths: dict[str, str] = {}
+    for device in serial:
+        found = chosen.get(device)
+        written = str(devices[device]["port"])
+        paths[device] = written if found is None or isinstance(found, Unclear) else found.path
+    return {
+        device: partial(_ask, device, devices[device], paths, chosen.get(device), ports)
+        for device in serial
+    }
+
+
+def _ask(
+    device: str,
+    settings: Mapping[str, Any],
+    paths: Mapping[str, str],
+    chosen: SerialPort | Unclear | None,
+    ports: Sequence[SerialPort],
+) -> tuple[str, Answer]:
+    if isinstance(chosen, Unclear):
+        return "", Answer(Level.FAIL, str(said(chosen.message)), str(said(chosen.hint)))
+    return paths[device], _one(device, settings, paths, ports)
+
+
+def _one(
+    device: str,
+    settings: Mapping[str, Any],
+    paths: Mapping[str, str],
+    ports: Sequence[SerialPort],
+) -> Answer:
+    path = paths[device]
+    twins = [
+        other
+        for other, its in paths.items()
+        if other != device and its != AUTO and os.path.realpath(its) == os.path.realpath(path)
+    ]
+    if twins:
+        text = _("the same port as {others}").format(others=", ".join(twins))
+        mend = _("give each device its own port; ls -l /dev/serial/by-id tells which is which")
+        return Answer(Level.FAIL, text, mend)
+    baud = settings.get("baud", BAUD)
+    line = opened(device, path, baud if isinstance(baud, int) else BAUD, ports)
+    if isinstance(line, Answer):
+        return line
+    with closing(line):
+        try:
+            answer = ask(str(settings.get("kind", "")), line)
+        except OSError as error:
+            mend = _("check the cable and the supply")
+            return Answer(
+                Level.FAIL, _("it disappeared while being asked: {error}").format(error=error), mend
+            )
+    lasting = advice(path)
+    if answer.level is Level.OK and lasting:
+        text = _("{text}; its name may belong to another device after it is plugged in again")
+        mend = _("write {path}").format(path=lasting)
+        return Answer(Level.WARN, text.format(text=answer.text), mend)
+    return answer

@@ -1,0 +1,146 @@
+"""`deck record`: topics of the running robot into a folder that `ros2 bag` and Foxglove read.
+
+With `--json` it writes one object a line, told apart by `event`:
+
+    recording   the first one: folder, domain
+    status      each second: seconds, messages, bytes, bytes_per_s, lost, topics
+    summary     the last one: the same with exit_code, complaints, and of each topic its type,
+                messages, bytes and lost
+"""
+
+from __future__ import annotations
+
+import math
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cli.robot_to_hear import robot_to_hear
+from graph.bag.errors import BagError
+from launcher.errors import UsageError
+from launcher.processes.shared_memory_unfinished import discard_unfinished
+from launcher.rundir import new_recording
+from launcher.words import say
+from text.i18n import _
+from text.output import BOLD, Paint, json_text, keep_stdout_to_ourselves, table, write
+from text.plain import plain
+from tui.recording.words import complaints, progress, size_words
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Sequence
+
+    from graph.recording.recorder import Recorder, RecordingStatus
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+TOLD_S = 1.0
+
+
+def record_command(options: Namespace) -> int:
+    """Record until it is stopped; 0 if the bag is whole and has something in it."""
+    from graph.recording.recorder import Recorder
+
+    topics = [_topic(name) for name in options.topics]
+    what, domain, discovery = robot_to_hear(options.domain)
+    folder = Path(options.output) if options.output else new_recording(what)
+    recorder = Recorder(
+        domain, discovery, folder, topics or None, hidden=options.hidden, images=options.images
+    )
+    stop = threading.Event()
+    for number in SIGNALS:
+        signal.signal(number, lambda *_: stop.set())
+    keep_stdout_to_ourselves()
+    # There may be no supervisor here that does it.
+    discard_unfinished()
+    try:
+        recorder.start()
+    except BagError as error:
+        raise UsageError(error.words) from error
+    try:
+        _begin(folder, domain, as_json=options.json)
+        _tell_until(recorder, stop, options)
+    finally:
+        status = recorder.stop()
+    return _end(status, as_json=options.json)
+
+
+def _topic(name: str) -> str:
+    """Return the full name of a topic; UsageError for what is none."""
+    full = f"/{name.lstrip('/')}"
+    if not full.replace("/", "").replace("_", "").isalnum() or not full.isascii():
+        raise UsageError(
+            say("{name!r} is not a valid topic name; write it as /sensor/sonar_front", name=name)
+        )
+    return full
+
+
+def _begin(folder: Path, domain: int, *, as_json: bool) -> None:
+    if as_json:
+        _object("recording", folder=str(folder), domain=domain)
+        return
+    words = _("recording domain {domain} into {folder}; Ctrl-C ends it")
+    write(words.format(domain=domain, folder=plain(str(folder))))
+
+
+def _tell_until(recorder: Recorder, stop: threading.Event, options: Namespace) -> None:
+    """Tell how it goes each second, until it is stopped, fails, or its time is over."""
+    deadline_s = time.monotonic() + (math.inf if options.seconds is None else options.seconds)
+    while not (recorder.status.error or stop.is_set()):
+        left_s = deadline_s - time.monotonic()
+        if left_s <= 0 or stop.wait(min(left_s, TOLD_S)):
+            return
+        status = recorder.status
+        if options.json:
+            _object("status", **_figures(status), topics=len(status.topics))
+        else:
+            write(progress(status))
+
+
+def _end(status: RecordingStatus, *, as_json: bool) -> int:
+    """Tell how it went; return the exit code."""
+    found = list(complaints(status))
+    if not status.messages and not status.error:
+        found.append(_("nothing was recorded: nobody has published anything"))
+    code = 1 if status.error or not status.messages else 0
+    if as_json:
+        rows = [vars(row) for row in status.topics]
+        _object("summary", **_figures(status), exit_code=code, complaints=found, topics=rows)
+        return code
+    _table(status)
+    for sentence in found:
+        write(sentence)
+    write(_("{folder}: {words}").format(folder=plain(status.folder), words=progress(status)))
+    if status.messages:
+        write(_("to see it: deck replay {folder}").format(folder=plain(status.folder)))
+    return code
+
+
+def _table(status: RecordingStatus) -> None:
+    head = (_("TOPIC"), _("TYPE"), _("MESSAGES"), _("SIZE"), _("LOST"))
+    rows: Sequence[Sequence[str]] = [
+        (row.name, row.type_name, str(row.messages), size_words(row.bytes), str(row.lost))
+        for row in sorted(status.topics, key=lambda row: row.name)
+    ]
+    if rows:
+        first, *others = table(head, rows)
+        write("")
+        write(Paint(sys.stdout)(first, BOLD))
+        for line in others:
+            write(line)
+
+
+def _figures(status: RecordingStatus) -> dict[str, object]:
+    return {
+        "seconds": round(status.seconds, 3),
+        "messages": status.messages,
+        "bytes": status.bytes,
+        "bytes_per_s": round(status.bytes_per_s),
+        "lost": status.lost,
+    }
+
+
+def _object(event: str, **fields: object) -> None:
+    write(json_text({"event": event, **fields}))

@@ -1,0 +1,55 @@
+"""`deck replay`: the screen on a recording, with no robot and no ROS; or which ones there are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cli.recordings import find_recording, list_recordings
+from cli.screen import has_terminal
+from launcher.errors import UsageError
+from launcher.words import say
+from text.i18n import _
+from text.output import say_error
+from tui.session.orders import Order, ReplayOrder
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from pathlib import Path
+
+
+def replay_command(options: Namespace) -> int:
+    """Show the screen on a bag until it is left, or publish it; 2 for what is no bag."""
+    if (options.motion or options.domain is not None) and not options.publish:
+        raise UsageError(say("--motion and --domain are for --publish alone"))
+    if options.bag is None:
+        return list_recordings()
+    bag = find_recording(options.bag)
+    if options.publish:
+        from cli.replay_publishing import publish_bag
+
+        return publish_bag(bag, options)
+    _check(bag, whole=not has_terminal())
+    if not has_terminal():
+        say_error(_("replay needs a terminal; `deck replay --publish` works without one"))
+        return 2
+    from tui.live import run_live
+
+    order = ReplayOrder(bag, options.rate, options.loop, options.start)
+    return run_live(Order(replay=order), options.lang, options.bandwidth)
+
+
+def _check(bag: Path, *, whole: bool) -> None:
+    """Say what is wrong with the bag, before anything else is said or shown.
+
+    `whole`: look inside too, which the screen does by itself: it may take a while.
+    """
+    from graph.bag.errors import BagError
+    from graph.bag.reading import files_of, open_bag
+
+    try:
+        if whole:
+            open_bag(bag).close()
+        else:
+            files_of(bag)
+    except BagError as error:
+        raise UsageError(error.words) from error

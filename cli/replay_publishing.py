@@ -1,0 +1,127 @@
+"""`deck replay --publish`: a recording onto the ROS graph, with no screen.
+
+What moves a robot is left out unless it is asked for, and so is every topic that somebody else
+publishes: by a recorded distance beside a measured one a robot drives into what it does not see.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from typing import TYPE_CHECKING
+
+from cli.robot_to_hear import robot_to_hear
+from graph.bag.errors import BagError
+from launcher.errors import UsageError
+from launcher.processes.shared_memory_unfinished import discard_unfinished
+from launcher.words import say
+from robot.safety.moving_topics import EMERGENCY_STOP, STOPPED_BY_ZEROS, moves
+from text.i18n import _, ngettext, said
+from text.output import keep_stdout_to_ourselves, say_error, write
+from text.plain import plain
+from tui.recording.words import BETWEEN, length_words
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from pathlib import Path
+
+    from graph.bag.publishing import BagPublisher, Progress
+    from graph.bag.reading import Bag, TopicInBag
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def publish_bag(path: Path, options: Namespace) -> int:
+    """Publish until the end or until it is stopped; 1 if nothing could be published."""
+    from graph.bag.reading import open_bag
+
+    _name, domain, discovery = robot_to_hear(options.domain)
+    stop = threading.Event()
+    for number in SIGNALS:
+        signal.signal(number, lambda *_: stop.set())
+    keep_stdout_to_ourselves()
+    try:
+        with open_bag(path) as bag:
+            return _publish(bag, domain, discovery, stop, options)
+    except BagError as error:
+        raise UsageError(error.words) from error
+
+
+def _publish(
+    bag: Bag,
+    domain: int,
+    discovery: str | tuple[str, ...],
+    stop: threading.Event,
+    options: Namespace,
+) -> int:
+    from graph.bag.publishing import BagPublisher
+    from graph.ros import open_ros
+
+    # There may be no supervisor here that does it.
+    discard_unfinished()
+    try:
+        ros = open_ros(domain, discovery, "replay")
+    except Exception as error:  # noqa: BLE001 - rclpy may raise anything, or be missing
+        say_error(said(say("ROS cannot be used: {reason}", reason=error)))
+        return 1
+    try:
+        publisher = BagPublisher(
+            bag, ros, lambda topic: _refusal(topic, motion=options.motion), STOPPED_BY_ZEROS
+        )
+        publisher.find_others(stop)
+        _begin(bag, publisher, domain)
+        told = _tell_left_out(publisher.progress, set())
+        if not publisher.topics:
+            say_error(_("nothing is left to publish"))
+            return 1
+
+        def tell(progress: Progress) -> None:
+            told.update(_tell_left_out(progress, told))
+            write(_words(progress, bag))
+
+        publisher.play(stop, tell, rate=options.rate, start_s=options.start, loop=options.loop)
+        _tell_left_out(publisher.progress, told)
+        # Only who has read it all knows.
+        _tell(bag.damage)
+        write(_("published: {words}").format(words=_words(publisher.progress, bag)))
+        return 0
+    finally:
+        ros.close()
+
+
+def _refusal(topic: TopicInBag, *, motion: bool) -> str | None:
+    if topic.name == EMERGENCY_STOP:
+        return say("an emergency stop is given and released by people alone")
+    if not motion and moves(topic.name, topic.kind.name):
+        return say("it moves the robot; --motion publishes it too")
+    return None
+
+
+def _begin(bag: Bag, publisher: BagPublisher, domain: int) -> None:
+    topics = ngettext("{n} topic", "{n} topics", publisher.topics).format(n=publisher.topics)
+    words = _("publishing {name} in domain {domain}: {topics}, {length}; Ctrl-C ends it")
+    length = length_words(bag.length_s)
+    write(words.format(name=plain(bag.name), domain=domain, topics=topics, length=length))
+    _tell(bag.cut)
+
+
+def _tell(sentence: str | None) -> None:
+    if sentence:
+        write(plain(said(sentence), 400))
+
+
+def _tell_left_out(progress: Progress, told: set[str]) -> set[str]:
+    """Say of each topic that is newly left out why; return the names of all that are."""
+    for name, reason in sorted(progress.left_out.items()):
+        if name not in told:
+            words = _("not published: {topic}: {reason}")
+            write(words.format(topic=plain(name), reason=plain(said(reason), 300)))
+    return set(progress.left_out)
+
+
+def _words(progress: Progress, bag: Bag) -> str:
+    place = _("{now} of {length}").format(
+        now=length_words(progress.seconds), length=length_words(bag.length_s)
+    )
+    count = progress.messages
+    return BETWEEN.join((place, ngettext("{n} message", "{n} messages", count).format(n=count)))

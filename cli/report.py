@@ -1,0 +1,236 @@
+"""What `deck run` writes: lines for people, or JSON for programs.
+
+JSON is one object a line, told apart by `event`:
+
+    session   the profile as started: name, domain, hardware, log_dir, ...
+    status    a node's state has changed: node, state, detail, pid, restarts, exit_code, signal
+    log       a line of a node: node, seq, time (unix), severity, text, logger, source
+    skipped   node and lines: so many lines were left out here, the log file has them
+    summary   the last one: healthy, exit_code, reason (what ended the run if nobody here did),
+              seconds, and nodes as for `status` with `healthy`
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from launcher.status import NodeState, Severity
+from text.i18n import Prose, _, ngettext, said
+from text.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
+from text.plain import plain
+from tui.session.hardware_words import hardware_words
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from launcher.status import LogLine, NodeStatus, SessionInfo
+
+    Write = Callable[[str], None]
+
+COLOURS = {Severity.WARN: YELLOW, Severity.ERROR: RED, Severity.FATAL: RED, Severity.DEBUG: DIM}
+DECK = "deck"
+
+
+@dataclass(frozen=True)
+class Summary:
+    """How a run went."""
+
+    nodes: Sequence[NodeStatus]
+    """As they were before they were stopped."""
+    healthy: Mapping[str, bool]
+    """By the node's name."""
+    seconds: float
+    reason: str
+    """What ended the run, empty if it was stopped from here."""
+
+    @property
+    def well(self) -> bool:
+        """Whether every node was, and nothing else ended the run."""
+        return all(self.healthy.values()) and not self.reason
+
+    @property
+    def exit_code(self) -> int:
+        """Of `deck run`."""
+        return 0 if self.well else 1
+
+
+class Report(Protocol):
+    """Tells a run as it goes."""
+
+    def session(self, session: SessionInfo) -> None:
+        """Tell what was started."""
+
+    def status(self, node: NodeStatus) -> None:
+        """Tell that a node's state, or what is said of it, has changed."""
+
+    def log(self, line: LogLine) -> None:
+        """Tell a line of a node."""
+
+    def skipped(self, node: str, lines: int) -> None:
+        """Tell that lines were left out."""
+
+    def note(self, text: str) -> None:
+        """Tell something about the run itself."""
+
+    def summary(self, summary: Summary) -> None:
+        """Tell how it went."""
+
+
+class TextReport:
+    """Lines for people, each with the name of its node."""
+
+    def __init__(self, write: Write, names: Sequence[str], paint: Paint) -> None:
+        """`names`: of the nodes, which set the width of the prefix."""
+        self._write = write
+        self._paint = paint
+        self._width = max(map(len, (*names, DECK))) + 2
+        self._colours = {
+            name: PREFIX_COLOURS[index % len(PREFIX_COLOURS)] for index, name in enumerate(names)
+        }
+
+    def session(self, session: SessionInfo) -> None:
+        """Tell what was started, and how it is stopped."""
+        self.note(
+            _("{name}: domain {domain}, {hardware} hardware; Ctrl-C stops it").format(
+                name=session.name, domain=session.domain, hardware=hardware_words(session.hardware)
+            )
+        )
+
+    def status(self, node: NodeStatus) -> None:
+        """Tell states that the log does not tell."""
+        if node.state is NodeState.READY:
+            self._line(node.name, self._paint(_("ready"), DIM))
+
+    def log(self, line: LogLine) -> None:
+        """Tell a line of a node; its severity as a word and as a colour."""
+        text = said(line.text)
+        if line.severity is not Severity.INFO:
+            text = f"{line.severity.name} {text}"
+        colour = COLOURS.get(line.severity) or (DIM if line.source == DECK else "")
+        self._line(line.node, self._paint(text, colour) if colour else plain(text))
+
+    def skipped(self, node: str, lines: int) -> None:
+        """Tell that lines were left out."""
+        words = ngettext(
+            "{count} line left out, the log file has it",
+            "{count} lines left out, the log file has them",
+            lines,
+        )
+        self._line(node, self._paint(words.format(count=lines), DIM))
+
+    def note(self, text: str) -> None:
+        """Tell something about the run itself."""
+        self._line(DECK, plain(text))
+
+    def summary(self, summary: Summary) -> None:
+        """Tell how it went, as a table."""
+        nodes, healthy = summary.nodes, summary.healthy
+        head = (_("NODE"), _("RESULT"), _("STATE"), _("RESTARTS"), _("DETAIL"))
+        rows = [
+            (
+                node.name,
+                _("healthy") if healthy[node.name] else _("FAILED"),
+                _(node.state.value),
+                str(node.restarts),
+                said(node.detail),
+            )
+            for node in nodes
+        ]
+        first, *others = table(head, rows)
+        self._write("")
+        self._write(self._paint(first, BOLD))
+        for node, line in zip(nodes, others, strict=True):
+            self._write(line if healthy[node.name] else self._paint(line, RED))
+        bad = [node.name for node in nodes if not healthy[node.name]]
+        parts = []
+        if bad:
+            parts.append(_("not healthy: {names}").format(names=", ".join(bad)))
+        if summary.reason:
+            parts.append(_("ended from elsewhere: {reason}").format(reason=said(summary.reason)))
+        words = plain("; ".join(parts)) or _("every node stayed healthy")
+        self._write(
+            _("{words}; {seconds:.1f} s").format(words=words, seconds=Prose(summary.seconds))
+        )
+
+    def _line(self, node: str, text: str) -> None:
+        prefix = f"[{node}]".ljust(self._width)
+        colour = self._colours.get(node, BOLD)
+        self._write(f"{self._paint(prefix, colour)} {text}")
+
+
+class JsonReport:
+    """One JSON object a line; the module's text tells which."""
+
+    def __init__(self, write: Write) -> None:
+        self._write = write
+
+    def session(self, session: SessionInfo) -> None:
+        """Tell what was started."""
+        self._object(
+            "session",
+            name=session.name,
+            profile=session.profile,
+            title=session.title,
+            lesson=session.lesson,
+            run_id=session.run_id,
+            domain=session.domain,
+            discovery=session.discovery,
+            hardware=session.hardware,
+            supervisor_pid=session.supervisor_pid,
+            log_dir=session.log_dir,
+        )
+
+    def status(self, node: NodeStatus) -> None:
+        """Tell a node's state."""
+        self._object("status", **status_fields(node))
+
+    def log(self, line: LogLine) -> None:
+        """Tell a line of a node."""
+        self._object(
+            "log",
+            node=line.node,
+            seq=line.seq,
+            time=line.time_s,
+            severity=line.severity.value,
+            text=line.text,
+            logger=line.logger,
+            source=line.source,
+        )
+
+    def skipped(self, node: str, lines: int) -> None:
+        """Tell that lines were left out."""
+        self._object("skipped", node=node, lines=lines)
+
+    def note(self, text: str) -> None:
+        """Say nothing: what a program must know has an event of its own."""
+
+    def summary(self, summary: Summary) -> None:
+        """Tell how it went."""
+        self._object(
+            "summary",
+            healthy=summary.well,
+            exit_code=summary.exit_code,
+            reason=summary.reason,
+            seconds=round(summary.seconds, 3),
+            nodes=[
+                {**status_fields(node), "healthy": summary.healthy[node.name]}
+                for node in summary.nodes
+            ],
+        )
+
+    def _object(self, event: str, **fields: object) -> None:
+        self._write(json_text({"event": event, **fields}))
+
+
+def status_fields(node: NodeStatus) -> dict[str, object]:
+    """Return what JSON says of a node."""
+    return {
+        "node": node.name,
+        "state": node.state.value,
+        "detail": node.detail,
+        "pid": node.pid,
+        "restarts": node.restarts,
+        "exit_code": node.exit_code,
+        "signal": node.signal,
+    }

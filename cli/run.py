@@ -1,0 +1,220 @@
+"""`deck run`: a profile without a screen, from its start to its summary."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+import time
+from typing import TYPE_CHECKING
+
+from cli.company import warn_of_company
+from cli.health import over, settled, well
+from cli.line_writer import LineWriter
+from cli.report import JsonReport, Summary, TextReport
+from cli.stop_in_force import stop_is_kept, stop_words
+from launcher.errors import SilentSupervisorError
+from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.profile.catalog import find_profile
+from launcher.profile.load import load_profile
+from launcher.serial_ports import serial_ports
+from launcher.status import NodeState
+from text.i18n import _, language, ngettext, said
+from text.output import Paint, drop_output, say_error
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from cli.report import Report
+    from launcher.client.client import SupervisorClient
+    from launcher.client.start import StartingSupervisor
+    from launcher.events import Event
+    from launcher.profile.load import Profile
+    from launcher.status import NodeStatus
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+INTERRUPTED = 130
+PAST_LINES = 1000
+"""Of what the nodes have said by the time that they can be heard."""
+
+
+def run_command(options: Namespace) -> int:
+    """Start a profile, tell what happens, stop it; 0 if every node stayed healthy."""
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+        ports=serial_ports,
+    )
+    warn_of_company(profile)
+    if stop_is_kept(profile.domain):
+        say_error(stop_words(profile.domain))
+    return asyncio.run(_main(profile, options))
+
+
+async def _main(profile: Profile, options: Namespace) -> int:
+    loop = asyncio.get_running_loop()
+    run = Run(profile, options.seconds, options.supervisor)
+    writer = LineWriter(
+        sys.stdout.fileno(),
+        sys.stdout.encoding or "utf-8",
+        left_out=_left_out_json if options.json else _left_out_words,
+        on_gone=lambda: loop.call_soon_threadsafe(run.stop),
+    )
+    run.report = (
+        JsonReport(writer.write)
+        if options.json
+        else TextReport(writer.write, list(profile.nodes), Paint(sys.stdout))
+    )
+    for number in SIGNALS:
+        loop.add_signal_handler(number, run.interrupt)
+    try:
+        return await run.to_the_end()
+    finally:
+        await asyncio.to_thread(writer.finish)
+        if writer.gone:
+            drop_output()
+
+
+def _left_out_words(count: int) -> str:
+    words = ngettext(
+        "[deck] {count} line left out: whoever reads this is too slow",
+        "[deck] {count} lines left out: whoever reads this is too slow",
+        count,
+    )
+    return words.format(count=count)
+
+
+def _left_out_json(count: int) -> str:
+    return f'{{"event": "skipped", "node": null, "lines": {count}}}'
+
+
+class Run:
+    """One run of a profile in the foreground."""
+
+    report: Report
+
+    def __init__(
+        self, profile: Profile, seconds: float | None, supervisor: StartingSupervisor
+    ) -> None:
+        """`seconds`: how long to go on once all nodes are up; None for ever."""
+        self._profile = profile
+        self._supervisor = supervisor
+        self._seconds = seconds
+        self._client: SupervisorClient | None = None
+        self._starting: asyncio.Task[SupervisorClient] | None = None
+        self._stopping: list[asyncio.Task[None]] = []
+        self._timer: asyncio.TimerHandle | None = None
+        self._told: dict[str, tuple[object, ...]] = {}
+        self._before_stop: dict[str, NodeStatus] = {}
+        self._on_the_way = False
+        self._ever_bad: set[str] = set()
+        self._asked_to_stop = 0
+
+    async def to_the_end(self) -> int:
+        """Run it; return the exit code."""
+        began = time.monotonic()
+        try:
+            client = await self._start()
+        except asyncio.CancelledError:
+            return INTERRUPTED
+        self.report.session(client.session)
+        reason = ""
+        async for event in client.events(past=PAST_LINES):
+            if isinstance(event, ClosedEvent):
+                reason = event.reason
+            else:
+                self._tell(event)
+        partings = await asyncio.gather(*self._stopping, return_exceptions=True)
+        await client.aclose()
+        silent = (each for each in partings if isinstance(each, SilentSupervisorError))
+        for problem in (*silent,)[:1]:
+            self.report.note(said(problem.args[0]))
+        return self._summary(client, reason, time.monotonic() - began)
+
+    def interrupt(self) -> None:
+        """Stop because somebody says so; the second time at once."""
+        if not self._asked_to_stop:
+            self.report.note(_("stopping; Ctrl-C again does not wait"))
+        self.stop()
+
+    def stop(self) -> None:
+        """Stop in order; the second time at once."""
+        self._asked_to_stop += 1
+        client = self._client
+        if client is None:
+            if self._starting is not None:
+                self._starting.cancel()
+            return
+        if self._asked_to_stop > 2:
+            return
+        if self._timer is not None:
+            self._timer.cancel()
+        if not self._before_stop:
+            self._before_stop = dict(client.nodes)
+            self._on_the_way = not settled(client.nodes)
+        shutdown = client.shutdown(now=self._asked_to_stop > 1)
+        self._stopping.append(asyncio.ensure_future(shutdown))
+
+    async def _start(self) -> SupervisorClient:
+        from launcher.client.client import launch
+
+        self._starting = asyncio.ensure_future(
+            launch(
+                self._profile,
+                foreground=True,
+                node_lang=language(),
+                supervisor=self._supervisor,
+            )
+        )
+        if self._asked_to_stop:
+            self._starting.cancel()
+        self._client = await self._starting
+        return self._client
+
+    def _tell(self, event: Event) -> None:
+        if isinstance(event, LogEvent):
+            for line in event.lines:
+                self.report.log(line)
+            for node, count in event.skipped.items():
+                self.report.skipped(node, count)
+        elif isinstance(event, StatusEvent):
+            for status in event.nodes:
+                self._tell_status(status)
+            self._look()
+
+    def _tell_status(self, node: NodeStatus) -> None:
+        """Tell what is new about a node; its CPU and memory are not."""
+        now = (node.state, node.detail, node.pid, node.restarts, node.exit_code, node.signal)
+        if self._told.get(node.name) == now:
+            return
+        self._told[node.name] = now
+        bad = node.state in (NodeState.FAILED, NodeState.BACKOFF) or node.restarts
+        if bad and not self._asked_to_stop and not self._profile.nodes[node.name].optional:
+            self._ever_bad.add(node.name)
+        self.report.status(node)
+
+    def _look(self) -> None:
+        """Begin to count the seconds once all is up; end if all has ended."""
+        if self._client is None or self._asked_to_stop:
+            return
+        nodes = self._client.nodes
+        if over(nodes):
+            self.report.note(_("every node has ended"))
+            self.stop()
+        elif self._seconds is not None and self._timer is None and settled(nodes):
+            loop = asyncio.get_running_loop()
+            self._timer = loop.call_later(self._seconds, self.stop)
+
+    def _summary(self, client: SupervisorClient, reason: str, seconds: float) -> int:
+        nodes = self._before_stop or client.nodes
+        optional = {name for name, node in self._profile.nodes.items() if node.optional}
+        healthy = {
+            name: name not in self._ever_bad and well(node, optional, on_the_way=self._on_the_way)
+            for name, node in nodes.items()
+        }
+        cut_short = "" if self._asked_to_stop else reason
+        summary = Summary(list(nodes.values()), healthy, seconds, cut_short)
+        self.report.summary(summary)
+        return summary.exit_code

@@ -1,0 +1,105 @@
+"""`deck` and `deck attach`: the screen, if there is a terminal to show it on."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from cli.arguments import COMMANDS, HELP
+from launcher.errors import ProfileNotFoundError, UsageError
+from launcher.profile.catalog import find_profile
+from launcher.words import say
+from text.i18n import _
+from text.output import say_error, write
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from pathlib import Path
+
+
+def open_command(options: Namespace) -> int:
+    """Show the screen; without a terminal do as `deck run` does."""
+    if options.version:
+        from importlib import metadata
+
+        write(f"deck {metadata.version('deck-robot')}")
+        return 0
+    profile = None if options.profile is None else profile_or_command(options.profile)
+    if not has_terminal():
+        return _without_screen(options)
+    from tui.app import run_screen
+
+    return run_screen(
+        profile,
+        hardware=options.hardware,
+        overrides=tuple(options.overrides),
+        domain=options.domain,
+        lang=options.lang,
+        attach=None,
+        bandwidth=options.bandwidth,
+    )
+
+
+def profile_or_command(name: str) -> Path:
+    """Return the file of the profile; what is none may be a mistyped command word.
+
+    Raises:
+        UsageError: if there is no such profile; it names the command that was probably meant.
+    """
+    try:
+        return find_profile(name)
+    except ProfileNotFoundError as error:
+        from difflib import get_close_matches  # Rarely needed, and slow to import.
+
+        command = get_close_matches(name, (*COMMANDS, HELP), n=1)
+        if not command or error.near:
+            raise
+        words = say(
+            "no profile and no command {name!r}; did you mean `deck {command}`?",
+            name=name,
+            command=command[0],
+        )
+        raise UsageError(words) from error
+
+
+def attach_command(options: Namespace) -> int:
+    """Show the screen of a profile that runs in the background."""
+    if not has_terminal():
+        say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
+        return 2
+    from launcher.client.running import find_running
+
+    # What is wrong with the name is told before there is a screen.
+    session = find_running(options.name).session
+    from tui.app import run_screen
+
+    return run_screen(
+        None,
+        lang=options.lang,
+        attach=options.name or session.name,
+        bandwidth=options.bandwidth,
+    )
+
+
+def has_terminal() -> bool:
+    """Whether a screen can be drawn and keys can be read."""
+    streams = (sys.stdin, sys.stdout)
+    return all(stream is not None and stream.isatty() for stream in streams) and os.environ.get(
+        "TERM", ""
+    ) not in ("", "dumb")
+
+
+def _without_screen(options: Namespace) -> int:
+    if options.profile is None:
+        say_error(
+            _("there is no terminal to draw on; name a profile: deck run 09-brain (deck list)")
+        )
+        return 2
+    from launcher.client.start import StartingSupervisor
+
+    with StartingSupervisor() as options.supervisor:
+        from cli.run import run_command
+
+        options.seconds, options.json = None, False
+        return run_command(options)

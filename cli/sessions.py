@@ -1,0 +1,89 @@
+"""A running profile and its nodes, as a table for people and as JSON for programs."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from cli.health import well
+from cli.report import status_fields
+from cli.stop_in_force import stop_is_kept
+from text.i18n import _, decimal, pick, said
+from text.output import BOLD, DIM, RED, Paint, table, write
+from tui.session.hardware_words import hardware_words
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Sequence
+
+    from launcher.status import NodeStatus, SessionInfo
+
+
+def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection[str] = ()) -> None:
+    """Write the session and a line for each of its nodes; none of `optional` is alarming."""
+    paint = Paint(sys.stdout)
+    where = _("domain {domain}, {hardware} hardware, supervisor {pid}").format(
+        domain=session.domain, hardware=hardware_words(session.hardware), pid=session.supervisor_pid
+    )
+    write(f"{paint(session.name, BOLD)}  {pick(session.title)}  {paint(f'({where})', DIM)}")
+    head = (
+        _("NODE"),
+        _("STATE"),
+        "PID",
+        _("UPTIME"),
+        _("RESTARTS"),
+        _("CPU %"),
+        _("MB"),
+        _("DETAIL"),
+    )
+    rows = [_row(node) for node in nodes]
+    first, *lines = table(head, rows)
+    write(paint(first, DIM))
+    for node, line in zip(nodes, lines, strict=True):
+        write(line if well(node, optional) else paint(line, RED))
+
+
+def _row(node: NodeStatus) -> tuple[str, ...]:
+    return (
+        node.name,
+        _(node.state.value),
+        "" if node.pid is None else str(node.pid),
+        "" if node.uptime_s is None else _duration(node.uptime_s),
+        str(node.restarts),
+        "" if node.cpu_percent is None else decimal(f"{node.cpu_percent:.1f}"),
+        "" if node.memory_bytes is None else f"{node.memory_bytes / 1e6:.0f}",
+        said(node.detail),
+    )
+
+
+def _duration(seconds: float) -> str:
+    """Return `12 s`, `3:07` or `1:02:03`."""
+    whole = int(seconds)
+    if whole < 60:
+        return _("{seconds} s").format(seconds=whole)
+    hours, rest = divmod(whole, 3600)
+    minutes = f"{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"
+    return f"{hours}:{minutes}" if hours else minutes
+
+
+def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, object]:
+    """Return what `deck ps --json` says of a session."""
+    return {
+        "name": session.name,
+        "run_id": session.run_id,
+        "profile": session.profile,
+        "domain": session.domain,
+        "hardware": session.hardware,
+        "foreground": session.foreground,
+        "supervisor_pid": session.supervisor_pid,
+        "log_dir": session.log_dir,
+        "emergency_stop": stop_is_kept(session.domain),
+        "nodes": [
+            {
+                **status_fields(node),
+                "uptime_s": node.uptime_s,
+                "cpu_percent": node.cpu_percent,
+                "memory_bytes": node.memory_bytes,
+            }
+            for node in nodes
+        ],
+    }

@@ -1,0 +1,72 @@
+"""What options are made of: words into values, or a word why not."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+from launcher.domain.domain import parse_domain
+from launcher.errors import DomainError
+from text.i18n import _, said
+
+
+def domain(text: str) -> int:
+    """Return a ROS domain, 0 to 232."""
+    try:
+        return parse_domain(text, "--domain")
+    except DomainError as error:
+        words = said(error.args[0]).removeprefix("--domain: ")
+        raise argparse.ArgumentTypeError(words) from error
+
+
+def seconds(text: str) -> float:
+    """Return seconds, none below 0."""
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not 0 <= seconds < math.inf:
+        raise argparse.ArgumentTypeError(_("{text!r} is not a number of seconds").format(text=text))
+    return seconds
+
+
+def rate(text: str) -> float:
+    """Return how many times as fast as it was, 0.1 to 10."""
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = math.nan
+    if not 0.1 <= rate <= 10:
+        raise argparse.ArgumentTypeError(
+            _("{text!r} is not a rate; expected 0.1 to 10").format(text=text)
+        )
+    return rate
+
+
+def bandwidth(text: str) -> int:
+    """Return bytes a second, 0 for any number: `40` and `40k` are 40 kB/s, `off` is as `0`."""
+    number = text.lower().removesuffix("k")
+    if number in ("off", "0"):
+        return 0
+    try:
+        kilobytes = float(number)
+    except ValueError:
+        kilobytes = math.nan
+    if not 1 <= kilobytes < math.inf:
+        words = _("{text!r} is not a bandwidth; expected kB/s from 1 on, as 40, or off")
+        raise argparse.ArgumentTypeError(words.format(text=text))
+    return round(1000 * kilobytes)
+
+
+def folder(text: str) -> str:
+    """Return the name of a folder, which is not empty."""
+    if not text:
+        raise argparse.ArgumentTypeError(_("the name of a folder is missing"))
+    return text
+
+
+def count(text: str) -> int:
+    """Return a number of lines."""
+    if not (text.isascii() and text.isdigit()):
+        raise argparse.ArgumentTypeError(_("{text!r} is not a number of lines").format(text=text))
+    return int(text)

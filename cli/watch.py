@@ -1,0 +1,31 @@
+"""`deck watch`: the screen on what runs in a domain; Deck starts nothing and stops nothing."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from cli.screen import has_terminal
+from text.i18n import _
+from text.output import say_error
+from tui.session.orders import Order, WatchOrder
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+
+def watch_command(options: Namespace) -> int:
+    """Show the screen until it is left."""
+    from launcher.domain.domain import choose_domain
+
+    domain = choose_domain(options.domain, None, os.environ)
+    if not has_terminal():
+        say_error(_("watch needs a terminal; `deck record` works without one"))
+        return 2
+    from launcher.processes.shared_memory_unfinished import discard_unfinished
+    from tui.live import run_live
+
+    # There may be no supervisor here that does it.
+    discard_unfinished()
+    order = Order(watch=WatchOrder(domain, options.discovery))
+    return run_live(order, options.lang, options.bandwidth)

@@ -1,0 +1,221 @@
+"""The palette's contents: what can be done on any screen, found by its name in either language."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, cast
+
+from textual.command import DiscoveryHit, Hit, Hits, Provider
+
+from text.i18n import NAMES, _, in_every_language
+from tui.actions import Action, bound
+from tui.actions.app import (
+    ShowComposer,
+    ShowDeck,
+    ShowDevices,
+    ShowFlow,
+    ShowGraph,
+    ShowLogs,
+    ShowScreen,
+    ShowTopics,
+)
+from tui.composer.actions import COMPOSER_ACTIONS
+from tui.deck.actions import DECK_ACTIONS
+from tui.devices.actions import DEVICES_ACTIONS
+from tui.flow.actions import FLOW_ACTIONS
+from tui.graph.actions import GRAPH_ACTIONS
+from tui.logs.actions import LOGS_ACTIONS
+from tui.recording.replay_actions import ReplayAction
+from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
+from tui.themes import CYCLE
+from tui.topics.actions import TOPICS_ACTIONS
+from tui.topics.publish_actions import PUBLISH_ACTIONS, OpenPublish
+
+if TYPE_CHECKING:
+    from textual.dom import DOMNode
+    from textual.fuzzy import Matcher
+    from textual.screen import Screen
+
+    from tui.app import DeckApp
+
+Actions = tuple[type[Action[Any]], ...]
+Run = Callable[[], Awaitable[None] | None]
+
+HERE, IMPOSSIBLE, ELSEWHERE = 4.0, 2.0, 1.0
+"""By how much a name counts more where it can be done at once."""
+IN_A_SENTENCE = 0.1
+"""What a word counts that stands in the sentence about an action, not in its name."""
+WORD = 4
+"""How many letters are looked for in sentences: fewer stand in most of them."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where actions are: a screen, or what one of its actions opens there."""
+
+    show: type[ShowScreen]
+    actions: Actions
+    opener: type[Action[Any]] | None = None
+
+    @property
+    def name(self) -> str:
+        """How it is called in the language spoken now."""
+        words = [self.show.title, *([self.opener.title] if self.opener else [])]
+        return " › ".join(map(_, words))
+
+
+PLACES = (
+    Place(ShowDeck, (*DECK_ACTIONS, OpenTeleop)),
+    Place(ShowDeck, TELEOP_ACTIONS, OpenTeleop),
+    Place(ShowTopics, (*TOPICS_ACTIONS, OpenPublish)),
+    Place(ShowTopics, PUBLISH_ACTIONS, OpenPublish),
+    Place(ShowComposer, COMPOSER_ACTIONS),
+    Place(ShowLogs, LOGS_ACTIONS),
+    Place(ShowGraph, GRAPH_ACTIONS),
+    Place(ShowFlow, FLOW_ACTIONS),
+    Place(ShowDevices, DEVICES_ACTIONS),
+)
+"""Every screen of a session, told without importing any of them: that would hold the keys up."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One thing that the palette offers."""
+
+    title: str
+    """As it is shown, in the language spoken now."""
+    names: tuple[str, ...]
+    """What it is found by."""
+    sentence: str
+    run: Run
+    about: tuple[str, ...] = ()
+    """The sentence in every language."""
+    weight: float = HERE
+    offered: bool = True
+    """Whether it is shown before anything is typed."""
+
+    def score(self, matcher: Matcher) -> float:
+        """Return how well it is called what is looked for; 0 if it is not."""
+        found = max(map(matcher.match, (self.title, *self.names)))
+        if found > 0:
+            return found * self.weight
+        wanted = matcher.query.casefold()
+        told = len(wanted) >= WORD and any(wanted in words.casefold() for words in self.about)
+        return IN_A_SENTENCE * self.weight if told else 0.0
+
+    def shown(self, matcher: Matcher) -> str:
+        """Return the title, with the name that was found behind it if it is another one."""
+        if matcher.match(self.title) > 0:
+            return self.title
+        best = max(self.names, key=matcher.match)
+        return f"{self.title} ({best})" if matcher.match(best) > 0 else self.title
+
+
+def entries(app: DeckApp, front: Screen[Any]) -> Iterable[Entry]:
+    """Yield what can be done now, then what is impossible in `front` now, or is done elsewhere."""
+    yield from _possible(front)
+    yield from _possible(app)
+    for code, name in NAMES.items():
+        run = partial(app.speak, code)
+        yield Entry(name, (name,), _("Use this language."), run)
+    for theme in sorted(app.available_themes):
+        names = tuple(words.format(name=theme) for words in in_every_language("Theme: {name}"))
+        take = partial(setattr, app, "theme", theme)
+        words = _("Theme: {name}").format(name=theme)
+        yield Entry(words, names, _("Use these colours."), take, offered=theme in CYCLE)
+    yield from _impossible(app, front)
+    yield from _impossible(app, app)
+    for place in PLACES:
+        if place.opener is not None or place.show.screen != getattr(front, "tab", ""):
+            for action in place.actions:
+                yield _elsewhere(app, place, action)
+
+
+def _entry(action: type[Action[Any]], title: str, run: Run, weight: float = HERE) -> Entry:
+    return Entry(
+        title,
+        in_every_language(action.title),
+        _(action.tooltip),
+        run,
+        in_every_language(action.tooltip),
+        weight,
+        offered=weight == HERE,
+    )
+
+
+def _possible(target: DOMNode) -> Iterable[Entry]:
+    for action in bound(target):
+        if action.palette and action.possible(target):
+            yield _entry(action, _(action.label(target)), run=partial(action.run, target))
+
+
+def _impossible(app: DeckApp, target: DOMNode) -> Iterable[Entry]:
+    for action in bound(target):
+        if not action.palette or action.possible(target):
+            continue
+        if app.feed.replay is None and issubclass(action, ReplayAction):
+            continue
+        title = _("{title} (not possible now)").format(title=_(action.title))
+        told = f"{title}. {_(action.tooltip)}"
+        yield _entry(action, title, run=partial(_tell, app, told), weight=IMPOSSIBLE)
+
+
+def _tell(app: DeckApp, words: str) -> None:
+    app.notify(words, severity="warning")
+
+
+def _elsewhere(app: DeckApp, place: Place, action: type[Action[Any]]) -> Entry:
+    title = f"{place.name} › {_(action.title)}"
+    go = partial(_go, app, place, action)
+    return _entry(action, title, run=go, weight=ELSEWHERE)
+
+
+async def _go(app: DeckApp, place: Place, action: type[Action[Any]]) -> None:
+    """Bring the screen of an action to the front, and there do it if nothing can go wrong."""
+    if not app.feed.opened:
+        told = _("{title} is on the screen {place}: open a lesson first.")
+        _tell(app, told.format(title=_(action.title), place=place.name))
+        return
+    await app.show_screen(place.show.screen)
+    app.call_after_refresh(_arrive, app, place, action)
+
+
+async def _arrive(app: DeckApp, place: Place, action: type[Action[Any]]) -> None:
+    front = app.screen
+    if front is not app.get_screen(place.show.screen):
+        return
+    first = place.opener or action
+    possible = bool(first.possible(front))
+    # A switch that stands the other way round would do the opposite of what was chosen.
+    if possible and first.from_elsewhere and first.label(front) == first.title:
+        await first.run(front)
+        if first is action:
+            return
+    told = _("{title} is here: {key}.") if possible else _("{title} is here, not possible now.")
+    words = told.format(title=_(action.title), key=app.keys_of(action)[0])
+    app.notify(f"{words} {_(action.tooltip)}")
+
+
+class Commands(Provider):
+    """Offers what can be done, and says where."""
+
+    async def discover(self) -> Hits:
+        """Yield what is offered before anything is typed."""
+        for entry in entries(cast("DeckApp", self.app), self.screen):
+            if entry.offered:
+                yield DiscoveryHit(entry.title, entry.run, help=entry.sentence)
+
+    async def search(self, query: str) -> Hits:
+        """Yield what is called something like `query`, or say that nothing is."""
+        matcher = self.matcher(query)
+        found = False
+        for entry in entries(cast("DeckApp", self.app), self.screen):
+            score = entry.score(matcher)
+            if score > 0:
+                found = True
+                shown = matcher.highlight(entry.shown(matcher))
+                yield Hit(score, shown, entry.run, help=entry.sentence)
+        if not found:
+            yield Hit(0.01, _("Nothing has that name."), lambda: None)

@@ -1,5 +1,0 @@
-"""The command line: `deck`, `deck run`, `deck list` and the rest."""
-
-from tui.cli.main import main
-
-__all__ = ["main"]

@@ -1,0 +1,1 @@
+"""The tab in which the JSON of an LLM is written, checked and sent."""

@@ -1,0 +1,139 @@
+"""The trail of a sent message as lines: how long after, what kind, where, and what."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from rich.segment import Segment
+from rich.style import Style
+from rich.text import Text
+from textual.geometry import Size
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from text.figures import whole
+from text.i18n import _
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from tui.composer.outcome_story import Entry
+
+DELAY, MARK, TOPIC = 8, 3, 18
+"""Cells for the delay, for the mark between its blanks, and for the name of the topic."""
+ROOMY = 64
+"""Width from which on what is said stands in a column of its own."""
+KINDS = {"✓": "good", "✗": "bad", "!": "held", "→": "passed", "·": "awaited"}
+SECOND_MS = 1000
+
+
+class Outcome(ScrollView, can_focus=True):
+    """Shows a headline and entries below it, long ones wrapped."""
+
+    ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"outcome--{kind}" for kind in KINDS.values()}
+    DEFAULT_CSS = """
+    Outcome {
+        width: 1fr; height: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
+        &> .outcome--good { color: $text-success; }
+        &> .outcome--bad { color: $text-error; text-style: bold; }
+        &> .outcome--held { color: $text-warning; text-style: bold; }
+        &> .outcome--passed { color: $text-primary; }
+        &> .outcome--awaited { color: $foreground; text-style: dim; }
+    }
+    """
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._headline = ""
+        self._entries: tuple[Entry, ...] = ()
+        self._strips: list[Strip] = []
+        self._off_colour = False
+        """Whether the strips have the colours of another theme."""
+
+    def show(self, headline: str, entries: Sequence[Entry]) -> None:
+        """Show these entries; drawn only if something is new."""
+        shown = (headline, tuple(entries))
+        if shown != (self._headline, self._entries):
+            self._headline, self._entries = shown
+            self._draw()
+
+    @property
+    def headline(self) -> str:
+        """The line above the entries."""
+        return self._headline
+
+    @property
+    def entries(self) -> tuple[Entry, ...]:
+        """What is shown."""
+        return self._entries
+
+    def render_line(self, y: int) -> Strip:
+        """One line of the trail."""
+        if self._off_colour:
+            self._lay()
+        index, width = y + self.scroll_offset.y, self.size.width
+        if index >= len(self._strips):
+            return Strip.blank(width, self.rich_style)
+        return self._strips[index].adjust_cell_length(width, self.rich_style)
+
+    def on_resize(self) -> None:
+        """Wrap anew."""
+        self._draw()
+
+    def notify_style_update(self) -> None:
+        """Draw in the colours of another theme: those of the parts come after this call."""
+        super().notify_style_update()
+        self._off_colour = True
+        self.refresh()
+
+    def watch_show_vertical_scrollbar(self) -> None:
+        """Wrap anew at the width that the scroll bar leaves."""
+        self._draw()
+
+    def _draw(self) -> None:
+        self._lay()
+        self.virtual_size = Size(0, len(self._strips))
+        self.refresh()
+
+    def _lay(self) -> None:
+        self._off_colour = False
+        base, width = self.rich_style, max(1, self.scrollable_size.width)
+        self._strips = []
+        if self._headline:
+            self._wrap([], 0, self._headline, base + Style(bold=True), width)
+        for entry in self._entries:
+            self._entry(entry, width)
+
+    def _entry(self, entry: Entry, width: int) -> None:
+        base = self.rich_style
+        dim = base + Style(dim=True)
+        kind = base + self.get_component_rich_style(f"outcome--{KINDS[entry.mark]}", partial=True)
+        before = [
+            Segment(delay_text(entry.delay_s).rjust(DELAY), dim),
+            Segment(f" {entry.mark} ", kind),
+        ]
+        if width < ROOMY:
+            self._wrap(before, DELAY + MARK, f"{entry.topic}: {entry.text}", kind, width)
+            return
+        before.append(Segment(entry.topic.ljust(TOPIC), dim))
+        self._wrap(before, DELAY + MARK + TOPIC, entry.text, kind, width)
+
+    def _wrap(
+        self, before: list[Segment], indent: int, text: str, style: Style, width: int
+    ) -> None:
+        """Add the text behind `before`, its further lines indented."""
+        lines = Text(text).wrap(self.app.console, max(8, width - indent))
+        for number, line in enumerate(lines or [Text("")]):
+            margin = before if number == 0 else [Segment(" " * indent, self.rich_style)]
+            self._strips.append(Strip([*margin, Segment(line.plain, style)]))
+
+
+def delay_text(delay_s: float | None) -> str:
+    """A delay, in milliseconds where it is short."""
+    if delay_s is None:
+        return "…"
+    milliseconds = delay_s * SECOND_MS
+    if abs(milliseconds) < 10 * SECOND_MS:
+        return _("{n} ms").format(n=whole(milliseconds))
+    return _("{n} s").format(n=whole(delay_s))

@@ -1,0 +1,199 @@
+"""What came of a message to /llm_raw_json: the trail it left on the topics, with its delays."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from text.i18n import _, ngettext
+from text.plain import plain
+from tui.composer import outcome_words as words
+from tui.composer.json_words import reported_words
+from tui.emergency.state import blocked_reason
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from graph.data import Sample
+    from robot.commands.schema import LlmResponse
+
+SENT_TO, RESULT = "/llm_raw_json", "/llm_result"
+DRIVE, DRIVE_SAFE, WHEELS = "/drive", "/drive_safe", "/wheel_commands"
+HEAD, SAFETY = "/head_state", "/safety_state"
+SERVICE = "set_head_position"
+FOLLOWED = frozenset({RESULT, DRIVE, DRIVE_SAFE, WHEELS, HEAD, SAFETY})
+
+ANSWER_WITHIN_S = 3.0
+OVER_AFTER_S = 12.0
+"""How long the trail of a message is looked for."""
+SETTLED_S = 0.3
+"""What comes steadily and says the same that long after the command has taken it in."""
+NEAR_RAD = math.radians(1.5)
+MOST_OF_A_KIND = 12
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One thing that came of it."""
+
+    mark: str
+    """`✓` done, `✗` refused, `!` held back, `→` passed on, `·` under way or awaited."""
+    topic: str
+    text: str
+    delay_s: float | None = None
+    """Since the sending; None for what has not come."""
+
+
+class Story:
+    """The trail of one message."""
+
+    def __init__(
+        self,
+        sent_s: float,
+        listeners: Sequence[str],
+        expected: LlmResponse | None,
+        before: Mapping[str, Sample],
+    ) -> None:
+        """`expected` is what was sent, if it was valid; `before` the newest samples until then."""
+        self.sent_s = sent_s
+        self.listeners = tuple(listeners)
+        self.failure = ""
+        """Why it could not be sent at all."""
+        self._before = dict(before)
+        commands = () if expected is None else expected.commands
+        drives = sum(command.action == "drive" for command in commands)
+        self._most_drives = MOST_OF_A_KIND if expected is None else drives
+        turns = [command for command in commands if command.action == "turn_head"]
+        self._target = (
+            (math.radians(turns[-1].pan), math.radians(turns[-1].tilt)) if turns else None
+        )
+        self._came: dict[str, list[Entry]] = {}
+        """Entries by topic or service."""
+        self._drive: tuple[float, float] | None = None
+        self._drive_s: float | None = None
+        """When the newest setpoint came."""
+
+    def over(self, now_s: float) -> bool:
+        """Whether nothing more is looked for."""
+        return bool(self.failure) or now_s - self.sent_s > OVER_AFTER_S
+
+    def see(self, samples: Mapping[str, Iterable[Sample]]) -> None:
+        """Take in what has come."""
+        # What comes of a setpoint can be told only after the setpoint itself.
+        for topic, read in (
+            (RESULT, self._see_result),
+            (DRIVE, self._see_drive),
+            (SAFETY, self._see_safety),
+            (DRIVE_SAFE, self._see_drive_safe),
+            (WHEELS, self._see_wheels),
+            (HEAD, self._see_head),
+        ):
+            for sample in samples.get(topic, ()):
+                delay_s = sample.received_s - sample.age_s - self.sent_s
+                if delay_s >= 0:
+                    read(sample, delay_s)
+
+    def entries(self, now_s: float) -> list[Entry]:
+        """Everything so far in order of time, and what is still awaited."""
+        came = [entry for entries in self._came.values() for entry in entries]
+        came.sort(key=lambda entry: math.inf if entry.delay_s is None else entry.delay_s)
+        return [*came, *self._awaited(now_s)]
+
+    def _add(self, mark: str, topic: str, text: str, delay_s: float | None) -> None:
+        entries = self._came.setdefault(topic, [])
+        if len(entries) < MOST_OF_A_KIND:
+            entries.append(Entry(mark, topic, text, delay_s))
+
+    def _awaited(self, now_s: float) -> Iterable[Entry]:
+        late = now_s - self.sent_s >= ANSWER_WITHIN_S
+        if self.failure:
+            yield Entry("✗", SENT_TO, _("not sent: {reason}").format(reason=plain(self.failure)))
+        elif RESULT in self._came:
+            return
+        elif DRIVE in self._came:
+            if late:
+                yield Entry("·", RESULT, _("no reply: this parser does not report"))
+        elif not self.listeners:
+            silence = _("nobody listens to {topic}: is llm_parser running?")
+            yield Entry("✗", RESULT, silence.format(topic=SENT_TO))
+        elif late:
+            silence = _("no answer within {seconds} s: is llm_parser running? Listening: {nodes}")
+            nodes = plain(", ".join(self.listeners))
+            yield Entry("✗", RESULT, silence.format(seconds=f"{ANSWER_WITHIN_S:g}", nodes=nodes))
+        else:
+            yield Entry("·", RESULT, _("waiting for an answer"))
+
+    def _see_result(self, sample: Sample, delay_s: float) -> None:
+        event = words.event_of(sample.value)
+        kind: Any = event.get("event")
+        if kind == "accepted":
+            count = words.number(event.get("commands"))
+            whole = int(count) if math.isfinite(count) else 0
+            commands = ngettext("{n} command", "{n} commands", whole).format(n=whole)
+            thought = plain(str(event.get("thought", "")), words.LONGEST)
+            text = _("accepted: {commands} “{thought}”").format(commands=commands, thought=thought)
+            self._add("✓", RESULT, text, delay_s)
+        elif kind == "refused":
+            self._add("✗", RESULT, _("refused: nothing of it is executed"), delay_s)
+            problems = event.get("problems")
+            for problem in problems if isinstance(problems, list) else ():
+                if isinstance(problem, dict):
+                    self._add("✗", RESULT, reported_words(problem), delay_s)
+        elif kind == "head":
+            done, text = words.service_words(event)
+            self._add("✓" if done else "✗", SERVICE, text, delay_s)
+
+    def _see_drive(self, sample: Sample, delay_s: float) -> None:
+        if len(self._came.get(DRIVE, ())) < self._most_drives:
+            self._drive, self._drive_s = words.setpoint(sample.value), delay_s
+            self._add("→", DRIVE, words.drive_words(*self._drive), delay_s)
+
+    def _see_safety(self, sample: Sample, delay_s: float) -> None:
+        reason = blocked_reason(sample)
+        if reason and SAFETY not in self._came:
+            self._add("!", SAFETY, plain(reason, words.LONGEST), delay_s)
+
+    def _see_drive_safe(self, sample: Sample, delay_s: float) -> None:
+        if self._drive is None or not self._is_news(DRIVE_SAFE, sample, delay_s):
+            return
+        passed = words.setpoint(sample.value)
+        alike = all(
+            math.isclose(a, b, abs_tol=1e-3) for a, b in zip(passed, self._drive, strict=True)
+        )
+        if alike:
+            self._add("✓", DRIVE_SAFE, _("let through"), delay_s)
+        else:
+            held = _("held back to {drive}").format(drive=words.drive_words(*passed))
+            self._add("!", DRIVE_SAFE, held, delay_s)
+
+    def _see_wheels(self, sample: Sample, delay_s: float) -> None:
+        if self._is_news(WHEELS, sample, delay_s):
+            self._add("→", WHEELS, words.wheel_words(sample.value), delay_s)
+
+    def _is_news(self, topic: str, sample: Sample, delay_s: float) -> bool:
+        """Whether this is the topic's first word after the setpoint, and not the old one again."""
+        if topic in self._came or self._drive_s is None or delay_s < self._drive_s:
+            return False
+        before = self._before.get(topic)
+        if before is None or delay_s > self._drive_s + SETTLED_S:
+            return True
+        return _without_header(before) != _without_header(sample)
+
+    def _see_head(self, sample: Sample, delay_s: float) -> None:
+        had = self._came.get(HEAD, [])
+        if self._target is None or (had and had[0].mark == "✓"):
+            return
+        looks = words.joint(sample.value, "pan_joint"), words.joint(sample.value, "tilt_joint")
+        if any(map(math.isnan, looks)):
+            # Nobody knows yet where servos look that were not moved.
+            return
+        there = all(abs(a - b) < NEAR_RAD for a, b in zip(looks, self._target, strict=True))
+        entry = Entry(
+            "✓" if there else "·", HEAD, words.head_words(*looks), delay_s if there else None
+        )
+        self._came[HEAD] = [entry]
+
+
+def _without_header(sample: Sample) -> str:
+    return repr([(key, value) for key, value in sample.value.items() if key != "header"])

@@ -1,0 +1,91 @@
+"""Messages that a command leaves behind, as short sentences."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+from text.figures import figure, whole
+from text.i18n import _
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graph.data import Value
+
+LONGEST = 400
+
+
+def setpoint(value: Mapping[str, Value]) -> tuple[float, float]:
+    """Speed in m/s and steering in rad of an AckermannDriveStamped, nan where there is none."""
+    drive = value.get("drive")
+    fields: Mapping[str, Any] = drive if isinstance(drive, dict) else {}
+    return number(fields.get("speed")), number(fields.get("steering_angle"))
+
+
+def drive_words(speed_m_s: float, steering_rad: float) -> str:
+    """A setpoint with the side it steers to."""
+    words = _("{speed} m/s, {steering} rad, straight on")
+    if steering_rad > 0:
+        words = _("{speed} m/s, {steering} rad, to the left")
+    elif steering_rad < 0:
+        words = _("{speed} m/s, {steering} rad, to the right")
+    return words.format(speed=figure(speed_m_s), steering=figure(steering_rad))
+
+
+def wheel_words(value: Mapping[str, Value]) -> str:
+    """The speeds of the rear wheels of a JointState."""
+    return _("left {left}, right {right} rad/s").format(
+        left=figure(joint(value, "rear_left_wheel_joint", "velocity")),
+        right=figure(joint(value, "rear_right_wheel_joint", "velocity")),
+    )
+
+
+def head_words(pan_rad: float, tilt_rad: float) -> str:
+    """Where the head looks."""
+    return _("pan {pan}°, tilt {tilt}°").format(
+        pan=whole(math.degrees(pan_rad)), tilt=whole(math.degrees(tilt_rad))
+    )
+
+
+def service_words(event: Mapping[str, Any]) -> tuple[bool, str]:
+    """Whether the head took a command, and its answer, of llm_parser's `head` event."""
+    asked = head_words(
+        math.radians(number(event.get("pan"))), math.radians(number(event.get("tilt")))
+    )
+    error = event.get("error")
+    if error:
+        return False, plain(f"{asked}: {error}", LONGEST)
+    if event.get("sum") == 1:
+        return True, _("{head}: done").format(head=asked)
+    return False, _("{head}: refused").format(head=asked)
+
+
+def joint(value: Mapping[str, Value], name: str, field: str = "position") -> float:
+    """A figure of one joint of a JointState, nan if it has none."""
+    names: Any = value.get("name")
+    figures: Any = value.get(field)
+    try:
+        return float(figures[list(names).index(name)])
+    except (TypeError, ValueError, IndexError):
+        return math.nan
+
+
+def event_of(value: Mapping[str, Value]) -> dict[str, Any]:
+    """The JSON object in a std_msgs/String, empty if there is none."""
+    try:
+        found = json.loads(str(value.get("data")))
+    except (ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def number(value: object) -> float:
+    """A number from outside, nan if it is none."""
+    try:
+        return float(value) if isinstance(value, (int, float)) else math.nan
+    except OverflowError:
+        # JSON has whole numbers of any length.
+        return math.nan

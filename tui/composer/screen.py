@@ -1,0 +1,273 @@
+"""The JSON that an LLM would send: written, checked, sent, and what came of it."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Static, TextArea
+
+from robot.commands.schema import MAX_BYTES, CommandError, parse_llm
+from text.i18n import N_, _, decimal
+from text.plain import plain
+from tui import clock
+from tui.actions import bindings
+from tui.composer.actions import COMPOSER_ACTIONS, Send, SendAnyway
+from tui.composer.json_editor import JsonEditor, Place
+from tui.composer.outcome import Outcome
+from tui.composer.outcome_story import FOLLOWED, SENT_TO, Story
+from tui.composer.sent import Sent, sent_path
+from tui.composer.templates import TEMPLATES
+from tui.composer.templates_dialog import TemplatesDialog
+from tui.composer.verdict import JsonVerdict
+from tui.frame.screen import DeckScreen
+from tui.topics.words import names
+from tui.yaml_form.words import reason_words
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+    from textual.app import ComposeResult
+    from textual.timer import Timer
+
+    from graph.data import Sample, TopicRow
+    from robot.commands.schema import LlmResponse, Problem
+    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
+
+TYPE = "std_msgs/msg/String"
+CHECKED_AFTER_S = 0.15
+SENT_WITHIN_S = 3.0
+
+
+class ComposerScreen(DeckScreen):
+    """Editor and verdict beside the outcome, or above it where there is little room."""
+
+    tab: ClassVar[str] = "composer"
+    about: ClassVar[str] = N_(
+        "The JSON that a language model would send to the robot. It is checked as you write; what "
+        "is wrong is underlined and listed below with line, column and field. Sending puts it on "
+        "/llm_raw_json, and the right side shows what came of it: accepted or refused, what went "
+        "to the wheels and to the head, and after how many milliseconds."
+    )
+    period_s = 0.1
+    BINDINGS: ClassVar = bindings(*COMPOSER_ACTIONS)
+    DEFAULT_CSS = """
+    ComposerScreen {
+        #composer-body { height: 1fr; layout: horizontal; }
+        #composer-left { width: 1fr; height: 1fr; }
+        #composer-right { width: 1fr; height: 1fr; border-left: solid $panel; }
+        .composer-title {
+            height: 1; width: 1fr; background: $panel; color: $text-muted; padding: 0 1;
+        }
+    }
+    ComposerScreen.-compact #composer-body, ComposerScreen.-tiny #composer-body {
+        layout: vertical;
+    }
+    ComposerScreen.-compact #composer-right, ComposerScreen.-tiny #composer-right {
+        border-left: none; height: 8;
+    }
+    ComposerScreen.-compact.-flat #composer-right, ComposerScreen.-tiny.-flat #composer-right {
+        height: 30%;
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._sent = Sent(sent_path())
+        self._response: LlmResponse | None = None
+        self._story: Story | None = None
+        self._newest: dict[str, Sample] = {}
+        self._listener: TopicRow | None = None
+        self._checking: Timer | None = None
+
+    def compose_body(self) -> ComposeResult:
+        """Editor, verdict, outcome."""
+        with Horizontal(id="composer-body"):
+            with Vertical(id="composer-left"):
+                yield Static(id="composer-to", classes="composer-title", markup=False)
+                yield JsonEditor(TEMPLATES[0].text())
+                yield JsonVerdict()
+            with Vertical(id="composer-right"):
+                yield Static(id="composer-came", classes="composer-title", markup=False)
+                yield Outcome()
+
+    @property
+    def editor(self) -> JsonEditor:
+        """Where the JSON is written."""
+        return self.query_one(JsonEditor)
+
+    @property
+    def verdict(self) -> JsonVerdict:
+        """What is wrong with it."""
+        return self.query_one(JsonVerdict)
+
+    @property
+    def outcome(self) -> Outcome:
+        """What came of it."""
+        return self.query_one(Outcome)
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What is wrong with the JSON as it stands."""
+        return self.verdict.problems if self.is_mounted else ()
+
+    def follow_topics(self) -> set[str]:
+        """Everything that may come of a message, while this screen is in front or one is new."""
+        tracing = self._story is not None and not self._story.over(clock.now())
+        return set(FOLLOWED) if tracing or self.is_current else set()
+
+    def on_mount(self) -> None:
+        """Begin in the editor."""
+        self.editor.focus()
+        self.check()
+        self._say()
+
+    def on_screen_resume(self) -> None:
+        """Let the first message go out at once when its time comes."""
+        if self.feed.graph is not None:
+            self.feed.graph.prepare_publisher(SENT_TO, TYPE)
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Forget what belongs to another session."""
+        del message
+        self._story, self._listener = None, None
+        self._newest.clear()
+        if self.is_current and self.feed.graph is not None:
+            self.feed.graph.prepare_publisher(SENT_TO, TYPE)
+        self._say()
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Follow what comes of the message."""
+        update = message.update
+        self._listener = next((row for row in update.topics if row.name == SENT_TO), None)
+        if self._story is not None and not self._story.over(clock.now()):
+            self._story.see(update.samples)
+        for topic in FOLLOWED & update.samples.keys():
+            self._newest[topic] = update.samples[topic][-1]
+        self._say()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Say everything anew."""
+        del message
+        self.verdict.relabel()
+        self._say()
+
+    @on(TextArea.Changed)
+    def _text_changed(self) -> None:
+        if self._checking is not None:
+            self._checking.stop()
+        self._checking = self.set_timer(CHECKED_AFTER_S, self.check)
+
+    @on(JsonEditor.TooLong)
+    def _too_long(self) -> None:
+        words = _("Not pasted: {limit} bytes at most.").format(limit=MAX_BYTES)
+        self.notify(words, severity="warning", markup=False)
+
+    @on(JsonVerdict.Wanted)
+    def _wanted(self, message: JsonVerdict.Wanted) -> None:
+        self.editor.go_to(message.place)
+
+    def check(self) -> None:
+        """Check the JSON, and show what is wrong."""
+        problems: tuple[Problem, ...] = ()
+        try:
+            self._response = parse_llm(self.editor.text)
+        except CommandError as error:
+            self._response, problems = None, error.problems
+        had = self.problems
+        self.verdict.show(problems, len(self._response.commands) if self._response else 0)
+        self.editor.show_problems(Place(problem.line, problem.column) for problem in problems)
+        if bool(had) != bool(problems):
+            self.refresh_bindings()
+
+    def send(self, *, anyway: bool = False) -> None:
+        """Send the JSON; what is wrong only `anyway`."""
+        self.check()
+        if self.problems and not anyway:
+            self.go_to_next_problem()
+            words = _("Not sent: there are problems. {key} sends it anyway.").format(
+                key=self.deck.keys_of(SendAnyway)[0]
+            )
+            self.notify(words, severity="warning", markup=False)
+            return
+        graph = self.feed.graph
+        if graph is None:
+            words = _("Not sent: no lesson is running.")
+            self.notify(words, severity="warning", markup=False)
+            return
+        text = self.editor.text
+        self._sent.add(text)
+        self._story = Story(clock.now(), self._listeners(), self._response, self._newest)
+        self.topics_changed()
+        future = graph.publish(SENT_TO, TYPE, {"data": text})
+        # Not awaited here: keys wait for the end of what a key does.
+        self.run_worker(self._confirm(self._story, future), group="send")
+        self._say()
+
+    async def _confirm(self, story: Story, future: Future[int]) -> None:
+        try:
+            await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
+        except asyncio.TimeoutError:
+            story.failure = _("ROS did not accept it within {n} s").format(
+                n=decimal(f"{SENT_WITHIN_S:g}")
+            )
+            self._say()
+        except Exception as error:  # noqa: BLE001 - whatever it was, it is told
+            story.failure = reason_words(error)
+            self._say()
+
+    def choose_template(self) -> None:
+        """Ask which, and put it in place of what is there."""
+
+        def take(text: str | None) -> None:
+            if text is not None:
+                self.editor.replace_all(text)
+            self.editor.focus()
+
+        self.app.push_screen(TemplatesDialog(), take)
+
+    def recall(self, *, older: bool) -> None:
+        """Put what was sent before, or after, in place of what is there."""
+        text = self._sent.older(self.editor.text) if older else self._sent.newer()
+        if text is None:
+            self.app.bell()
+            return
+        self.editor.replace_all(text)
+
+    def go_to_next_problem(self) -> None:
+        """Put the cursor to the first problem behind it, at the end to the first of all."""
+        if not self.problems:
+            return
+        row, column = self.editor.cursor_location
+        places = sorted(Place(problem.line, problem.column) for problem in self.problems)
+        here = Place(row + 1, column + 1)
+        self.editor.go_to(next((place for place in places if place > here), places[0]))
+
+    def _listeners(self) -> list[str]:
+        row = self._listener
+        if row is None or not row.subscribers:
+            return []
+        return [names(row.subscribed_by) or str(row.subscribers)]
+
+    def _say(self) -> None:
+        if not self.is_mounted:
+            return
+        listening = ", ".join(self._listeners()) or _("nobody listens")
+        self._title("#composer-to", f"{SENT_TO} → {listening}")
+        self._title("#composer-came", _("What happened"))
+        story, now_s = self._story, clock.now()
+        if story is None:
+            hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
+            if self.feed.replay is not None:
+                hint = _("This is a recording: nobody can hear it.")
+            self.outcome.show(f"{_('Nothing has been sent yet.')} {hint}", ())
+            return
+        at = clock.time_of_day(story.sent_s)
+        self.outcome.show(_("Sent at {time}").format(time=at), story.entries(now_s))
+
+    def _title(self, selector: str, words: str) -> None:
+        title = self.query_one(selector, Static)
+        if title.content != words:
+            title.update(plain(words))

@@ -1,0 +1,103 @@
+"""Texts to begin with in the composer: what an LLM would say, and what it should not."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from text.i18n import N_, _
+
+
+class Template(NamedTuple):
+    """One text; title and thought are message ids."""
+
+    title: str
+    thought: str
+    json: str
+    """The whole text, with `{thought}` where the thought belongs."""
+
+    def text(self) -> str:
+        """The JSON with its thought in the language spoken now."""
+        return self.json.replace("{thought}", _(self.thought))
+
+
+TEMPLATES = (
+    Template(
+        N_("Look right and drive there slowly"),
+        N_("Something moved on the right. I look there and roll closer, slowly."),
+        """{
+  "thought": "{thought}",
+  "commands": [
+    {"action": "turn_head", "pan": -45, "tilt": 10},
+    {"action": "drive", "speed": 0.2, "steering": -0.3}
+  ]
+}
+""",
+    ),
+    Template(
+        N_("Stand still"),
+        N_("It is too close. I stop."),
+        """{
+  "thought": "{thought}",
+  "commands": [
+    {"action": "drive", "speed": 0.0, "steering": 0.0}
+  ]
+}
+""",
+    ),
+    Template(
+        N_("Look around without driving"),
+        N_("I stay where I am and look left, right and ahead."),
+        """{
+  "thought": "{thought}",
+  "commands": [
+    {"action": "turn_head", "pan": 60, "tilt": 0},
+    {"action": "turn_head", "pan": -60, "tilt": 0},
+    {"action": "turn_head", "pan": 0, "tilt": 0}
+  ]
+}
+""",
+    ),
+    Template(
+        N_("Only a thought"),
+        N_("Nothing is to be done now."),
+        """{
+  "thought": "{thought}",
+  "commands": []
+}
+""",
+    ),
+    Template(
+        N_("Wrong: faster than allowed"),
+        N_("I am in a hurry!"),
+        """{
+  "thought": "{thought}",
+  "commands": [
+    {"action": "drive", "speed": 5.0, "steering": 0.0}
+  ]
+}
+""",
+    ),
+    Template(
+        N_("Wrong: words of its own"),
+        N_("I jump over it."),
+        """{
+  "thought": "{thought}",
+  "commands": [
+    {"action": "jump", "height": 1.5},
+    {"action": "drive", "speed": "fast", "stering": 0.0}
+  ]
+}
+""",
+    ),
+    Template(
+        N_("Wrong: text around the JSON"),
+        N_("Here you are."),
+        """Sure! Here is the JSON:
+{
+  "thought": "{thought}",
+  "commands": []
+}
+""",
+    ),
+)
+"""The first is what the composer opens with."""

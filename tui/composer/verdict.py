@@ -1,0 +1,90 @@
+"""Whether the JSON holds, and if not a list of what is wrong that leads to the places."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from textual import on
+from textual.containers import Vertical
+from textual.message import Message
+from textual.widgets import OptionList, Static
+
+from text.i18n import _, ngettext
+from tui.composer.json_editor import Place
+from tui.composer.json_words import problem_words
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from robot.commands.schema import Problem
+
+
+class JsonVerdict(Vertical):
+    """One line with a mark and a word, and below it every problem; Enter goes to its place."""
+
+    class Wanted(Message):
+        """The place of a problem is to be shown."""
+
+        def __init__(self, place: Place) -> None:
+            super().__init__()
+            self.place = place
+
+    DEFAULT_CSS = """
+    JsonVerdict {
+        height: auto; max-height: 40%;
+        & > Static { height: 1; background: $panel; color: $text-success; padding: 0 1; }
+        & > OptionList {
+            height: auto; max-height: 1fr; display: none; background: $background; padding: 0 1;
+            scrollbar-size: 1 1;
+        }
+        &.-wrong > Static { color: $text-error; text-style: bold; }
+        &.-wrong > OptionList { display: block; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._problems: tuple[Problem, ...] = ()
+        self._commands: int | None = None
+
+    def compose(self) -> ComposeResult:
+        """The verdict above the list of problems."""
+        yield Static(markup=False)
+        yield OptionList(markup=False, compact=True)
+
+    def show(self, problems: tuple[Problem, ...], commands: int) -> None:
+        """Show what is wrong, or that nothing is and how many commands there are."""
+        if (problems, commands) != (self._problems, self._commands):
+            self._problems, self._commands = problems, commands
+            self._say()
+
+    def relabel(self) -> None:
+        """Say it anew, after the language changed."""
+        if self._commands is not None:
+            self._say()
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What is wrong."""
+        return self._problems
+
+    def _say(self) -> None:
+        self.set_class(bool(self._problems), "-wrong")
+        count = len(self._problems)
+        if count:
+            words = "✗ " + ngettext("{n} problem", "{n} problems", count).format(n=count)
+        else:
+            commands = self._commands or 0
+            words = "✓ " + _("valid: {commands}").format(
+                commands=ngettext("{n} command", "{n} commands", commands).format(n=commands)
+            )
+        self.query_one(Static).update(words)
+        listed = self.query_one(OptionList)
+        listed.clear_options()
+        listed.add_options([problem_words(problem) for problem in self._problems])
+
+    @on(OptionList.OptionSelected)
+    def _selected(self, event: OptionList.OptionSelected) -> None:
+        event.stop()
+        problem = self._problems[event.option_index]
+        self.post_message(self.Wanted(Place(problem.line, problem.column)))

@@ -1,0 +1,1 @@
+"""The first tab: the lesson's nodes, its panels, the log."""

@@ -1,0 +1,269 @@
+"""What can be done on the Deck; each letter also under its Cyrillic key."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from launcher.status import NodeState
+from text.i18n import N_, _
+from text.plain import plain
+from tui.actions.action import Action
+
+if TYPE_CHECKING:
+    from tui.deck.screen import LessonDeck
+
+
+ENDED = frozenset({NodeState.EXITED, NodeState.FAILED})
+RUNS = frozenset({NodeState.STARTING, NodeState.READY, NodeState.RUNNING})
+
+
+class DeckAction(Action["LessonDeck"]):
+    """Something on the Deck."""
+
+
+class _OfNode(DeckAction):
+    """Something about the chosen node."""
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only with a node chosen, in a session that has any of its own: a recording has none."""
+        if target.feed.watching or not target.feed.nodes:
+            return False
+        return True if target.chosen_node else None
+
+
+class _AskNode(_OfNode):
+    """Ask the supervisor to do something with the chosen node."""
+
+    asked: ClassVar[str]
+    done: ClassVar[frozenset[NodeState]] = frozenset()
+    """States in which there is nothing of it to do."""
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Not when the session is over, and not what is done already."""
+        if target.feed.link is None or target.chosen_state in cls.done:
+            return False
+        return super().possible(target)
+
+    @classmethod
+    def shown(cls, target: LessonDeck) -> bool:
+        """Not of a node that Deck has not started: there the key says so."""
+        return target.chosen_node not in target.feed.outside.now
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Ask; what others have started is theirs."""
+        name = target.chosen_node
+        if name in target.feed.outside.now:
+            words = _("{name} was not started by Deck: stop and restart it where it was started")
+            target.notify(words.format(name=plain(name, 60)), severity="warning", markup=False)
+        else:
+            target.ask(cls.asked, name)
+
+
+class StartNode(_AskNode):
+    """Start one."""
+
+    id = "node.start"
+    key = "s,ы"
+    title = N_("Start")
+    means = "start"
+    tooltip = N_("Start the chosen node, with all that it needs.")
+    footer = True
+    asked = "start"
+    done = RUNS
+
+
+class StopNode(_AskNode):
+    """Stop one."""
+
+    id = "node.stop"
+    key = "x,ч"
+    title = N_("Stop")
+    means = "stop"
+    tooltip = N_("Stop the chosen node; press again to force it.")
+    footer = True
+    asked = "stop"
+    done = ENDED
+
+
+class RestartNode(_AskNode):
+    """Restart one."""
+
+    id = "node.restart"
+    key = "r,к"
+    title = N_("Restart")
+    tooltip = N_("Stop the chosen node and start it again.")
+    footer = True
+    asked = "restart"
+
+
+class _AskAll(DeckAction):
+    """Ask the supervisor to do something with all nodes."""
+
+    asked: ClassVar[str]
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only where there are nodes that Deck has started."""
+        return target.feed.link is not None and bool(target.feed.nodes)
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Ask."""
+        target.ask(cls.asked)
+
+
+class StartAll(_AskAll):
+    """Start all."""
+
+    id = "nodes.start"
+    key = "S,Ы"
+    title = N_("Start all")
+    tooltip = N_("Start every node that does not run.")
+    asked = "start"
+
+
+class StopAll(_AskAll):
+    """Stop all."""
+
+    id = "nodes.stop"
+    key = "X,Ч"
+    title = N_("Stop all")
+    tooltip = N_("Stop every node, dependants first; press again to force it.")
+    asked = "stop"
+
+
+class RestartAll(_AskAll):
+    """Restart all."""
+
+    id = "nodes.restart"
+    key = "R,К"
+    title = N_("Restart all")
+    tooltip = N_("Stop every node and start it again.")
+    asked = "restart"
+
+
+class MuteNode(_OfNode):
+    """Leave out one node's lines."""
+
+    id = "log.mute"
+    key = "m,ь"
+    title = N_("Mute")
+    means = "leave out"
+    tooltip = N_("Leave the chosen node out of the log, or let it be heard again.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Mute it, or not."""
+        target.filter_log(target.log_filter.toggled(target.chosen_node))
+
+
+class HearOnly(_OfNode):
+    """Leave out all others."""
+
+    id = "log.only"
+    key = "o,щ"
+    title = N_("Only this")
+    means = "only this"
+    tooltip = N_("Show only the chosen node's log; again: as before.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Listen to it alone, or not."""
+        target.filter_log(target.log_filter.alone(target.chosen_node))
+
+
+class Severity(DeckAction):
+    """Leave out the least severe lines."""
+
+    id = "log.severity"
+    key = "u,г"
+    title = N_("Severity")
+    means = "how much of the log"
+    tooltip = N_("Hide the least severe lines that are shown; after FATAL all are shown again.")
+    from_elsewhere = True
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Raise the level."""
+        target.filter_log(target.log_filter.next_minimum())
+
+
+class HearAll(DeckAction):
+    """Leave out nothing."""
+
+    id = "log.all"
+    key = "a,ф"
+    title = N_("Whole log")
+    means = "all"
+    tooltip = N_("Let every node be heard, at every severity.")
+    from_elsewhere = True
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Show all."""
+        target.hear_all()
+
+
+class TurnPage(DeckAction):
+    """The panels that had no room."""
+
+    id = "deck.page"
+    key = "v,м"
+    title = N_("More panels")
+    means = "another view"
+    tooltip = N_("Show the panels that have no room on this page.")
+    footer = True
+    from_elsewhere = True
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only if there are any."""
+        return target.pages > 1
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Turn the page."""
+        target.turn_page()
+
+
+class WriteCommand(DeckAction):
+    """Speak to the robot."""
+
+    id = "deck.command"
+    key = "c,с"
+    title = N_("Command")
+    tooltip = N_("Write a word to /ai_command: forward, left, right, back, stop. Escape leaves.")
+    footer = True
+    priority = True
+    from_elsewhere = True
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only where a node takes such words."""
+        return target.driven
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Go to the field."""
+        target.write_command()
+
+
+DECK_ACTIONS = (
+    StartNode,
+    StopNode,
+    RestartNode,
+    MuteNode,
+    HearOnly,
+    WriteCommand,
+    TurnPage,
+    Severity,
+    HearAll,
+    StartAll,
+    StopAll,
+    RestartAll,
+)

@@ -1,0 +1,181 @@
+"""The line on which a person says to /ai_command what an AI would say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.message import Message
+from textual.suggester import Suggester
+from textual.widgets import Input, Static
+
+from robot.words import WORDS, parse_word
+from text.i18n import _, decimal, language
+from text.plain import plain
+from tui.widgets.field import Field
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+    from textual.widget import Widget
+
+KEPT = 100
+LONGEST = 200
+
+
+def words_in_order(code: str) -> list[str]:
+    """The words of the language spoken first, then those of the other."""
+    return [word for key in sorted(WORDS, key=lambda key: key != code) for word in WORDS[key]]
+
+
+class WordSuggester(Suggester):
+    """Completes a word of either language."""
+
+    def __init__(self) -> None:
+        """Words are few: nothing is cached, so that the language may change."""
+        super().__init__(use_cache=False, case_sensitive=True)
+
+    async def get_suggestion(self, value: str) -> str | None:
+        """The first word that begins with what is written, in any case, ё as е."""
+        start = value.casefold().replace("ё", "е")
+        for word in words_in_order(language()) if start else ():
+            if word.startswith(start):
+                return value + word[len(start) :]
+        return None
+
+
+class CommandLine(Vertical):
+    """A text field with the words the robot knows; Enter posts `CommandSent`.
+
+    A word it does not know is warned of while it is written, and sent all the same: the node that
+    listens will say what it thinks of it.
+    """
+
+    DEFAULT_CSS = """
+    CommandLine {
+        height: 2;
+        width: 1fr;
+        Input { width: 1fr; }
+        Static { width: 1fr; height: 1; color: $foreground 60%; text-wrap: nowrap; }
+        Static { text-overflow: ellipsis; }
+        Static.-warning { color: $text-warning; text-style: bold; }
+    }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up", "recall(-1)", show=False),
+        Binding("down", "recall(1)", show=False),
+    ]
+
+    class CommandSent(Message):
+        """A command is to be published."""
+
+        def __init__(self, line: CommandLine, text: str) -> None:
+            """Carry the text as it was written, without blanks around it."""
+            super().__init__()
+            self.line, self.text = line, text
+
+        @property
+        def control(self) -> Widget:
+            """The command line."""
+            return self.line
+
+    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
+        """Begin empty, nobody known to listen."""
+        super().__init__(id=id, classes=classes)
+        self._listeners: int | None = None
+        self._said: list[str] = []
+        self._at = 0
+        self._draft = ""
+
+    def compose(self) -> ComposeResult:
+        """The field and a remark."""
+        yield Field(compact=True, suggester=WordSuggester(), max_length=LONGEST)
+        yield Static("", markup=False)
+
+    def on_mount(self) -> None:
+        """Say which words there are."""
+        self.words_changed()
+
+    @property
+    def field(self) -> Input:
+        """The text field."""
+        return self.query_one(Input)
+
+    @property
+    def remark(self) -> str:
+        """What is said about the text, or about who listens."""
+        return self._remark()[0]
+
+    def show_listeners(self, count: int) -> None:
+        """Tell how many nodes listen to the commands."""
+        if count != self._listeners:
+            self._listeners = count
+            self._show_remark()
+
+    def words_changed(self) -> None:
+        """Speak the language of the moment."""
+        self.field.placeholder = ", ".join(WORDS[language()])
+        self._show_remark()
+
+    def known(self, texts: Iterable[str]) -> None:
+        """Put earlier commands into the history, oldest first."""
+        self._said = list(texts)[-KEPT:]
+        self._at = len(self._said)
+
+    def action_recall(self, step: int) -> None:
+        """Bring back an earlier (-1) or later (1) command."""
+        at = max(0, min(self._at + step, len(self._said)))
+        if at == self._at:
+            return
+        if self._at == len(self._said):
+            self._draft = self.field.value
+        self._at = at
+        text = self._said[at] if at < len(self._said) else self._draft
+        self.field.value = text
+        self.field.cursor_position = len(text)
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Say what the robot will think of it."""
+        event.stop()
+        self._show_remark()
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Send it, remember it."""
+        event.stop()
+        text = event.value.strip()
+        if not text:
+            return
+        if not self._said or self._said[-1] != text:
+            self._said = [*self._said, text][-KEPT:]
+        self._at = len(self._said)
+        self._draft = ""
+        event.input.value = ""
+        self.post_message(self.CommandSent(self, text))
+
+    def _remark(self) -> tuple[str, bool]:
+        """The words, and whether they are a warning."""
+        text = self.field.value.strip()
+        if self._listeners == 0:
+            return _("nobody listens to /ai_command: start ai_driver"), True
+        if not text:
+            return _("Enter sends, up and down recall"), False
+        setpoint = parse_word(text)
+        if setpoint is not None:
+            words = _("{speed} m/s, steering {steering} rad")
+            speed, steering = (
+                decimal(f"{setpoint.speed_m_s:g}"),
+                decimal(f"{setpoint.steering_rad:g}"),
+            )
+            return words.format(speed=speed, steering=steering), False
+        if any(word.startswith(text.casefold()) for word in words_in_order(language())):
+            return _("→ completes the word"), False
+        words = _("unknown word “{text}”; Enter sends it all the same")
+        return words.format(text=plain(text, 20)), True
+
+    def _show_remark(self) -> None:
+        if self.is_mounted:
+            words, warning = self._remark()
+            remark = self.query_one(Static)
+            remark.update(words)
+            remark.set_class(warning, "-warning")

@@ -1,0 +1,194 @@
+"""The nodes of the session: state in a sign and a word, and what each costs."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from rich.cells import cell_len
+from textual.message import Message
+
+from launcher.status import NodeState
+from text.figures import figure, whole
+from text.i18n import N_, _, said
+from text.plain import plain
+from tui.widgets.rows import Cell, Column, Row, Rows
+
+if TYPE_CHECKING:
+    from launcher.status import NodeStatus
+
+STATES = {
+    NodeState.WAITING: ("◌", N_("waiting"), "dim"),
+    NodeState.STARTING: ("◔", N_("starting"), "warn"),
+    NodeState.READY: ("●", N_("ready"), "good"),
+    NodeState.RUNNING: ("●", N_("running"), "good"),
+    NodeState.STOPPING: ("◑", N_("stopping"), "warn"),
+    NodeState.EXITED: ("○", N_("exited"), "dim"),
+    NodeState.BACKOFF: ("↻", N_("restarts"), "warn"),
+    NodeState.FAILED: ("✗", N_("failed"), "bad"),
+}
+"""State to sign, word and meaning: never the colour alone."""
+
+LATE = ("◔", N_("running"), "warn")
+"""One that runs, but is not ready though its time is up."""
+OUTSIDE = ("◇", N_("outside"))
+UNKNOWN = "—"
+
+FULL, TOLD = 42, 66
+"""Cells besides the names from which on there are columns for the process, and for a word more."""
+MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
+LONGEST_S = 1000.0 * DAY_S
+"""A longer time, or one before all, is no time that a node can have run."""
+
+
+class NodesTable(Rows):
+    """Shows the nodes in the profile's order, below them those that Deck has not started."""
+
+    class Cut(Message):
+        """What the chosen row has no room for is something else now; or it has room for all."""
+
+        def __init__(self, node: str, facts: str) -> None:
+            """Carry all of it, empty if there is room."""
+            super().__init__()
+            self.node = node
+            self.facts = facts
+
+    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self._statuses: tuple[NodeStatus, ...] = ()
+        self.outside: tuple[str, ...] = ()
+        """Names of those that Deck has not started."""
+        self._muted: frozenset[str] = frozenset()
+        self._full = self._told = False
+        self._cut = ("", "")
+        self._word = 0
+        """Cells of the sign and the longest word of a process that runs."""
+
+    def show_nodes(
+        self,
+        nodes: Mapping[str, NodeStatus],
+        muted: Collection[str] = frozenset(),
+        outside: Sequence[str] = (),
+    ) -> None:
+        """Show these nodes; `muted` are those whose log is not shown, `outside` those of others."""
+        self._statuses, self.outside = tuple(nodes.values()), tuple(outside)
+        self._muted = frozenset(muted)
+        self._show()
+
+    def on_resize(self) -> None:
+        """Show the columns that there is room for."""
+        self._show()
+
+    def _show(self) -> None:
+        width = self.size.width
+        if not width:
+            return
+        alive = [word for state, (_sign, word, _meaning) in STATES.items() if state.alive]
+        self._word = max(cell_len(_(word)) for word in alive) + 2
+        names = [node.name for node in self._statuses]
+        name = max((cell_len(self._named(each)) for each in (*names, *self.outside)), default=4)
+        pid = max((len(str(node.pid or "")) for node in self._statuses), default=0)
+        self._full = width >= name + FULL
+        columns = [Column(_("Node"), name if self._full else 0), Column(_("State"), self._word)]
+        if self._full:
+            columns += [Column(_("Pid"), max(5, pid), right=True), Column(_("Up"), 6, right=True)]
+            columns += [Column("↻", 2, right=True)]
+        columns += [Column(_("CPU"), 5, right=True), Column(_("Memory"), 6, right=True)]
+        if self._full:
+            self._told = width >= name + TOLD
+            columns.append(Column(_("Detail") if self._told else ""))
+        rows = [Row(node.name, self._cells(node)) for node in self._statuses]
+        self.show(columns, [*rows, *(Row(name, self._cells_of(name)) for name in self.outside)])
+        self._tell_what_is_cut()
+
+    def on_rows_highlighted(self) -> None:
+        """Tell of the row that is chosen now."""
+        self._tell_what_is_cut()
+
+    def _tell_what_is_cut(self) -> None:
+        cut = self._whole() if self.is_chosen_cut else ("", "")
+        if cut != self._cut:
+            self._cut = cut
+            self.post_message(self.Cut(*cut))
+
+    def _whole(self) -> tuple[str, str]:
+        """Return the name of the chosen node, and its state with all that is told of it."""
+        node = next((node for node in self._statuses if node.name == self.chosen), None)
+        if node is None:
+            sign, word = OUTSIDE
+            return (self.chosen, f"{sign} {_(word)} · {_('not started by Deck')}")
+        sign, word, _meaning = looks(node)
+        return (node.name, f"{sign} {_(word)} · {why(node)}")
+
+    def _named(self, name: str) -> str:
+        return plain(name) + (" ⊘" if name in self._muted else "")
+
+    def _cells_of(self, name: str) -> tuple[Cell, ...]:
+        """Return the row of a node that Deck has not started, of which no more is known."""
+        sign, word = OUTSIDE
+        cells = [Cell(self._named(name)), Cell(f"{sign} {_(word)}", "dim")]
+        cells += [Cell(UNKNOWN, "dim")] * (5 if self._full else 2)
+        if self._full:
+            cells.append(Cell(_("not started by Deck") if self._told else "", "dim"))
+        return tuple(cells)
+
+    def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
+        sign, word, meaning = looks(node)
+        state = f"{sign} {_(word)}"
+        if not node.state.alive:
+            # One cell to the edge: a long word of a state would widen the column for all.
+            told = f"{state:<{self._word}} {why(node)}"
+            return (Cell(self._named(node.name)), Cell(told, meaning))
+        cells = [Cell(self._named(node.name)), Cell(state, meaning)]
+        if self._full:
+            cells += [
+                Cell("" if node.pid is None else str(node.pid), "dim"),
+                Cell(duration(node.uptime_s), "dim"),
+                Cell(str(node.restarts), "warn" if node.restarts else "dim"),
+            ]
+        cells += [Cell(percent(node.cpu_percent)), Cell(memory(node.memory_bytes))]
+        if self._full:
+            cells.append(Cell(why(node) if self._told else "", "dim"))
+        return tuple(cells)
+
+
+def looks(node: NodeStatus) -> tuple[str, str, str]:
+    """Return sign, word and meaning of a node's state."""
+    return LATE if node.late else STATES[node.state]
+
+
+def why(node: NodeStatus) -> str:
+    """Return why the node is in its state, or what is run if there is nothing to say."""
+    if node.detail:
+        return plain(said(node.detail))
+    if node.signal:
+        return _("ended by {signal}").format(signal=node.signal)
+    if node.exit_code is not None and not node.state.alive:
+        return _("exit code {code}").format(code=node.exit_code)
+    return plain(node.command)
+
+
+def duration(seconds: float | None) -> str:
+    """Return a time in the two greatest units, five cells at most: `7s`, `1m23`, `2h05`, `3d04`."""
+    if seconds is None:
+        return ""
+    if not 0 <= seconds < LONGEST_S:
+        return _("{n}s").format(n=figure(seconds, 0))
+    whole = int(seconds)
+    if whole < MINUTE_S:
+        return _("{n}s").format(n=whole)
+    if whole < HOUR_S:
+        return _("{m}m{s:02d}").format(m=whole // MINUTE_S, s=whole % MINUTE_S)
+    if whole < DAY_S:
+        return _("{h}h{m:02d}").format(h=whole // HOUR_S, m=whole % HOUR_S // MINUTE_S)
+    return _("{d}d{h:02d}").format(d=whole // DAY_S, h=whole % DAY_S // HOUR_S)
+
+
+def percent(value: float | None) -> str:
+    """Return a share of one core."""
+    return "" if value is None else f"{whole(value)} %"
+
+
+def memory(size: int | None) -> str:
+    """Return an amount of memory in megabytes."""
+    return "" if size is None else _("{n} MB").format(n=round(size / 1_000_000))

@@ -1,0 +1,111 @@
+"""The panels of the Deck: brought with the session, or as others begin to publish."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from textual.widgets import Static
+
+from text.i18n import _
+from tui.deck.watched import watched_words
+from tui.frame.screen import DeckScreen
+from tui.panels.registry import PANELS, make_panel
+from tui.session.panel_needs import panels_for
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from graph.data import GraphUpdate
+    from tui.panels.panel import Panel
+    from tui.panels.shelf import Shelf
+
+SMALL = (60, 18)
+"""Columns and rows of the terminal below which there is no room for panels."""
+
+
+class ScreenWithPanels(DeckScreen):
+    """A screen with a `#board` for panels, and words for when there is no room or nobody."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shelf: Shelf | None = None
+        self._put: set[str] = set()
+        """Panels that were brought for topics that others publish."""
+
+    @property
+    def panels(self) -> Sequence[Panel]:
+        """All that are there, shown or not."""
+        return () if self._shelf is None else self._shelf.panels
+
+    @property
+    def pages(self) -> int:
+        """How many pages of panels there are."""
+        return 0 if self._shelf is None or self.has_class("-small") else self._shelf.pages
+
+    def turn_page(self) -> None:
+        """Show the panels that had no room."""
+        if self._shelf is not None:
+            self._shelf.turn()
+
+    def watch_topics(self) -> set[str]:
+        """What the panels show."""
+        return super().watch_topics().union(*(panel.watched() for panel in self.panels))
+
+    def keep_topics(self) -> set[str]:
+        """What has a history in a panel."""
+        return super().keep_topics().union(*(panel.kept() for panel in self.panels))
+
+    def follow_topics(self) -> set[str]:
+        """What the panels must not miss."""
+        return super().follow_topics().union(*(panel.followed() for panel in self.panels))
+
+    def measure_room(self, columns: int, rows: int) -> None:
+        """Leave the panels out where there is no room for them."""
+        self.set_class(columns < SMALL[0] or rows < SMALL[1], "-small")
+
+    async def put_up(self, names: Iterable[str]) -> None:
+        """Take away the panels of the session before and put up those of this one."""
+        self._put.clear()
+        await self._put_up(names)
+
+    async def put_up_for(self, update: GraphUpdate) -> bool:
+        """Say who runs, and bring the panels for which topics have come; none is taken away.
+
+        Return whether any came.
+        """
+        words = watched_words(update, self.feed.session.domain if self.feed.session else 0)
+        watched = self.query_one("#watched", Static)
+        # Each update of a Static lays the screen out anew, and this comes with every look.
+        if words != watched.content:
+            watched.update(words)
+        wanted = panels_for({row.name for row in update.topics if row.publishers})
+        if self._put.issuperset(wanted):
+            return False
+        self._put |= set(wanted)
+        await self._put_up([name for name in PANELS if name in self._put])
+        return True
+
+    def words_of_panels_changed(self) -> None:
+        """Draw them anew in another language."""
+        for panel in self.panels:
+            panel.words_changed()
+        if self._shelf is not None:
+            self._shelf.words_changed()
+        self._say_small()
+
+    async def _put_up(self, names: Iterable[str]) -> None:
+        if self._shelf is not None:
+            await self._shelf.remove()
+            self._shelf = None
+        panels = [make_panel(name) for name in names if name in PANELS]
+        self.set_class(bool(panels), "-shelved")
+        if panels:
+            from tui.panels.shelf import Shelf
+
+            self._shelf = Shelf(panels, id="shelf")
+            await self.query_one("#board").mount(self._shelf, after="#nodes")
+        self._say_small()
+
+    def _say_small(self) -> None:
+        words = _("Too small for panels: they need {columns}×{rows}")
+        self.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))

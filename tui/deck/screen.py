@@ -1,0 +1,305 @@
+"""The lesson at work: its nodes, the panels that its profile names, and the log."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on, work
+from textual.binding import Binding
+from textual.containers import Container, Vertical
+from textual.widgets import Static
+
+from launcher.errors import LauncherError
+from launcher.status import NodeState, Severity
+from text.i18n import N_, said
+from text.plain import plain
+from tui.actions import bindings
+from tui.deck.actions import DECK_ACTIONS
+from tui.deck.command_line import CommandLine
+from tui.deck.nodes_table import NodesTable
+from tui.deck.panels import ScreenWithPanels
+from tui.graph.pane import GraphHead
+from tui.logs.pane import LogPane
+from tui.panels.panel import row_of
+from tui.session.messages import SessionChanged
+from tui.teleop.actions import OpenTeleop
+from tui.teleop.panel import DrivenScreen
+from tui.widgets.words import word_strips
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+    from textual.app import ComposeResult
+    from textual.binding import BindingType
+    from textual.events import Resize
+
+    from tui.logs.filter import LogFilter
+    from tui.session.messages import (
+        GraphChanged,
+        LanguageChanged,
+        LogArrived,
+        StatusChanged,
+    )
+    from tui.widgets.rows import Rows
+
+DRIVER = "nodes.ai_driver"
+COMMANDS, COMMANDS_TYPE = "/ai_command", "std_msgs/msg/String"
+
+
+class LessonDeck(ScreenWithPanels, DrivenScreen):
+    """Nodes above the log, panels at the right; on a small terminal panels beside the log."""
+
+    tab: ClassVar[str] = "deck"
+    about: ClassVar[str] = N_(
+        "The lesson at work. The table has the lesson's nodes: choose one with the arrow keys "
+        "to start, stop or restart it, or to show only its lines in the log. The panels show "
+        "what the nodes publish on their topics."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *bindings(*DECK_ACTIONS, OpenTeleop),
+        Binding("escape", "leave_field", show=False),
+    ]
+    DEFAULT_CSS = """
+    LessonDeck {
+        #board { layout: grid; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
+        &.-shelved #board { grid-size: 2; grid-columns: 11fr 9fr; }
+        #nodes { height: 1fr; }
+        #nodes GraphHead { display: none; max-height: 100%; }
+        #shelf { height: 1fr; }
+        #talk { height: 1fr; }
+        &.-flat #teleop { height: 4; }
+        #command { display: none; padding: 0 1; border-top: none; background: $panel; }
+        &.-driven #command { display: block; }
+        &.-home.-shelved #shelf, &.-wide.-shelved #shelf { row-span: 2; }
+        &.-recorded.-shelved #shelf { row-span: 1; }
+        &.-compact.-shelved #nodes { column-span: 2; }
+        &.-compact.-shelved #board { grid-columns: 2fr 3fr; }
+        #small { display: none; height: 1; width: 1fr; color: $text-warning; }
+        &.-small #shelf { display: none; }
+        &.-small #board { grid-size: 1; }
+        &.-small.-shelved #small { display: block; }
+        &.-recorded #nodes, &.-recorded #talk { display: none; }
+        #watched { display: none; height: auto; padding: 0 1; color: $text-muted; }
+        &.-watching #watched { display: block; }
+        &.-watching #nodes { display: none; }
+        &.-watching.-shelved #shelf { row-span: 1; }
+        &.-recorded.-shelved #board { grid-size: 1; grid-columns: 1fr; }
+    }
+    """
+
+    _cut: tuple[str, str] = ("", "")
+    """Name and state of the chosen node where the table has no room for all of it."""
+    _offered_for: NodeState | None = None
+    """The state of the chosen node by which its keys are offered."""
+
+    def compose_body(self) -> ComposeResult:
+        """The nodes above the log; panels come with the session."""
+        yield Static(id="small", markup=False)
+        yield Static(id="watched", markup=False)
+        with Container(id="board"):
+            with Vertical(id="nodes"):
+                yield NodesTable()
+                yield GraphHead()
+            with Vertical(id="talk"):
+                yield LogPane(file_of=self.feed.log_file)
+                yield CommandLine(id="command")
+
+    # What the actions do
+
+    @property
+    def table(self) -> NodesTable:
+        """The nodes."""
+        return self.query_one(NodesTable)
+
+    @property
+    def pane(self) -> LogPane:
+        """The log."""
+        return self.query_one(LogPane)
+
+    @property
+    def chosen_node(self) -> str:
+        """The chosen node, empty without a session."""
+        if self.feed.link is None:
+            return ""
+        return next((table.chosen for table in self.query(NodesTable)), "")
+
+    @property
+    def chosen_state(self) -> NodeState | None:
+        """Where the chosen node is in its life, None without one or of one of others."""
+        node = self.feed.nodes.get(self.chosen_node)
+        return None if node is None else node.state
+
+    @work(group="ask")
+    async def ask(self, what: str, *names: str) -> None:
+        """Ask the session to `start`, `stop` or `restart` these nodes, all if none is named."""
+        if self.feed.link is None:
+            return
+        try:
+            await getattr(self.feed.link, what)(*names)
+        except LauncherError as error:
+            words = said(error.args[0]) if error.args else str(error)
+            self.notify(plain(words), severity="error", markup=False)
+
+    @property
+    def log_filter(self) -> LogFilter:
+        """Which lines are shown."""
+        return self.pane.view.log_filter
+
+    def filter_log(self, chosen: LogFilter) -> None:
+        """Show these lines."""
+        self.pane.view.log_filter = chosen
+        self._show_nodes()
+
+    def hear_all(self) -> None:
+        """Let every node be heard, at every severity."""
+        self.filter_log(replace(self.log_filter.all_nodes(), minimum=Severity.DEBUG))
+
+    @property
+    def driven(self) -> bool:
+        """Whether there is a node that takes commands in words."""
+        if self.feed.watching:
+            row = None if self.feed.update is None else row_of(self.feed.update, COMMANDS)
+            return row is not None and row.subscribers > 0
+        if self.feed.link is None:
+            return False
+        return any(node.command == DRIVER for node in self.feed.nodes.values())
+
+    def write_command(self) -> None:
+        """Go to the command line, at once: what is typed next belongs there."""
+        self.set_focus(self.query_one(CommandLine).field)
+
+    def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
+        """Say it to the driver."""
+        if self.feed.graph is None:
+            return
+        sent = self.feed.graph.publish(COMMANDS, COMMANDS_TYPE, {"data": message.text})
+        sent.add_done_callback(lambda done: self.app.call_later(self._tell_if_lost, done))
+
+    def _tell_if_lost(self, sent: Future[int]) -> None:
+        error = None if sent.cancelled() else sent.exception()
+        if isinstance(error, Exception):
+            # The first frame does without.
+            from tui.yaml_form.words import reason_words
+
+            self.notify(reason_words(error), severity="error", markup=False)
+
+    def focus_usual(self) -> None:
+        """Go to the nodes."""
+        self.table.focus()
+
+    def action_leave_field(self) -> None:
+        """Back to the nodes."""
+        self.focus_usual()
+
+    # What is shown
+
+    def on_mount(self) -> None:
+        """Begin at the nodes."""
+        self.table.focus()
+
+    def on_resize(self, event: Resize) -> None:
+        """Leave the panels out where there is no room for them."""
+        self.measure_room(*event.size)
+        self._lay_out(event.size.height)
+
+    @on(SessionChanged)
+    async def _bring_panels(self) -> None:
+        """Bring the panels of the session; one that has ended keeps what it showed."""
+        session = self.feed.session
+        if session is None:
+            return
+        if self.pane.view.ring.entries:
+            self.pane.view.clear()
+        self.pane.save_folder = session.log_dir
+        self.set_class(self.feed.replay is not None, "-recorded")
+        self.set_class(self.feed.watching, "-watching")
+        await self.put_up(session.panels)
+        self._lay_out(self.size.height)
+        self.topics_changed()
+
+    def on_status_changed(self, message: StatusChanged) -> None:
+        """Show the nodes as they are."""
+        self.set_class(self.driven, "-driven")
+        self.pane.view.know_nodes(message.nodes)
+        self._show_nodes()
+        self._lay_out(self.size.height)
+        if self._offered_for is not self.chosen_state:
+            self._offered_for = self.chosen_state
+            self.refresh_bindings()
+
+    def on_log_arrived(self, message: LogArrived) -> None:
+        """Append the lines."""
+        self.pane.view.append(message.lines, message.skipped)
+
+    async def on_graph_changed(self, message: GraphChanged) -> None:
+        """Feed the panels; a dead graph is told where they are."""
+        if message.update.error:
+            self.notify(said(message.update.error), severity="error", markup=False)
+            return
+        if self.feed.watching:
+            self.set_class(self.driven, "-driven")
+            if await self.put_up_for(message.update):
+                self._lay_out(self.size.height)
+                self.topics_changed()
+        seen = self.feed.front is self
+        for panel in self.panels:
+            panel.take(message.update, seen=seen)
+        if self.table.outside != self.feed.outside.now:
+            self._show_nodes()
+            self._lay_out(self.size.height)
+            self.refresh_bindings()
+        row = row_of(message.update, COMMANDS)
+        self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw anew."""
+        del message
+        self.pane.words_changed()
+        self._show_nodes()
+        self.query_one(CommandLine).words_changed()
+        self.words_of_panels_changed()
+
+    def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
+        """Other keys are possible now."""
+        message.stop()
+        self.refresh_bindings()
+
+    def on_nodes_table_cut(self, message: NodesTable.Cut) -> None:
+        """Show below the table what it has no room for."""
+        message.stop()
+        self._cut = (message.node, message.facts)
+        self._lay_out(self.size.height)
+
+    def on_rows_opened(self, message: Rows.Opened) -> None:
+        """Listen to the node that was opened, alone."""
+        message.stop()
+        self.filter_log(self.log_filter.alone(message.key))
+
+    def _show_nodes(self) -> None:
+        chosen = self.log_filter
+        nodes, outside = self.feed.nodes, self.feed.outside.now
+        muted = [name for name in (*nodes, *outside) if not chosen.shows_node(name)]
+        self.table.show_nodes(nodes, muted, outside)
+
+    def _lay_out(self, height: int) -> None:
+        """Give the table of nodes the rows it needs, but never most of them."""
+        if self.feed.replay is not None or self.feed.watching:
+            self.query_one("#board").styles.grid_rows = "1fr"
+            return
+        wanted = len(self.feed.nodes) + len(self.feed.outside.now) + 1
+        rows = max(2, min(wanted, height * 9 // 20)) + self._lay_out_head(height // 4)
+        self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
+
+    def _lay_out_head(self, most: int) -> int:
+        """Give what the table has cut its lines, and return how many."""
+        head = self.query_one(GraphHead)
+        head.display = any(self._cut)
+        if not head.display:
+            return 0
+        head.show(*self._cut)
+        width = self.table.size.width - 2
+        wanted = len(word_strips(self._cut, width, self.rich_style, self.app.console))
+        lines = max(1, min(wanted, most))
+        head.styles.height = lines
+        return lines

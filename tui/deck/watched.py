@@ -1,0 +1,40 @@
+"""Who runs in a domain in which Deck has started nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from graph.housekeeping import is_housekeeping
+from text.i18n import _, ngettext
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+
+MOST_NAMES = 12
+LONGEST_NAME = 60
+"""The list of the Graph screen has longer ones whole."""
+
+
+def robot_nodes(update: GraphUpdate) -> list[str]:
+    """Return the full names of the nodes that count: those that lists show without being asked."""
+    return [node.name for node in update.nodes if not is_housekeeping(node.name)]
+
+
+def watched_words(update: GraphUpdate, domain: int) -> str:
+    """The nodes that are there, and that they are not Deck's to start or stop."""
+    names = [_shown(name.lstrip("/")) for name in robot_nodes(update)]
+    if not names:
+        words = _(
+            "Nobody is here yet. Start a node with ROS_DOMAIN_ID={domain}, or look elsewhere:"
+            " deck watch --domain N, and --discovery subnet for other machines."
+        )
+        return words.format(domain=domain)
+    more = f" +{len(names) - MOST_NAMES}" if len(names) > MOST_NAMES else ""
+    count = ngettext("{n} node runs here", "{n} nodes run here", len(names)).format(n=len(names))
+    ours = _("Deck has started nothing here and stops nothing when it leaves.")
+    return f"{ours} {count}: {', '.join(names[:MOST_NAMES])}{more}"
+
+
+def _shown(name: str) -> str:
+    return plain(name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…")

@@ -1,0 +1,1 @@
+"""The tab of devices: drivers, and the frames on their wires."""

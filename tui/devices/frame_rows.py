@@ -1,0 +1,78 @@
+"""Frames of a serial port as lines of a log: the way is its node, bad ones are its errors."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING
+
+from launcher.status import LogLine, Severity
+from robot.frames.lines import MOST_OCTETS, FrameLine
+from robot.frames.protocols import Kind
+from text.i18n import N_, _
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+KEPT = 5000
+"""Frames of one port."""
+WAYS = {"in": N_("← in"), "out": N_("→ out")}
+_SEVERITIES = {
+    Kind.FRAME: Severity.INFO,
+    Kind.NOISE: Severity.WARN,
+    Kind.BAD: Severity.ERROR,
+    Kind.MORE: Severity.INFO,
+}
+_MARKS = {Kind.NOISE: "~ ", Kind.BAD: "✗ ", Kind.MORE: "⋯ "}
+_READABLE = 4
+"""Fewer bytes are no text, even if each of them is a letter."""
+_WIDEST = 64
+"""Cells of the words up to which the bytes stand in a column."""
+
+
+class FrameRows:
+    """Keeps the frames of a port, and makes lines of them in the language spoken now."""
+
+    def __init__(self) -> None:
+        self._kept: deque[FrameLine] = deque(maxlen=KEPT)
+        self._numbers = dict.fromkeys(WAYS, 0)
+        self._width = 0
+        self.as_hex = False
+        """Whether bytes that are readable text are shown in hex all the same."""
+
+    def clear(self) -> None:
+        """Forget every frame."""
+        self._kept.clear()
+        self._width = 0
+
+    def add(self, frames: Sequence[FrameLine]) -> bool:
+        """Keep frames; whether all lines look different for it."""
+        self._kept.extend(frames)
+        width = max((len(_said(frame)) for frame in frames), default=0)
+        width = min(_WIDEST, width)
+        wider, self._width = width > self._width, max(width, self._width)
+        return wider
+
+    def lines(self, frames: Sequence[FrameLine] | None = None) -> list[LogLine]:
+        """These frames, by default all that are kept, as lines."""
+        return [self._line(frame) for frame in (self._kept if frames is None else frames)]
+
+    def _line(self, frame: FrameLine) -> LogLine:
+        self._numbers[frame.way] += 1
+        text = _said(frame)
+        if frame.octets:
+            text = f"{text:<{self._width}}  {octets_text(frame.octets, as_hex=self.as_hex)}"
+        way, number = _(WAYS[frame.way]), self._numbers[frame.way]
+        return LogLine(way, number, frame.time_s, _SEVERITIES[frame.kind], text, source="frames")
+
+
+def _said(frame: FrameLine) -> str:
+    return _MARKS.get(frame.kind, "") + frame.text
+
+
+def octets_text(octets: bytes, *, as_hex: bool = False) -> str:
+    """Bytes as text where they are a line of text, else in hex."""
+    more = " …" if len(octets) >= MOST_OCTETS else ""
+    line = octets.rstrip(b"\r\n")
+    if not as_hex and len(line) >= _READABLE and all(0x20 <= octet < 0x7F for octet in line):
+        return line.decode("ascii") + more
+    return octets.hex(" ").upper() + more

@@ -1,0 +1,270 @@
+"""Every driver, what it is connected to, and what goes over the port of the chosen one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on, work
+from textual.widgets import Static
+
+from launcher.status import Severity
+from robot.frames.lines import decode
+from text.i18n import N_, _
+from tui import clock
+from tui.actions import bindings
+from tui.devices import trouble as device_trouble
+from tui.devices import words
+from tui.devices.actions import DEVICES_ACTIONS
+from tui.devices.frame_rows import KEPT, WAYS, FrameRows
+from tui.devices.frames_view import FramesPane, FramesView
+from tui.devices.reading import TOPIC, Device, DeviceBook, frames_topic
+from tui.devices.table import DevicesTable
+from tui.frame.screen import DeckScreen
+from tui.logs.tail import TailView
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate, Sample
+    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
+
+_LOOK_EVERY_S = 0.5
+"""How often ages are counted anew, whether or not anything comes."""
+
+
+class DevicesScreen(DeckScreen):
+    """Drivers above, the whole of the chosen one, its frames below."""
+
+    tab: ClassVar[str] = "devices"
+    about: ClassVar[str] = N_(
+        "Every driver that says on /diagnostics how it is: the port, connected since when, bytes a "
+        "second, errors so far and now. Below is what goes over the port of the chosen one, with "
+        "the bytes: ~ marks noise, ✗ a frame whose check failed. It is asked for only while it is "
+        "shown. The arrow keys choose a driver or, after Tab, lines, with Shift several."
+    )
+    BINDINGS: ClassVar = bindings(*DEVICES_ACTIONS)
+    DEFAULT_CSS = """
+    DevicesScreen {
+        DevicesTable { height: auto; max-height: 40%; }
+        #devices-empty { height: 1fr; padding: 1 2; color: $text-muted; }
+        #devices-chosen { height: auto; max-height: 3; padding: 0 1; background: $panel; }
+    }
+    DevicesScreen.-flat #devices-chosen { max-height: 1; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.frames = FrameRows()
+        self._book = DeviceBook()
+        self._update: GraphUpdate | None = None
+        self._topic: str | None = None
+        """Where the frames of the chosen driver come from."""
+        self._shown_name = ""
+        self._lessons: tuple[str, ...] | None = None
+        """In which there are drivers; None until somebody wants to know."""
+
+    def compose_body(self) -> ComposeResult:
+        """The table, the chosen one in words, its frames; or why there is none of it."""
+        yield Static(id="devices-empty", markup=False)
+        yield DevicesTable()
+        yield Static(id="devices-chosen", markup=False)
+        yield FramesPane(max_lines=KEPT)
+
+    @property
+    def table(self) -> DevicesTable:
+        """The drivers."""
+        return self.query_one(DevicesTable)
+
+    @property
+    def pane(self) -> FramesPane:
+        """The frames."""
+        return self.query_one(FramesPane)
+
+    @property
+    def chosen(self) -> Device | None:
+        """The driver that is looked at."""
+        return self._book.get(self.table.chosen) if self.is_mounted else None
+
+    @property
+    def only_bad(self) -> bool:
+        """Whether good frames are left out."""
+        return self.pane.view.log_filter.minimum is not Severity.DEBUG
+
+    def follow_topics(self) -> set[str]:
+        """What every driver says, and the frames of the chosen one; nothing behind another."""
+        if self.feed.front is not self:
+            return set()
+        return {TOPIC} if self._topic is None else {TOPIC, self._topic}
+
+    def on_mount(self) -> None:
+        """Begin in the table."""
+        self.set_interval(_LOOK_EVERY_S, self._look)
+        self._look()
+
+    def on_screen_resume(self) -> None:
+        """Nobody has listened while another screen was in front."""
+        self._book.excuse(clock.now())
+        self._look()
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Another session begins with no drivers; of one that has ended they stay."""
+        del message
+        session = self.feed.session
+        if session is not None:
+            self.pane.save_folder = session.log_dir
+            self._book.clear()
+            self._update = None
+        self._look()
+
+    def on_status_changed(self, message: StatusChanged) -> None:
+        """Drivers may be on their way."""
+        del message
+        self._look()
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Take what drivers say, and the frames."""
+        self._update = message.update
+        samples = message.update.samples
+        self._book.take(samples.get(TOPIC, ()))
+        self._look()
+        if self._topic is not None:
+            self._take_frames(samples.get(self._topic, ()))
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Say everything anew."""
+        del message
+        self._show_way(None)
+        self._lay_frames()
+        self.pane.words_changed()
+        self._look()
+
+    def on_resize(self) -> None:
+        """Another width has other columns."""
+        self.call_after_refresh(self._look)
+
+    @on(DevicesTable.Highlighted)
+    def _chosen_changed(self) -> None:
+        self._look()
+        self.refresh_bindings()
+
+    @on(DevicesTable.Opened)
+    def _go_to_frames(self) -> None:
+        self.pane.view.focus()
+
+    @on(TailView.Changed)
+    def _keys_changed(self) -> None:
+        self.refresh_bindings()
+
+    def key_escape(self) -> None:
+        """Back to the drivers."""
+        self.table.focus()
+
+    # What the actions do
+
+    def next_way(self) -> None:
+        """Show both ways, then in, then out."""
+        ways = [None, *(_(word) for word in WAYS.values())]
+        self._show_way(ways[(ways.index(self.pane.view.log_filter.only) + 1) % len(ways)])
+
+    def _show_way(self, way: str | None) -> None:
+        self.pane.view.log_filter = replace(self.pane.view.log_filter, only=way)
+
+    def toggle_bad(self) -> None:
+        """Show noise and bad frames only, or all."""
+        minimum = Severity.DEBUG if self.only_bad else Severity.WARN
+        self.pane.view.log_filter = replace(self.pane.view.log_filter, minimum=minimum)
+        self.refresh_bindings()
+
+    def toggle_hex(self) -> None:
+        """Show bytes that are text in hex, or as text."""
+        self.frames.as_hex = not self.frames.as_hex
+        self._lay_frames()
+        self.refresh_bindings()
+
+    def clear_frames(self) -> None:
+        """Forget all frames."""
+        self.frames.clear()
+        self.pane.view.clear()
+
+    @property
+    def simulated(self) -> tuple[str, str] | None:
+        """The simulated robot's node and which line of it is chosen; None beside a real device."""
+        return device_trouble.simulated(self.chosen, self.feed)
+
+    @work(group="trouble")
+    async def switch_trouble(self, trouble: device_trouble.Trouble) -> None:
+        """Make this trouble of the chosen device, or mend it, and tell which."""
+        found, graph = self.simulated, self.feed.graph
+        if found is None or graph is None:
+            return
+        made, error = await device_trouble.switch(graph, *found, trouble)
+        told = _(trouble.told if made else trouble.over).format(device=found[1])
+        self.notify(error or told, severity="error" if error else "information", markup=False)
+
+    # What is shown
+
+    def _take_frames(self, samples: Iterable[Sample]) -> None:
+        fresh = [
+            line for sample in samples for line in decode(str(sample.value.get("data", "")))[0]
+        ]
+        if not fresh:
+            return
+        if self.frames.add(fresh):
+            self._lay_frames()
+        else:
+            self.pane.view.append(self.frames.lines(fresh))
+
+    def _lay_frames(self) -> None:
+        view = self.pane.view
+        if isinstance(view, FramesView):
+            view.replace_lines(self.frames.lines())
+
+    def _look(self) -> None:
+        """Show things as they are now."""
+        if not self.is_mounted or self.feed.front is not self:
+            return
+        devices = self._book.devices
+        for widget in (self.table, self.query_one("#devices-chosen"), self.pane):
+            widget.display = bool(devices)
+        empty = self.query_one("#devices-empty", Static)
+        empty.display = not devices
+        if not devices:
+            empty.update("\n".join(words.nobody(self.feed, self._update, self._lessons or ())))
+            if self._lessons is None:
+                self._lessons = ()
+                self.run_worker(self._find_lessons())
+            return
+        if self.focused is None:
+            self.table.focus()
+        now_s = clock.now()
+        self.table.show_devices(devices, now_s)
+        self._show_chosen(now_s)
+
+    def _show_chosen(self, now_s: float) -> None:
+        device = self.chosen
+        if device is None:
+            return
+        topic = frames_topic(device, () if self._update is None else self._update.topics)
+        if device.name != self._shown_name:
+            self._shown_name = device.name
+            self.clear_frames()
+        if topic != self._topic:
+            self._topic = topic
+            self.topics_changed()
+        whole = self.query_one("#devices-chosen", Static)
+        whole.update(words.whole(device, now_s, self.size.width - 2))
+        self._say_why_empty(words.no_frames(device, topic, now_s))
+
+    def _say_why_empty(self, why: str) -> None:
+        view = self.pane.view
+        if why != view.empty_words:
+            view.empty_words = why
+            if not view.ring.entries:
+                view.refresh()
+
+    async def _find_lessons(self) -> None:
+        self._lessons = await words.lessons_with_drivers()
+        self._look()

@@ -1,0 +1,89 @@
+"""Trouble that the simulated robot can be given: parameters of its node, as `ros2 param` sets them.
+
+The values are those of `nodes.mock_robot`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from text.i18n import N_
+
+if TYPE_CHECKING:
+    from tui.devices.reading import Device
+    from tui.session.feed import Feed
+    from tui.session.ports import GraphLink
+
+ROBOT = "nodes.mock_robot"
+LINES = frozenset({"pico", "tof_front", "tof_rear", "lsc16"})
+"""Its pseudo-terminals, and the parameters with the trouble of each."""
+POWERED = frozenset({"pico", "lsc16"})
+"""Those that measure the battery."""
+_REAL = PurePosixPath("/dev")
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """A parameter's value while there is this trouble, and without it."""
+
+    wrong: str | float
+    fine: str | float
+    told: str
+    """Sentence with {device}, marked by `N_`."""
+    over: str
+    """Another, for when it is mended: of this trouble only, for there may be others."""
+    parameter: str = ""
+    """Empty: the one that is called like the device."""
+    devices: frozenset[str] = LINES
+    """Which may have it."""
+
+
+UNPLUGGED = Trouble(
+    *("unplugged", "fine"),
+    *(N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again.")),
+)
+NOISE = Trouble(
+    *("noise", "fine"),
+    *(N_("{device}: there is noise on the line."), N_("{device}: the noise is gone.")),
+)
+SILENCE = Trouble(
+    *("silent", "fine"),
+    *(N_("{device}: it says nothing any more."), N_("{device}: it speaks again.")),
+)
+BATTERY = Trouble(
+    *(5.8, 7.4),
+    *(N_("The battery has 5.8 V."), N_("The battery has 7.4 V.")),
+    *("battery", POWERED),
+)
+
+
+def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
+    """Return the full name of the simulated robot's node, and which line of it the device is.
+
+    None for a device that is not simulated, and while the robot is not to be seen.
+    """
+    if device is None or feed.graph is None or feed.replay is not None or feed.update is None:
+        return None
+    port = PurePosixPath(device.port)
+    if port.name not in LINES or _REAL in port.parents:
+        return None
+    robots = {name for name, node in feed.nodes.items() if node.command == ROBOT}
+    names = [row.name for row in feed.update.nodes if row.name.rpartition("/")[2] in robots]
+    return (names[0], port.name) if names else None
+
+
+async def switch(graph: GraphLink, node: str, device: str, trouble: Trouble) -> tuple[bool, str]:
+    """Make the trouble, or mend it if it is there; return whether it is there, or why not."""
+    name = trouble.parameter or device
+    read = await asyncio.wrap_future(graph.parameters(node))
+    now = next((row.value for row in read.parameters if row.name == name), None)
+    if read.error or now is None:
+        return False, read.error or name
+    made = now != trouble.wrong
+    done = await asyncio.wrap_future(
+        graph.set_parameters(node, {name: trouble.wrong if made else trouble.fine})
+    )
+    return made, done.error or done.refused.get(name, "")

@@ -1,0 +1,128 @@
+"""What the Devices screen says in sentences: the chosen driver, and why there is nothing."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from rich.cells import cell_len
+
+from text.figures import elapsed
+from text.i18n import _, said
+from text.plain import plain
+from tui.devices.reading import STALE_S, TOPIC, Device
+from tui.devices.table import grouped, state
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+    from tui.session.feed import Feed
+
+DRIVERS = frozenset({"nodes.chassis", "nodes.tof_sonar", "nodes.camera", "nodes.audio"})
+"""Nodes that tell on /diagnostics how they are, whatever their parameters."""
+HEAD = "nodes.head_controller"
+"""So does this one, if it has a port."""
+
+
+def whole(device: Device, now_s: float, width: int) -> str:
+    """Message, and below it as many figures as fit into one line of so many cells."""
+    word = state(device, now_s).text
+    lines = [f"{plain(device.name)} · {word} · {device.message}", ""]
+    for figure in _figures(device):
+        longer = f"{lines[1]} · {figure}" if lines[1] else figure
+        if cell_len(longer) <= width:
+            lines[1] = longer
+    return "\n".join(line for line in lines if line)
+
+
+def _figures(device: Device) -> list[str]:
+    parts = [device.port] if device.port else []
+    since, seconds = device.since, device.number("seconds")
+    if since and device.connected:
+        words = _("since {since}")
+        parts.append(words.format(since=since))
+        if seconds is not None:
+            parts[-1] += " " + _("({seconds} s)").format(seconds=grouped(seconds))
+    for key, words in (
+        ("bytes_in_per_s", _("in {count} B/s")),
+        ("bytes_out_per_s", _("out {count} B/s")),
+        ("frames_in_per_s", _("{count} frames/s")),
+        ("errors_per_s", _("{count} errors/s")),
+        ("errors", _("{count} errors in total")),
+        ("reconnects", _("reconnects: {count}")),
+    ):
+        value = device.number(key)
+        if value is not None:
+            parts.append(words.format(count=grouped(value)))
+    return parts
+
+
+def no_frames(device: Device, topic: str | None, now_s: float) -> str:
+    """Why no frame of this driver has come, and what to do."""
+    name = plain(device.name)
+    age_s = device.age_s(now_s)
+    if age_s > STALE_S:
+        words = _(
+            "{name} has said nothing for {seconds} s: has it ended? See Deck (1) or Logs (4)."
+        )
+        return words.format(name=name, seconds=elapsed(age_s))
+    if topic is None:
+        words = _(
+            "{name} tells how it is, but publishes no {topic}: it has no serial port, or it is "
+            "another kind of driver."
+        )
+        return words.format(name=name, topic=f"…/{name}/frames")
+    if device.connected is False:
+        return _("Nothing is connected, so nothing comes. The driver tries again by itself.")
+    words = _("Listening on {topic}: within a second comes what goes over the port, if anything.")
+    return words.format(topic=topic)
+
+
+def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> list[str]:
+    """Why there is no driver at all, and what to do."""
+    if feed.session is None:
+        return [_("no lesson is running")]
+    if update is not None and update.error:
+        return [feed.blind, plain(said(update.error))]
+    row = next((row for row in update.topics if row.name == TOPIC), None) if update else None
+    if row is not None and row.publishers:
+        said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
+        return [
+            _("{topic} is published by {nodes}; waiting for the first message.").format(
+                topic=TOPIC, nodes=said_by or "?"
+            )
+        ]
+    drivers = [name for name, node in feed.nodes.items() if node.command in DRIVERS]
+    if drivers:
+        words = _("{nodes} have not said anything on {topic} yet: see Deck (1) and Logs (4).")
+        return [words.format(nodes=", ".join(map(plain, drivers)), topic=TOPIC)]
+    lines = [_("No driver says anything on {topic}.").format(topic=TOPIC)]
+    if feed.replay is not None:
+        return [*lines, _("This recording has none of its messages.")]
+    if not feed.watching:
+        lines.append(_("This lesson has no drivers: its nodes invent their readings."))
+    if lessons:
+        lines.append(_("Drivers run in: {lessons}.").format(lessons=", ".join(lessons)))
+    return lines
+
+
+async def lessons_with_drivers() -> tuple[str, ...]:
+    """The names of the profiles in which a driver runs."""
+    return await asyncio.to_thread(_lessons_with_drivers)
+
+
+def _lessons_with_drivers() -> tuple[str, ...]:
+    from launcher.errors import LauncherError
+    from launcher.profile.catalog import list_profiles
+    from launcher.profile.load import load_profile
+
+    found: list[str] = []
+    for entry in list_profiles():
+        try:
+            nodes = load_profile(entry.path).nodes.values()
+        except LauncherError:
+            continue
+        if any(
+            node.run in DRIVERS or (node.run == HEAD and "port" in node.params) for node in nodes
+        ):
+            found.append(entry.name)
+    return tuple(found)

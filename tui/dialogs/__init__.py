@@ -1,0 +1,1 @@
+"""Dialogs and pages that belong to no tab."""

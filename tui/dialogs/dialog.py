@@ -1,0 +1,102 @@
+"""The frame of every dialog: a titled box over the screen, its keys at the bottom."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
+
+from textual.containers import Vertical, VerticalScroll
+from textual.content import Content
+from textual.screen import ModalScreen
+from textual.widgets import Static
+
+from text.i18n import N_
+from text.plain import plain
+from tui.actions import Acting, Action, bindings
+from tui.frame.key_bar import KeyBar
+from tui.widgets.working import Working
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+    from textual.binding import BindingType
+
+    from tui.app import DeckApp
+    from tui.session.messages import LanguageChanged
+
+Answer = TypeVar("Answer")
+
+
+class ExplainDialog(Action["Dialog[Any]"]):
+    """The help page: the app's own key does not get past a dialog."""
+
+    id = "help.dialog"
+    key = "f1"
+    title = N_("Help")
+    means = "help"
+    tooltip = N_("Every key of this screen, and what it shows.")
+    palette = False
+
+    @classmethod
+    def possible(cls, target: Dialog[Any]) -> bool | None:
+        """Not where the dialog may have to go at any moment."""
+        return target.can_be_covered
+
+    @classmethod
+    async def run(cls, target: Dialog[Any]) -> None:
+        """Open the help page of the dialog."""
+        target.deck.show_help()
+
+
+class Dialog(ModalScreen[Answer], Acting, Working):
+    """A title and a text; a subclass says which, and binds what can be answered."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(ExplainDialog)
+    can_be_covered: ClassVar[bool] = True
+    """Whether another screen may be opened above it."""
+    DEFAULT_CSS: ClassVar[str] = """
+    Dialog {
+        align: center middle;
+        #dialog {
+            width: 80; max-width: 96%; height: auto; max-height: 96%;
+            background: $surface; border: round $accent; padding: 0 1;
+            border-title-color: $accent; border-title-style: bold;
+        }
+        #dialog-scroll { height: auto; max-height: 100%; margin-bottom: 1; }
+        #dialog-text { height: auto; padding: 1 1; }
+        KeyBar { background: $surface; }
+    }
+    """
+
+    @property
+    def deck(self) -> DeckApp:
+        """The app."""
+        return cast("DeckApp", self.app)
+
+    @abstractmethod
+    def title_words(self) -> str:
+        """Return the title."""
+
+    @abstractmethod
+    def words(self) -> Content:
+        """Return the text, as things are now."""
+
+    def compose(self) -> ComposeResult:
+        """Put the frame around the text."""
+        with Vertical(id="dialog"):
+            with VerticalScroll(id="dialog-scroll"):
+                yield Static(id="dialog-text", markup=False)
+            yield KeyBar()
+
+    def on_mount(self) -> None:
+        """Show the text."""
+        self.redraw()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw anew."""
+        del message
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Show the text as it is now, in the language spoken now."""
+        self.query_one("#dialog").border_title = Content(plain(self.title_words()))
+        self.query_one("#dialog-text", Static).update(self.words())

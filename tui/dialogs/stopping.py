@@ -1,0 +1,66 @@
+"""Shown while the nodes are being stopped: which are still there, and why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.content import Content
+
+from text.i18n import N_, _
+from text.plain import plain
+from tui.actions import Action, bindings
+from tui.deck.nodes_table import STATES, why
+from tui.dialogs.dialog import Dialog
+
+if TYPE_CHECKING:
+    from textual.binding import BindingType
+
+
+class StopNow(Action["StoppingScreen"]):
+    """Skip the waiting."""
+
+    id = "stopping.now"
+    key = "q,й,ctrl+q,ctrl+c"
+    title = N_("Stop at once")
+    means = "leave"
+    tooltip = N_("Kill what has not stopped yet.")
+    footer = True
+    priority = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: StoppingScreen) -> None:
+        """Kill the rest."""
+        target.deck.sessions.stop_now()
+
+
+class StoppingScreen(Dialog[None]):
+    """A list of the nodes that still run, looked at a few times a second."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(StopNow)
+    can_be_covered = False
+
+    def on_mount(self) -> None:
+        """Look again until it is over."""
+        self.set_interval(0.2, self.redraw)
+
+    def title_words(self) -> str:
+        """Name what happens."""
+        return _("Stopping the nodes")
+
+    def words(self) -> Content:
+        """Return the nodes that still run."""
+        alive = [node for node in self.deck.feed.nodes.values() if node.state.alive]
+        if not alive:
+            return Content(_("All nodes have stopped."))
+        lines = [Content(_("Dependants first; each has a few seconds to end by itself."))]
+        for node in alive:
+            sign, word, _meaning = STATES[node.state]
+            lines.append(
+                Content.assemble(
+                    (f"{sign} {_(word):<14}", "$text-warning"),
+                    (plain(node.name), "bold"),
+                    (f"  {why(node)}", "$text-muted"),
+                )
+            )
+        return Content("\n").join(lines)

@@ -1,0 +1,1 @@
+"""The emergency stop on the screen: its state, who obeys it, what is done about it."""

@@ -1,0 +1,167 @@
+"""The emergency stop at work: shown at once, sent, and what is done if nobody listens."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from text.i18n import _
+from text.plain import plain
+from tui import clock
+from tui.emergency import state as emergency
+from tui.emergency.state import Emergency, listeners
+from tui.emergency.words import shown_of
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+    from graph.data import GraphUpdate
+    from tui.app import DeckApp
+
+SENT_WITHIN_S = 2.0
+AGAIN_S = 1.0
+"""So often a release is said again to nodes that hold still."""
+INSIST_S = 10.0
+"""And for so long: a node that takes longer is for a person to look at."""
+ENDED = frozenset({"exited", "failed"})
+WHY_S = 20.0
+"""How long it is told what else the stop has ended, and why."""
+
+
+class Brake:
+    """Engages and releases; its `state` is what the banner shows."""
+
+    def __init__(self, app: DeckApp) -> None:
+        """Act on the session of `app`."""
+        self._app = app
+        self.state = Emergency()
+        self._released_s = self._said_s = 0.0
+        """When a release was first and last said from here, unix time."""
+
+    def engage(self) -> None:
+        """Stop the wheels: said on the topic, or by stopping the nodes if nobody hears."""
+        # On its way before anything is drawn, or waits for its turn.
+        sent = self._publish(engaged=True)
+        self._end_publications()
+        self._set(self.state.pressed(clock.now()))
+        self._app.run_worker(self._stop(sent), group="brake")
+
+    def release(self) -> None:
+        """Let the wheels turn again, and nothing turn them by itself."""
+        ended = self.state.ended
+        self._end_publications()
+        self._released_s = clock.now()
+        self._set(self.state.released(self._released_s))
+        self._say_released()
+        if ended:
+            self._app.run_worker(self._start_again(ended), group="brake")
+
+    def see(self, update: GraphUpdate) -> None:
+        """Take in what others have done, and insist on a release that a node has not heard."""
+        before, state = self.state, self.state.seen(update)
+        if state.engaged != before.engaged:
+            self._end_publications()
+        self._set(state)
+        if (
+            before.engaged
+            and not state.engaged
+            and not state.ours
+            and self._app.feed.replay is None
+        ):
+            words = _("Another has released the emergency stop: the wheels may turn.")
+            self._app.notify(words, severity="warning", timeout=WHY_S, markup=False)
+        now_s = clock.now()
+        said_in_vain = any(
+            state.nodes[name].held_s > self._said_s + AGAIN_S for name in state.awaited
+        )
+        if said_in_vain and now_s - self._released_s < INSIST_S:
+            self._say_released()
+
+    def _say_released(self) -> None:
+        self._said_s = clock.now()
+        self._app.run_worker(self._reached(self._publish(engaged=False)), group="brake")
+
+    def forget(self) -> None:
+        """Start anew with another session."""
+        self._set(Emergency())
+
+    def prepare(self) -> None:
+        """Have the publisher made, so that the first word goes out at once."""
+        graph = self._app.feed.graph
+        if graph is not None:
+            prepared = graph.prepare_publisher(emergency.TOPIC, emergency.TOPIC_TYPE, latched=True)
+            # If it cannot be made, publishing will say so.
+            prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
+
+    async def _stop(self, sent: Future[int] | None) -> None:
+        """Where the stop cannot have reached anybody, stop all nodes as well."""
+        feed = self._app.feed
+        reached = listeners(feed.update) > 0
+        sending = asyncio.ensure_future(self._reached(sent))
+        if reached and await sending:
+            return
+        unheard = emergency.NO_GRAPH if reached else _unheard(feed.update)
+        reason = emergency.NOT_OURS if feed.watching else unheard
+        ending = [name for name, node in feed.nodes.items() if node.state.value not in ENDED]
+        self._set(self.state.fallen_back(reason, tuple(ending)))
+        # The title has room for it on wide terminals only, and forgets it with the release.
+        self._app.notify(_(reason), severity="error", timeout=WHY_S, markup=False)
+        if feed.link is not None:
+            await feed.link.stop()
+        await sending
+
+    async def _start_again(self, ended: tuple[str, ...]) -> None:
+        """Start the nodes that were stopped in place of the wheels, as they were."""
+        feed = self._app.feed
+        names = [name for name in ended if name in feed.nodes]
+        if feed.link is None or not names:
+            return
+        words = _("Restarted what the stop had ended: {nodes}")
+        told = words.format(nodes=", ".join(map(plain, names)))
+        self._app.notify(told, timeout=WHY_S, markup=False)
+        await feed.link.start(*names)
+
+    def _publish(self, *, engaged: bool) -> Future[int] | None:
+        """Publish the latched word; None without a graph."""
+        graph = self._app.feed.graph
+        if graph is None:
+            return None
+        message = {"data": engaged}
+        return graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, message, latched=True)
+
+    def _end_publications(self) -> None:
+        """Publish nothing at a rate any more: it would drive as soon as the stop is released.
+
+        That is why what was begun during the stop ends, too, whoever releases it.
+        """
+        feed = self._app.feed
+        if feed.graph is None:
+            return
+        feed.graph.stop_publishing_all()
+        publications = () if feed.update is None else feed.update.publications
+        topics = dict.fromkeys(one.topic for one in publications if not one.error)
+        if topics:
+            words = _("Deck has stopped publishing to {topics}: the emergency stop ended it.")
+            told = words.format(topics=", ".join(topics))
+            self._app.notify(told, severity="warning", timeout=WHY_S, markup=False)
+
+    async def _reached(self, sent: Future[int] | None) -> bool:
+        """Return whether ROS took it."""
+        if sent is None:
+            return False
+        try:
+            await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
+        except Exception:  # noqa: BLE001 - whatever it was, the nodes are stopped in its place
+            return False
+        return True
+
+    def _set(self, state: Emergency) -> None:
+        shown = shown_of(self.state) != shown_of(state)
+        self.state = state
+        if shown:
+            self._app.emergency_changed()
+
+
+def _unheard(update: GraphUpdate | None) -> str:
+    """Return why nobody can have heard it."""
+    return emergency.NO_GRAPH if update is None or update.error else emergency.NO_LISTENER

@@ -1,0 +1,1 @@
+"""The tab of the flow: what followed from a word, across nodes."""

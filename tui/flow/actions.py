@@ -1,0 +1,172 @@
+"""What can be done on the Flow screen; each letter also under its Cyrillic key."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from text.i18n import N_
+from tui.actions.action import Action
+
+if TYPE_CHECKING:
+    from tui.flow.screen import FlowScreen
+
+
+class FlowAction(Action["FlowScreen"]):
+    """Something about the timeline."""
+
+    from_elsewhere = True
+
+
+class _Chosen(FlowAction):
+    """Something about the chosen step."""
+
+    from_elsewhere = False
+
+    @classmethod
+    def possible(cls, target: FlowScreen) -> bool | None:
+        """Only with a step to choose."""
+        return True if target.chosen_step else None
+
+
+class Older(FlowAction):
+    """The utterance before."""
+
+    id = "flow.older"
+    key = "n,т"
+    title = N_("Older")
+    means = "next"
+    tooltip = N_("Go to the utterance before this one.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: FlowScreen) -> bool | None:
+        """Only if there is one."""
+        return True if target.neighbour(1) else None
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Go there."""
+        target.go(1)
+
+
+class Newer(FlowAction):
+    """The utterance after."""
+
+    id = "flow.newer"
+    key = "N,Т"
+    title = N_("Newer")
+    means = "previous"
+    tooltip = N_("Go to the utterance after this one.")
+
+    @classmethod
+    def possible(cls, target: FlowScreen) -> bool | None:
+        """Only if there is one."""
+        return True if target.neighbour(-1) else None
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Go there."""
+        target.go(-1)
+
+
+class Pause(FlowAction):
+    """Hold the timeline still."""
+
+    id = "flow.pause"
+    key = "p,з"
+    title = N_("Pause")
+    tooltip = N_("Freeze the timeline, or show what has come since.")
+    footer = True
+
+    @classmethod
+    def label(cls, target: FlowScreen) -> str:
+        """By what it would do now."""
+        return N_("Resume") if target.paused else cls.title
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Do the other of the two."""
+        target.toggle_pause()
+
+
+class HideLane(_Chosen):
+    """Leave out what the chosen step belongs to."""
+
+    id = "flow.hide"
+    key = "m,ь"
+    title = N_("Hide")
+    means = "leave out"
+    tooltip = N_("Leave out all steps of the chosen one's kind: microphone, brain, wheels...")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Leave them out."""
+        if target.chosen_step:
+            target.toggle_lane(target.chosen_step.lane)
+
+
+class ShowAllLanes(FlowAction):
+    """Everything that takes part."""
+
+    id = "flow.all"
+    key = "a,ф"
+    title = N_("Show all")
+    means = "all"
+    tooltip = N_("Show every step again, without the logs of other nodes.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Hide nothing."""
+        target.show_all()
+
+
+class OtherLogs(FlowAction):
+    """What the other nodes wrote into their logs meanwhile."""
+
+    id = "flow.logs"
+    key = "u,г"
+    title = N_("Other logs")
+    means = "how much of the log"
+    tooltip = N_("Show or hide what other nodes wrote into their logs meanwhile.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Show or hide it."""
+        target.toggle_logs()
+
+
+class Scale(FlowAction):
+    """A linear axis, or one that spreads the beginning."""
+
+    id = "flow.scale"
+    key = "z,я"
+    title = N_("Scale")
+    means = "time span"
+    tooltip = N_("Let the axis of time spread the first milliseconds, or be even.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Take the other one."""
+        target.toggle_scale()
+
+
+class CopyChain(_Chosen):
+    """The utterance for the clipboard."""
+
+    id = "flow.copy"
+    key = "y,н"
+    title = N_("Copy")
+    tooltip = N_("Copy the steps of this utterance, with their delays, as text.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: FlowScreen) -> None:
+        """Copy."""
+        target.copy_chain()
+
+
+FLOW_ACTIONS = (Older, Newer, Pause, HideLane, ShowAllLanes, OtherLogs, Scale, CopyChain)

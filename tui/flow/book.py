@@ -1,0 +1,76 @@
+"""Steps in whatever order they come in, put into the chains they belong to."""
+
+from __future__ import annotations
+
+import math
+from bisect import insort
+from collections import deque
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tui.flow.chains import EARLY_S, Chain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from tui.flow.chains import Step
+
+MOST_CHAINS = 50
+MOST_LOOSE = 400
+"""Steps that belong to nothing yet: a log line may come in before the message that caused it."""
+
+
+class FlowBook:
+    """The newest chains."""
+
+    def __init__(self) -> None:
+        self._chains: list[Chain] = []
+        self._loose: deque[Step] = deque(maxlen=MOST_LOOSE)
+
+    @property
+    def chains(self) -> Sequence[Chain]:
+        """Oldest first."""
+        return self._chains
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._chains.clear()
+        self._loose.clear()
+
+    def add(self, steps: Iterable[Step]) -> bool:
+        """Take steps in; whether any chain is not what it was."""
+        changed = False
+        for step in sorted(steps):
+            changed = self._place(step) or changed
+        return changed
+
+    def _place(self, step: Step) -> bool:
+        chain = self._at(step.time_s)
+        if chain is not None and chain.takes(step):
+            chain.add(step)
+            return True
+        if step.begins:
+            self._begin(step)
+            return True
+        self._loose.append(step)
+        return False
+
+    def _at(self, time_s: float) -> Chain | None:
+        """The newest chain that had begun by then."""
+        begun = (one for one in reversed(self._chains) if one.start_s <= time_s + EARLY_S)
+        return next(begun, None)
+
+    def _begin(self, first: Step) -> None:
+        # Chains are told apart by their beginnings.
+        while any(chain.start_s == first.time_s for chain in self._chains):
+            first = replace(first, time_s=math.nextafter(first.time_s, math.inf))
+        chain = Chain(first)
+        insort(self._chains, chain, key=lambda one: one.start_s)
+        del self._chains[:-MOST_CHAINS]
+        waiting = sorted(self._loose)
+        self._loose.clear()
+        for step in waiting:
+            if self._at(step.time_s) is chain and chain.takes(step):
+                chain.add(step)
+            else:
+                self._loose.append(step)

@@ -1,0 +1,161 @@
+"""Messages and log lines read as steps; what is repeated all the time only when it changes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from text.plain import plain
+from tui.composer import outcome_words
+from tui.flow.chains import Kind, Lane, Step
+from tui.panels.voice.reading import LEVELS, heard
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from graph.data import Sample, Value
+    from launcher.status import LogLine
+
+MIC, SPEAKER = "/audio/mic_raw", "/audio/speaker_raw"
+COMMAND, JSON = "/ai_command", "/llm_raw_json"
+DRIVE, DRIVE_SAFE, WHEELS, HEAD = "/drive", "/drive_safe", "/wheel_commands", "/head_state"
+TOPICS = (MIC, JSON, COMMAND, DRIVE, DRIVE_SAFE, WHEELS, HEAD, SPEAKER)
+"""Causes before what follows from them, which decides among messages of one moment."""
+
+SPOKEN_LEVEL = 3
+"""Of the eight columns of loudness: a quieter sound is no voice (about -38 dB)."""
+PASSED_ON_S = 0.05
+"""What repeats itself passes on a command that it has been given within this time."""
+SAME_CLOCK_S = 1.0
+"""A message that was longer on its way than this was stamped by another clock."""
+STILL_RAD = math.radians(0.2)
+LONGEST = 300
+
+LANES = {
+    "nodes.ai_brain": Lane.BRAIN,
+    "nodes.llm_parser": Lane.BRAIN,
+    "nodes.head_controller": Lane.HEAD,
+    "ai_brain": Lane.BRAIN,
+    "llm_parser": Lane.BRAIN,
+    "head_controller": Lane.HEAD,
+}
+"""The program of a node, or its name where the program is not known, to where its log belongs."""
+
+
+class FlowReader:
+    """Remembers of each topic what is needed to tell news from repetition."""
+
+    def __init__(self) -> None:
+        self._before: dict[str, str] = {}
+        self._looked: tuple[float, float] | None = None
+        self._told_s: dict[str, float] = {}
+        self._head_moves = False
+        self._head_s = 0.0
+
+    def messages(
+        self, samples: Mapping[str, Iterable[Sample]], said_by: Mapping[str, str]
+    ) -> list[Step]:
+        """Read samples; `said_by` has the publishers of each topic."""
+        came = [one for topic in TOPICS for one in samples.get(topic, ())]
+        came.sort(key=_sent_s)
+        return [step for one in came for step in self._read(one, said_by.get(one.topic, ""))]
+
+    def _read(self, sample: Sample, said_by: str) -> Iterator[Step]:
+        topic, value, time_s = sample.topic, sample.value, _sent_s(sample)
+        if topic in {MIC, SPEAKER}:
+            text = _sound(value)
+            if text is not None:
+                lane = Lane.MIC if topic == MIC else Lane.SPEAKER
+                yield Step(time_s, lane, topic, said_by, text=text, begins=lane is Lane.MIC)
+        elif topic in {COMMAND, JSON}:
+            lane = Lane.COMMAND if topic == COMMAND else Lane.BRAIN
+            text = plain(" ".join(str(value.get("data", ""))[:LONGEST].split()))
+            yield Step(time_s, lane, topic, said_by, text=text, begins=True)
+        elif topic == HEAD:
+            yield from self._read_head(value, time_s, said_by)
+        else:
+            yield from self._read_motion(topic, value, time_s, said_by)
+
+    def _read_motion(
+        self, topic: str, value: Mapping[str, Value], time_s: float, said_by: str
+    ) -> Iterator[Step]:
+        wheels = topic == WHEELS
+        figures = _wheels(value) if wheels else outcome_words.setpoint(value)
+        # Thirty-two bits of a message and a repetition of them may differ by a hair.
+        figures = tuple(round(figure, 4) for figure in figures)
+        # By its name: nan is not nan.
+        changed = repr(figures) != self._before.get(topic)
+        self._before[topic] = repr(figures)
+        if topic != DRIVE and not changed and not self._passes_on(topic, time_s):
+            return
+        self._told_s[topic] = time_s
+        lane, kind = (Lane.WHEELS, Kind.WHEELS) if wheels else (Lane.DRIVE, Kind.DRIVE)
+        yield Step(time_s, lane, topic, said_by, kind, figures=figures)
+
+    def _passes_on(self, topic: str, time_s: float) -> bool:
+        """Whether it has just been given a command, and has not said so yet."""
+        givers = (DRIVE,) if topic == DRIVE_SAFE else (DRIVE, DRIVE_SAFE)
+        given_s = max(self._told_s.get(giver, -math.inf) for giver in givers)
+        told_s = self._told_s.get(topic, -math.inf)
+        return time_s - given_s <= PASSED_ON_S and told_s < given_s
+
+    def _read_head(self, value: Mapping[str, Value], time_s: float, said_by: str) -> Iterator[Step]:
+        """Two steps of a movement: where it begins, and where it has come to rest."""
+        looks = outcome_words.joint(value, "pan_joint"), outcome_words.joint(value, "tilt_joint")
+        before, self._looked = self._looked, looks
+        if before is None:
+            return
+        still = all(map(_is_still, looks, before))
+        if not still:
+            self._head_s = time_s
+        if still == self._head_moves:
+            self._head_moves = not still
+            kind = Kind.HEAD_THERE if still else Kind.HEAD_MOVES
+            # It has been there since the last message that was news.
+            yield Step(self._head_s, Lane.HEAD, HEAD, said_by, kind, figures=looks)
+
+
+def _is_still(now_rad: float, before_rad: float) -> bool:
+    """Whether a joint is where it was; one of which nobody knows that is, too."""
+    return abs(now_rad - before_rad) < STILL_RAD or (math.isnan(now_rad) and math.isnan(before_rad))
+
+
+def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Step]:
+    """Read log lines of nodes; `programs` has what each node of the session runs."""
+    return [
+        Step(
+            line.time_s,
+            LANES.get(programs.get(line.node, ""), LANES.get(line.node, Lane.LOG)),
+            plain(line.node, LONGEST),
+            plain(line.node, LONGEST),
+            text=plain(line.text, LONGEST),
+        )
+        for line in lines
+        if line.source != "deck"
+    ]
+
+
+def _sent_s(sample: Sample) -> float:
+    """When it was sent, unless that is by a clock which is not this machine's."""
+    arrived_s = sample.received_s - sample.age_s
+    if sample.sent_s is not None and 0 <= arrived_s - sample.sent_s <= SAME_CLOCK_S:
+        return sample.sent_s
+    return arrived_s
+
+
+def _sound(value: Mapping[str, Value]) -> str | None:
+    """What was said in words, None if nothing was: a stream has silence in it."""
+    data = value.get("data", b"")
+    sound = heard(data if isinstance(data, bytes) else b"")
+    loudest = max((LEVELS.index(level) for level in sound.levels), default=SPOKEN_LEVEL)
+    if loudest < SPOKEN_LEVEL:
+        return None
+    # Pieces of one sound are alike: they are counted.
+    return "♪" if sound.is_sound else sound.words[:LONGEST]
+
+
+def _wheels(value: Mapping[str, Any]) -> tuple[float, ...]:
+    return (
+        outcome_words.joint(value, "rear_left_wheel_joint", "velocity"),
+        outcome_words.joint(value, "rear_right_wheel_joint", "velocity"),
+    )

@@ -1,0 +1,305 @@
+"""One timeline across nodes: what followed from a word that was said, and after how long."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.content import Content
+from textual.style import Style
+from textual.widgets import Static
+
+from text.i18n import N_, _, ngettext
+from text.plain import plain
+from tui import clock
+from tui.actions import bindings
+from tui.deck.actions import WriteCommand
+from tui.flow import words
+from tui.flow.actions import FLOW_ACTIONS
+from tui.flow.book import FlowBook
+from tui.flow.chains import Lane
+from tui.flow.lines import Line, lines
+from tui.flow.reading import TOPICS, FlowReader, log_steps
+from tui.flow.view import FlowView
+from tui.frame.screen import DeckScreen
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+    from tui.flow.chains import Chain, Step
+    from tui.session.messages import GraphChanged, LanguageChanged, LogArrived, SessionChanged
+
+
+class FlowScreen(DeckScreen):
+    """Who takes part, the chains, and the whole of the chosen step."""
+
+    tab: ClassVar[str] = "flow"
+    about: ClassVar[str] = N_(
+        "What followed when somebody spoke into the microphone, or sent a command: every message "
+        "and log line with its delay from the first. The dot is the moment, the line before it the "
+        "time since the step before. The newest utterance is at the top; Enter folds one. What is "
+        "repeated all the time is shown when it changes. Collected from when this screen is first "
+        "opened, also while another is in front."
+    )
+    period_s = 0.1
+    BINDINGS: ClassVar = bindings(*FLOW_ACTIONS)
+    DEFAULT_CSS = """
+    FlowScreen {
+        #flow-lanes { height: auto; max-height: 2; padding: 0 1; background: $panel;
+            link-style: none; link-color: $foreground; link-background: transparent;
+            link-style-hover: reverse;
+        }
+        #flow-empty { height: 1fr; padding: 1 2; color: $text-muted; }
+        #flow-step { height: auto; max-height: 4; padding: 0 1; border-top: solid $panel; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.paused = False
+        self._book, self._reader = FlowBook(), FlowReader()
+        self._hidden = {Lane.LOG}
+        self._folded: set[float] = set()
+        self._logarithmic = True
+        self._held: tuple[Chain, ...] = ()
+        """What is shown while paused."""
+        self._update: GraphUpdate | None = None
+        self._since_s: float | None = None
+        """Unix time, a recording's own in a replay, before which nothing was collected."""
+
+    def compose_body(self) -> ComposeResult:
+        """Lanes above, the timeline, the chosen step below."""
+        yield Static(id="flow-lanes", markup=False)
+        yield Static(id="flow-empty", markup=False)
+        yield FlowView(self._lay, id="flow-view")
+        yield Static(id="flow-step", markup=False)
+
+    @property
+    def view(self) -> FlowView:
+        """The timeline."""
+        return self.query_one(FlowView)
+
+    @property
+    def chains(self) -> Sequence[Chain]:
+        """What is shown, newest first."""
+        return self._held if self.paused else tuple(reversed(self._book.chains))
+
+    @property
+    def chosen_chain(self) -> Chain | None:
+        """The chain of the cursor."""
+        key = self.view.chosen if self.is_mounted else None
+        found = (one for one in self.chains if key is not None and one.start_s == key[0])
+        return next(found, None)
+
+    @property
+    def chosen_step(self) -> Step | None:
+        """The step at the cursor; its first where that is a headline."""
+        chain = self.chosen_chain
+        if chain is None or self.view.chosen is None:
+            return None
+        shown = self._shown(chain)
+        number = max(0, self.view.chosen[1])
+        return shown[number] if number < len(shown) else None
+
+    def follow_topics(self) -> set[str]:
+        """Everything that may take part, once this screen has been opened."""
+        return set(TOPICS)
+
+    def on_mount(self) -> None:
+        """Begin at the newest."""
+        self._show()
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Another session begins with an empty timeline; one that has ended keeps it."""
+        del message
+        if self.feed.session is not None:
+            self._book.clear()
+            self._reader = FlowReader()
+            self._since_s = None
+            self.paused = False
+            self._show()
+
+    def on_log_arrived(self, message: LogArrived) -> None:
+        """Take what nodes wrote."""
+        programs = {name: node.command for name, node in self.feed.nodes.items()}
+        self._take(log_steps(message.lines, programs))
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Take what came on the topics."""
+        self._update = message.update
+        self._note_since(message.update)
+        said_by = {
+            row.name: ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
+            for row in message.update.topics
+            if row.name in TOPICS
+        }
+        if not self._take(self._reader.messages(message.update.samples, said_by)):
+            self._say_empty()
+
+    def _note_since(self, update: GraphUpdate) -> None:
+        came = [one.received_s for topic in TOPICS for one in update.samples.get(topic, ())[:1]]
+        since_s = min(came, default=math.inf)
+        # Earlier than before: a recording was turned back.
+        if since_s < (math.inf if self._since_s is None else self._since_s):
+            self._since_s = since_s
+            self._say_lanes()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Say everything anew."""
+        del message
+        self._show()
+
+    @on(FlowView.Highlighted)
+    def _highlighted(self) -> None:
+        self._say_step()
+        self.refresh_bindings()
+
+    @on(FlowView.Opened)
+    def _fold(self) -> None:
+        chain = self.chosen_chain
+        if chain is not None:
+            self._folded ^= {chain.start_s}
+            self.view.choose((chain.start_s, -1))
+            self._show()
+
+    # What the actions do
+
+    def neighbour(self, step: int) -> Chain | None:
+        """The chain so many places below the chosen one."""
+        chains, chosen = list(self.chains), self.chosen_chain
+        if chosen is None:
+            return None
+        at = chains.index(chosen) + step
+        return chains[at] if 0 <= at < len(chains) else None
+
+    def go(self, step: int) -> None:
+        """Go to that chain."""
+        chain = self.neighbour(step)
+        if chain is not None:
+            self.view.choose((chain.start_s, -1))
+
+    def toggle_pause(self) -> None:
+        """Hold the timeline still, or go on."""
+        self._held = () if self.paused else tuple(reversed(self._book.chains))
+        self.paused = not self.paused
+        self._show()
+
+    def toggle_lane(self, lane: Lane) -> None:
+        """Show or hide what belongs to it."""
+        self._hidden ^= {lane}
+        self._show()
+
+    def action_lane(self, lane: str) -> None:
+        """Show or hide a lane that was clicked."""
+        self.toggle_lane(Lane(lane))
+
+    def toggle_logs(self) -> None:
+        """Show or hide the logs of other nodes."""
+        self.toggle_lane(Lane.LOG)
+
+    def show_all(self) -> None:
+        """Hide nothing but the logs of other nodes."""
+        self._hidden = {Lane.LOG}
+        self._show()
+
+    def toggle_scale(self) -> None:
+        """Spread the beginning, or do not."""
+        self._logarithmic = not self._logarithmic
+        self._show()
+
+    def copy_chain(self) -> None:
+        """Copy the chosen chain as lines of text."""
+        chain = self.chosen_chain
+        if chain is None:
+            return
+        shown = self._shown(chain)
+        rows = [
+            f"{words.delay(chain.delay_s(step)):>10}  {step.source:<20}  "
+            f"{words.said_by(step, chain):<24}  {words.content(step)}"
+            for step in shown
+        ]
+        self.app.copy_to_clipboard("\n".join([words.headline(chain, shown), *rows]) + "\n")
+        count = len(rows)
+        told = ngettext("Copied {n} step", "Copied {n} steps", count).format(n=count)
+        self.notify(told, markup=False)
+
+    # What is shown
+
+    def _take(self, steps: Sequence[Step]) -> bool:
+        """Put steps into their chains; whether anything shown has changed."""
+        if not steps or not self._book.add(steps):
+            return False
+        if self.paused:
+            self._say_lanes()
+        else:
+            self._show()
+        return True
+
+    def _shown(self, chain: Chain) -> list[Step]:
+        return [step for step in chain.steps if step.lane not in self._hidden]
+
+    def _lay(self, width: int) -> list[Line]:
+        found: list[Line] = []
+        for chain in self.chains:
+            at = clock.time_of_day(chain.start_s)
+            found += lines(
+                chain,
+                at,
+                self._shown(chain),
+                width,
+                logarithmic=self._logarithmic,
+                folded=chain.start_s in self._folded,
+            )
+        return found
+
+    def _show(self) -> None:
+        if not self.is_mounted:
+            return
+        self._say_lanes()
+        self._say_empty()
+        self.view.show()
+        self._say_step()
+        self.refresh_bindings()
+
+    def _say_lanes(self) -> None:
+        pieces: list[Content] = []
+        for lane, name in words.LANES.items():
+            mark = "○" if lane in self._hidden else "●"
+            click = Style.from_meta({"@click": f"screen.lane({lane.value!r})"})
+            label = f"{mark} {_(name)}".replace(" ", "\N{NO-BREAK SPACE}")
+            pieces.append(Content.styled(label, click))
+        if self.paused:
+            waiting = len(self._book.chains) - len(self._held)
+            more = f" +{waiting}" if waiting > 0 else ""
+            pieces.append(Content.styled(_("paused") + more, "bold"))
+        if self._since_s is not None:
+            since = _("collected since {time}").format(time=clock.time_of_day(self._since_s))
+            pieces.append(Content.styled(since.replace(" ", "\N{NO-BREAK SPACE}"), "dim"))
+        self.query_one("#flow-lanes", Static).update(Content("  ").join(pieces))
+
+    def _say_empty(self) -> None:
+        empty = not self.chains
+        self.view.display = not empty
+        self.query_one("#flow-step").display = not empty
+        note = self.query_one("#flow-empty", Static)
+        note.display = empty
+        if not empty and self.focused is None:
+            self.view.focus()
+        if empty:
+            rows = () if self._update is None else self._update.topics
+            there = {row.name for row in rows if row.publishers or row.subscribers}
+            key, recorded = self.deck.keys_of(WriteCommand)[0], self.feed.replay is not None
+            note.update("\n".join(words.nothing_yet(there, key, recorded=recorded)))
+
+    def _say_step(self) -> None:
+        chain, step = self.chosen_chain, self.chosen_step
+        if chain is None or step is None:
+            return
+        by = words.said_by(step, chain)
+        head = f"{words.delay(chain.delay_s(step))} · {step.source}"
+        head += f" · {by}" if by and by != step.source else ""
+        self.query_one("#flow-step", Static).update(f"{head}\n{words.content(step)}")

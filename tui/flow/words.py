@@ -1,0 +1,96 @@
+"""Steps of a chain in words, and the mark and name of who takes part."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from text.figures import figure
+from text.i18n import N_, _, ngettext
+from tui.composer import outcome_words
+from tui.flow.chains import Kind, Lane
+from tui.flow.reading import COMMAND, JSON, MIC
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from tui.flow.chains import Chain, Step
+
+LANES: dict[Lane, str] = {
+    Lane.MIC: N_("mic"),
+    Lane.BRAIN: N_("brain"),
+    Lane.COMMAND: N_("command"),
+    Lane.HEAD: N_("head"),
+    Lane.DRIVE: N_("drive"),
+    Lane.WHEELS: N_("wheels"),
+    Lane.SPEAKER: N_("speaker"),
+    Lane.LOG: N_("other logs"),
+}
+SOUND = "♪"
+SECOND_MS = 1000
+
+
+def content(step: Step) -> str:
+    """What a step says."""
+    words = _once(step)
+    return words if step.times == 1 else f"{words} ×{step.times}"
+
+
+def _once(step: Step) -> str:
+    if step.kind is Kind.DRIVE:
+        return outcome_words.drive_words(*step.figures)
+    if step.kind is Kind.WHEELS:
+        left, right = step.figures
+        return _("left {left}, right {right} rad/s").format(left=figure(left), right=figure(right))
+    if step.kind is Kind.HEAD_MOVES:
+        return _("begins to turn")
+    if step.kind is Kind.HEAD_THERE:
+        looks = [0.0 if math.isnan(angle) else angle for angle in step.figures]
+        return _("has stopped: {pose}").format(pose=outcome_words.head_words(*looks))
+    return _("sound") if step.text == SOUND else step.text
+
+
+def said_by(step: Step, chain: Chain) -> str:
+    """The node that said it; a command that nothing led to is a person's."""
+    # By what tells it apart: what seems to have come a hair earlier stands before it.
+    is_first = (step.source, step.time_s) == (chain.first.source, chain.start_s)
+    if is_first and step.lane is not Lane.MIC:
+        return _("a person")
+    return step.said_by.lstrip("/")
+
+
+def delay(delay_s: float) -> str:
+    """A delay in milliseconds, with tenths where it is short."""
+    milliseconds = delay_s * SECOND_MS
+    return _("{n} ms").format(n=figure(milliseconds, 1 if abs(milliseconds) < 100 else 0))
+
+
+def headline(chain: Chain, shown: Sequence[Step]) -> str:
+    """What began it, how many of its steps are shown, and how long they took."""
+    steps = len(shown) + chain.more
+    count = ngettext("{n} step", "{n} steps", steps).format(n=steps)
+    took = delay(max(map(chain.delay_s, shown), default=0.0))
+    return _("“{words}” · {count} in {time}").format(
+        words=_once(chain.first), count=count, time=took
+    )
+
+
+def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) -> list[str]:
+    """What is missing, and what to do about it with the `topics` that are there.
+
+    `recorded`: whether it is a recording that is shown, to which nobody can say anything.
+    """
+    if recorded:
+        return [_("Nobody has spoken so far in this recording: play it on, or jump.")]
+    said = [_("Nobody has spoken since this screen was opened.")]
+    if MIC in topics:
+        said.append(_("The microphone is there: speak, or wait for what is said next."))
+    if COMMAND in topics:
+        key = _("On the Deck screen, {key} writes a word to {topic}: forward, stop.")
+        said.append(key.format(key=command_key, topic=COMMAND))
+    if JSON in topics:
+        said.append(_("The Composer sends JSON to {topic}.").format(topic=JSON))
+    if not {MIC, COMMAND, JSON} & set(topics):
+        none = _("None of {topics} is here: lesson 9 has a voice, lesson 4 takes words.")
+        said.append(none.format(topics=f"{MIC}, {COMMAND}, {JSON}"))
+    return said

@@ -1,0 +1,1 @@
+"""What every tab has around its body: title, recording, keys."""

@@ -1,0 +1,166 @@
+"""What every screen of a session has: title, emergency banner, keys, and the data it asks for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+from textual import on
+from textual.events import ScreenResume
+from textual.screen import Screen
+
+from tui.actions import Acting
+from tui.frame import title
+from tui.frame.key_bar import KeyBar
+from tui.frame.replay_bar import ReplayBar
+from tui.frame.title_bar import TitleBar
+from tui.session.messages import EmergencyChanged, LanguageChanged, SessionChanged, StatusChanged
+from tui.widgets.working import Working
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from textual.app import ComposeResult
+
+    from tui.actions import Action
+    from tui.app import DeckApp
+    from tui.session.feed import Feed
+
+BREAKPOINTS = [(0, "-tiny"), (60, "-compact"), (100, "-home"), (160, "-wide")]
+"""Widths at which a screen changes its class: 80x24 is -compact, 120x40 -home, 200x60 -wide."""
+HEIGHTS = [(0, "-flat"), (20, "-low"), (34, "-tall"), (50, "-high")]
+"""Heights: 80x24 is -low, 120x40 -tall, 200x60 -high."""
+
+
+class DeckScreen(Screen[None], Acting, Working):
+    """Base of the screens that show a session.
+
+    A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
+    `follow_topics`, and handles what it wants of `tui.session.messages`. When the topics it wants
+    have changed it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P, Ctrl+Q, q, F1
+    to F5 and 1 to 7 belong to the app.
+    """
+
+    HORIZONTAL_BREAKPOINTS = BREAKPOINTS
+    VERTICAL_BREAKPOINTS = HEIGHTS
+    DEFAULT_CSS = """
+    DeckScreen { layers: base overlay; layout: vertical; }
+    """
+
+    tab: ClassVar[str] = ""
+    """Which tab of the title bar is in front while this screen is."""
+    about: ClassVar[str] = ""
+    """What the screen shows, in a few sentences for the help page, marked by `N_`."""
+    period_s: float = 0.25
+    """Seconds between two updates of the graph while this screen is in front."""
+    measure_all: bool = False
+    """Whether the rates of every topic are wanted while this screen is in front."""
+    _styled_for: tuple[str, frozenset[str], frozenset[str]] | None = None
+
+    @property
+    def deck(self) -> DeckApp:
+        """The app."""
+        return cast("DeckApp", self.app)
+
+    @property
+    def feed(self) -> Feed:
+        """The session and its graph: `link`, `graph`, `nodes`, `session`, `update`."""
+        return self.deck.feed
+
+    def compose(self) -> ComposeResult:
+        """Put the frame around the body."""
+        yield TitleBar()
+        yield from self.compose_body()
+        yield ReplayBar()
+        yield KeyBar()
+
+    def compose_body(self) -> ComposeResult:
+        """Yield what stands between the title and the keys."""
+        yield from ()
+
+    def watch_topics(self) -> set[str]:
+        """Return the topics whose newest message is wanted while this screen is in front."""
+        return set()
+
+    def follow_topics(self) -> set[str]:
+        """Return the topics of which every message is wanted, also while another is in front."""
+        return set()
+
+    def keep_topics(self) -> set[str]:
+        """Return those of the watched topics that are wanted also while another is in front."""
+        return set()
+
+    def watch_goals(self) -> set[str]:
+        """Return the actions whose goals of others are wanted while this screen is in front."""
+        return set()
+
+    def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
+        """Yield headings and actions of parts of the screen that have keys of their own."""
+        yield from ()
+
+    def on_compose(self) -> None:
+        """Take the classes of this size before the children come, so that each is styled once."""
+        across, down = self.app.size
+        sizes = self._get_breakpoint_classes(across, BREAKPOINTS)
+        sizes |= self._get_breakpoint_classes(down, HEIGHTS)
+        self.update_classes(dict.fromkeys(sizes, True), update=False)
+        self.app.stylesheet.apply(self)
+        self._styled_for = self._surroundings()
+
+    def topics_changed(self) -> None:
+        """Tell the app that what this screen wants of the graph is something else now."""
+        if self.is_current:
+            self.feed.ask_for_topics()
+
+    def on_mount(self) -> None:
+        """Show the frame as things stand, and ask for what came before."""
+        self.show_frame()
+        self.feed.catch_up(self)
+
+    def on_unmount(self) -> None:
+        """Hear no more."""
+        self.feed.forget(self)
+
+    def on_screen_resume(self) -> None:
+        """Ask for this screen's topics."""
+        self.show_frame()
+        self.topics_changed()
+
+    def on_status_changed(self, message: StatusChanged) -> None:
+        """Keep the title true."""
+        del message
+        self.show_frame()
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Keep the title true."""
+        del message
+        self.show_frame()
+
+    def on_emergency_changed(self, message: EmergencyChanged) -> None:
+        """Say so in the title."""
+        del message
+        self.show_frame()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw every widget anew; one that keeps its words must be told by its screen."""
+        del message
+        self.show_frame()
+        for widget in self.query("*"):
+            widget.refresh(layout=True)
+
+    def show_frame(self) -> None:
+        """Show title, session and emergency stop as they are."""
+        for bar in self.query(TitleBar):
+            title.show(bar, self.deck, self.tab)
+        for place in self.query(ReplayBar):
+            place.show(self.feed.replay)
+
+    @on(ScreenResume)
+    def _keep_styles(self, event: ScreenResume) -> None:
+        """A hundred widgets are styled anew only if something outside has changed."""
+        around = self._surroundings()
+        event.refresh_styles = around != self._styled_for
+        self._styled_for = around
+
+    def _surroundings(self) -> tuple[str, frozenset[str], frozenset[str]]:
+        """All outside this screen that its styles hang on."""
+        return self.app.theme, self.app.pseudo_classes, self.app.classes

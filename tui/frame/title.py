@@ -1,0 +1,148 @@
+"""What the top line says: the screens there are, and what runs, is held or is stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from text.i18n import _, ngettext, pick, said
+from text.plain import plain
+from tui.actions.app import (
+    EmergencyRelease,
+    ShowComposer,
+    ShowDeck,
+    ShowDevices,
+    ShowFlow,
+    ShowGraph,
+    ShowLogs,
+    ShowTopics,
+)
+from tui.deck.watched import robot_nodes
+from tui.emergency.state import held_reason
+from tui.emergency.words import stop_words
+from tui.session.hardware_words import hardware_words
+
+if TYPE_CHECKING:
+    from launcher.status import SessionInfo
+    from tui.app import DeckApp
+    from tui.emergency.state import Emergency
+    from tui.frame.title_bar import TitleBar
+
+TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
+COMING = frozenset({"waiting", "starting", "backoff"})
+
+
+def show(bar: TitleBar, app: DeckApp, front: str) -> None:
+    """Show all of it on a bar; `front`: the screen there that is in front."""
+    bar.show(tabs(app, front), states(app), look(app), aside(app))
+
+
+def tabs(app: DeckApp, front: str) -> Sequence[tuple[str, str, bool]]:
+    """Return (text, action, in front) of every screen of the session."""
+    return [
+        (f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front)
+        for tab in TABS
+    ]
+
+
+def look(app: DeckApp) -> str:
+    """Return how the title looks.
+
+    `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while that holds.
+    """
+    if app.feed.link is None:
+        return "state"
+    if app.brake.state.engaged:
+        return "stop"
+    if app.strangers.now:
+        return "danger"
+    return "alarm" if app.brake.state.blocked else "state"
+
+
+def starting(app: DeckApp) -> bool:
+    """Tell whether a node is still to come: it waits, starts, or will be started again."""
+    return any(node.state.value in COMING for node in app.feed.nodes.values())
+
+
+def states(app: DeckApp) -> Sequence[str]:
+    """Return what is to be said, from long to short; the first that fits is shown."""
+    session = app.feed.session
+    if session is None:
+        if app.feed.ended:
+            return (said(app.feed.ended), _("ended"))
+        opening = app.sessions.opening
+        return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
+    if app.brake.state.engaged:
+        return _where(session, stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0]))
+    if app.strangers.now:
+        return _where(session, app.strangers.words())
+    if app.brake.state.blocked:
+        return _where(session, _held(app.brake.state))
+    return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
+
+
+def aside(app: DeckApp) -> str:
+    """Return what is to be said beside an alarm, if it costs no tab its name: what is recorded."""
+    # No more than its size: with longer words it would be told only on wide terminals.
+    return "".join(app.recording.words[-1:]) if look(app) != "state" else ""
+
+
+def _where(session: SessionInfo, alarm: Sequence[str]) -> Sequence[str]:
+    """Return the words of an alarm, after them the domain if there is room for all of it."""
+    return (f"{alarm[0]} · {domain_words(session)}", *alarm)
+
+
+def domain_words(session: SessionInfo) -> str:
+    """Return the ROS domain, which stands in the title at every size."""
+    return _("domain {domain}").format(domain=session.domain)
+
+
+def _held(state: Emergency) -> Sequence[str]:
+    """Return why the gate holds the wheels, or what it refuses though it would let them turn."""
+    reason = held_reason(state)
+    return (f"⚠ {reason[:1].upper()}{reason[1:]}",)
+
+
+def _watched(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+    """Return the domain, and how many nodes others have started in it."""
+    update = app.feed.update
+    count = 0 if update is None else len(robot_nodes(update))
+    found = ngettext("{n} node", "{n} nodes", count).format(n=count)
+    domain = domain_words(session)
+    watching = _("watching {domain}").format(domain=domain)
+    return (f"{watching} · {found}", watching, domain)
+
+
+def _replayed(session: SessionInfo) -> Sequence[str]:
+    name = plain(session.name)
+    return (_("recording {name}").format(name=name), name)
+
+
+def _recorded(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+    """Return what runs, after what is recorded of it."""
+    recorded = app.recording.words
+    if not recorded:
+        return _running(app, session)
+    everything = (
+        f"{words} · {running}" for running in _running(app, session) for words in recorded[:2]
+    )
+    short = (f"{words} · {domain_words(session)}" for words in recorded)
+    return (*everything, *short, recorded[-1])
+
+
+def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+    if app.feed.watching:
+        return _watched(app, session)
+    nodes = app.feed.nodes.values()
+    well = sum(node.serves for node in nodes)
+    sign = "◔" if starting(app) else "●" if well == len(nodes) else "○"
+    count = f"{sign} {well}/{len(nodes)}"
+    name, hardware = plain(session.name), hardware_words(session.hardware)
+    title = f"{plain(session.lesson)} {pick(session.title)}".strip() or name
+    domain = domain_words(session)
+    names = (f"{title} · {hardware}", title, name)
+    return (
+        *(f"{words} · {domain} · {count}" for words in names),
+        f"{domain} · {count}",
+        domain,
+    )

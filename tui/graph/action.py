@@ -1,0 +1,229 @@
+"""An action: its goal form, and its goals, Deck's own and those of others."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual.message import Message
+
+from graph.data import Goal, GoalStatus, SeenGoal
+from text.figures import figure
+from text.i18n import N_, _, ngettext, said
+from text.plain import plain
+from tui.graph.ask import AskPane
+from tui.graph.links import heading, link, node_links
+from tui.graph.pane import LONGEST
+from tui.graph.place import Kind, Place
+from tui.widgets.rows import Cell, Column, Row
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from concurrent.futures import Future
+
+    from graph.data import ActionRow
+
+STATES = {
+    GoalStatus.SENDING: ("◌", N_("sending"), "dim"),
+    GoalStatus.REJECTED: ("✗", N_("rejected"), "bad"),
+    GoalStatus.ACCEPTED: ("◔", N_("accepted"), "warn"),
+    GoalStatus.EXECUTING: ("●", N_("executing"), "good"),
+    GoalStatus.CANCELING: ("◑", N_("canceling"), "warn"),
+    GoalStatus.SUCCEEDED: ("✓", N_("succeeded"), "good"),
+    GoalStatus.CANCELED: ("○", N_("canceled"), "dim"),
+    GoalStatus.ABORTED: ("✗", N_("aborted"), "bad"),
+    GoalStatus.FAILED: ("✗", N_("lost"), "bad"),
+}
+"""Status to sign, word and meaning: never the colour alone."""
+SHORT_ID = 8
+"""Digits of an id that are shown: two goals of one action hardly ever share them."""
+
+
+class ActionPane(AskPane):
+    """Sends goals; feedback and result come with the updates of the graph."""
+
+    class CancelWanted(Message):
+        """A goal of another client is to be cancelled, if whoever wants it is sure."""
+
+        def __init__(self, goal: SeenGoal, state: str) -> None:
+            super().__init__()
+            self.goal = goal
+            self.state = state
+            """How it stands, in the language spoken now."""
+
+    submit_title: ClassVar[str] = N_("Send goal")
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._sent_newest: int | None = None
+        """To be chosen when an update of the graph has it."""
+
+    @property
+    def goals(self) -> Sequence[Goal]:
+        """Those of the action that is shown, the newest first."""
+        update = self.graph_now
+        goals = () if update is None else update.goals
+        return [goal for goal in reversed(goals) if goal.action == self.name_shown]
+
+    @property
+    def of_others(self) -> Sequence[SeenGoal]:
+        """Those that others have sent, the newest first."""
+        update = self.graph_now
+        goals = () if update is None else update.seen_goals
+        return [goal for goal in reversed(goals) if goal.action == self.name_shown]
+
+    @property
+    def chosen(self) -> Goal | SeenGoal | None:
+        """The chosen one."""
+        wanted = self.asked_rows.chosen
+        goals: list[Goal | SeenGoal] = [*self.goals, *self.of_others]
+        return next((goal for goal in goals if _key(goal) == wanted), None)
+
+    @property
+    def row(self) -> ActionRow | None:
+        """The action as it is in the graph now."""
+        update = self.graph_now
+        actions = () if update is None else update.actions
+        return next((row for row in actions if row.name == self.name_shown), None)
+
+    def type_names(self) -> tuple[str, ...]:
+        """Return its types."""
+        return () if self.row is None else self.row.type_names
+
+    def links(self) -> Sequence[Row]:
+        """Return its type, who serves it, and who sends it goals."""
+        row = self.row
+        if row is None:
+            return [heading(_("It has left the graph."))]
+        return [
+            *(link(Place(Kind.TYPE, name), "type", _("type")) for name in row.type_names),
+            *node_links(row.servers, "serves", _("serves it")),
+            *node_links(row.clients, "calls", _("sends it goals")),
+        ]
+
+    def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
+        """Return the goals: Deck's own, below them those of others."""
+        return (
+            (Column("", 8), Column("", 13), Column("", 8), Column("")),
+            [*map(_own_row, self.goals), *map(_other_row, self.of_others)],
+        )
+
+    def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
+        """Return the chosen goal's result, or its newest feedback."""
+        goal = self.chosen
+        if goal is None:
+            return (
+                _("Feedback and result"),
+                self.name_shown,
+                (
+                    _("no goal has been sent yet"),
+                    _("{key} sends what is filled in.").format(key=self.submit_key),
+                ),
+            )
+        name = f"{self.name_shown} {_key(goal)}"
+        state = f"{_name(goal)} {_words(goal)}"
+        if isinstance(goal, SeenGoal):
+            state = f"{state} · " + _("of another client")
+        if goal.error:
+            return state, name, (_(STATES[goal.status][1]), plain(said(goal.error), LONGEST))
+        if isinstance(goal, Goal) and goal.result is not None:
+            return f"{state} · " + _("result"), f"{name} result", goal.result
+        if goal.feedback is not None:
+            count = _("feedback {n}").format(n=goal.feedbacks)
+            return f"{state} · {count}", name, goal.feedback
+        return state, name, (_("no feedback yet"), "")
+
+    def ask(self, value: Mapping[str, Any]) -> None:
+        """Send a goal."""
+        graph = self.deck.feed.graph
+        if graph is not None:
+            future = graph.send_goal(self.name_shown, self.type_names()[0], value)
+            self.run_worker(self._sent(future), exit_on_error=False)
+
+    async def _sent(self, future: Future[int]) -> None:
+        try:
+            number = await asyncio.wrap_future(future)
+        except Exception as error:  # noqa: BLE001 - whatever it was, it is told
+            reason = said(getattr(error, "words", str(error)))
+            self.warn(_("Not sent: {reason}").format(reason=reason))
+            return
+        self._sent_newest = number
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Show the goals, and choose the one that was just sent."""
+        super().redraw()
+        if self._sent_newest in [goal.number for goal in self.goals]:
+            self.asked_rows.choose(str(self._sent_newest))
+            self._sent_newest = None
+
+    @property
+    def can_cancel(self) -> bool:
+        """Whether any goal has not ended."""
+        return self._to_cancel is not None
+
+    @property
+    def _to_cancel(self) -> Goal | SeenGoal | None:
+        """The chosen goal; if that one has ended, the newest that has not, Deck's own first."""
+        goals: list[Goal | SeenGoal | None] = [self.chosen, *self.goals, *self.of_others]
+        return next((goal for goal in goals if goal is not None and not goal.ended), None)
+
+    @property
+    def is_waiting(self) -> bool:
+        """Updates of the graph count the seconds."""
+        return False
+
+    def cancel(self) -> None:
+        """Cancel a goal; one of another client only after a question."""
+        graph, goal = self.deck.feed.graph, self._to_cancel
+        if isinstance(goal, SeenGoal):
+            self.post_message(self.CancelWanted(goal, _words(goal)))
+        elif graph is not None and goal is not None:
+            graph.cancel_goal(goal.number)
+
+    @property
+    def can_forget(self) -> bool:
+        """Whether a goal of Deck's own is chosen."""
+        return isinstance(self.chosen, Goal)
+
+    def forget(self) -> None:
+        """Take the chosen goal off the list."""
+        graph, goal = self.deck.feed.graph, self.chosen
+        if graph is not None and isinstance(goal, Goal):
+            graph.forget_goal(goal.number)
+
+
+def _key(goal: Goal | SeenGoal) -> str:
+    return str(goal.number) if isinstance(goal, Goal) else goal.goal_id
+
+
+def _name(goal: Goal | SeenGoal) -> str:
+    """Return what it is called: the number by which Deck has sent it, or how its id begins."""
+    return f"#{goal.number}" if isinstance(goal, Goal) else goal.goal_id[:SHORT_ID]
+
+
+def _words(goal: Goal | SeenGoal) -> str:
+    sign, word, _meaning = STATES[goal.status]
+    return f"{sign} {_(word)}"
+
+
+def _own_row(goal: Goal) -> Row:
+    return _row(goal, goal.elapsed_s, _("own"))
+
+
+def _other_row(goal: SeenGoal) -> Row:
+    return _row(goal, goal.age_s, _("other's"))
+
+
+def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
+    told = ngettext("{n} feedback", "{n} feedbacks", goal.feedbacks).format(n=goal.feedbacks)
+    if goal.error:
+        told = plain(said(goal.error), LONGEST)
+    age = "" if age_s is None else _("{n} s").format(n=figure(age_s, 1))
+    cells = (
+        Cell(_name(goal)),
+        Cell(_words(goal), STATES[goal.status][2]),
+        Cell(age, "dim"),
+        Cell(f"{whose} · {told}", "dim"),
+    )
+    return Row(_key(goal), cells)

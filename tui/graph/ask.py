@@ -1,0 +1,230 @@
+"""Asking something of the graph: a form to be filled in, and what came of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual.containers import Container, Vertical
+from textual.widgets import Static
+
+from text.i18n import _
+from tui import clock
+from tui.graph.links import GraphLinks
+from tui.graph.pane import GraphHead, GraphPane
+from tui.topics.echo_tree import EchoTree
+from tui.widgets.rows import Rows
+from tui.yaml_form.actions import SubmitForm
+from tui.yaml_form.form import YamlForm
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from textual.app import ComposeResult
+    from textual.timer import Timer
+    from textual.widget import Widget
+
+    from tui.widgets.rows import Column, Row
+
+SETTLED_S = 0.12
+"""How long a choice must stand before its form is made: that imports its package."""
+TICK_S = 0.5
+
+
+class AskPane(GraphPane):
+    """Form beside the answers, or above them where there is little room.
+
+    A subclass tells who is asked (`links`), what was asked before (`asked`), and what came of the
+    chosen one (`answer`).
+    """
+
+    submit_title: ClassVar[str] = ""
+    DEFAULT_CSS: ClassVar[str] = """
+    AskPane {
+        .ask-body { height: 1fr; width: 1fr; layout: vertical; }
+        .ask-left, .ask-right { height: 1fr; width: 1fr; }
+        .ask-title { height: 1; width: 1fr; background: $panel; color: $text-muted; padding: 0 1; }
+        GraphLinks { height: auto; max-height: 3; }
+        .asked { height: auto; max-height: 30%; border-top: solid $panel; }
+        YamlForm { min-height: 3; }
+        EchoTree { min-height: 1; }
+    }
+    """
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._texts: dict[str, str] = {}
+        """Name to what stood in its form."""
+        self._could_cancel = False
+        self._form_for = ""
+        self._settling: Timer | None = None
+
+    def compose(self) -> ComposeResult:
+        """Head, who is asked, form; answer, and what was asked before."""
+        yield GraphHead()
+        with Container(classes="ask-body"):
+            with Vertical(classes="ask-left"):
+                yield GraphLinks()
+                yield YamlForm(submit_title=self.submit_title, type_is_given=True)
+                yield from self.compose_more()
+            with Vertical(classes="ask-right"):
+                yield Static(classes="ask-title", markup=False)
+                yield EchoTree()
+                yield Rows(header=False, classes="asked")
+
+    def compose_more(self) -> ComposeResult:
+        """Yield what is to be chosen besides, below the form."""
+        yield from ()
+
+    def on_mount(self) -> None:
+        """Keep the seconds of waiting true."""
+        self.set_interval(TICK_S, self.tick)
+
+    @property
+    def form(self) -> YamlForm:
+        """What is filled in."""
+        return self.query_one(YamlForm)
+
+    @property
+    def echo(self) -> EchoTree:
+        """The answer."""
+        return self.query_one(EchoTree)
+
+    @property
+    def asked_rows(self) -> Rows:
+        """What was asked."""
+        return self.query_one(".asked", Rows)
+
+    @property
+    def submit_key(self) -> str:
+        """How the key that asks is written."""
+        return self.deck.keys_of(SubmitForm)[0]
+
+    def type_names(self) -> tuple[str, ...]:
+        """Return the types of what is shown; empty if it has left the graph."""
+        raise NotImplementedError
+
+    def links(self) -> Sequence[Row]:
+        """Return the rows that lead to its type and to its nodes."""
+        raise NotImplementedError
+
+    def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
+        """Return what was asked, the newest first."""
+        raise NotImplementedError
+
+    def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
+        """Return a title, what the tree belongs to, and the tree or words in its place."""
+        raise NotImplementedError
+
+    def ask(self, value: Mapping[str, Any]) -> None:
+        """Ask what was filled in."""
+        raise NotImplementedError
+
+    @property
+    def can_cancel(self) -> bool:
+        """Whether something is under way."""
+        raise NotImplementedError
+
+    def cancel(self) -> None:
+        """End the chosen one that is under way."""
+        raise NotImplementedError
+
+    @property
+    def can_forget(self) -> bool:
+        """Whether the chosen one can be taken off the list."""
+        return False
+
+    def forget(self) -> None:
+        """Take the chosen one off the list."""
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether seconds are to be counted."""
+        return self.can_cancel
+
+    def tick(self) -> None:
+        """Count the seconds while something is under way."""
+        if self.is_waiting:
+            self.redraw()
+
+    @property
+    def is_settling(self) -> bool:
+        """Whether its form is to be loaded."""
+        return self._settling is not None
+
+    def show_name(self, name: str) -> None:
+        """Show another one; its form when the choice stands."""
+        if name != self.name_shown:
+            if self._settling is not None:
+                self._settling.stop()
+            self._settling = self.set_timer(SETTLED_S, self.load_form)
+        super().show_name(name)
+
+    def load_form(self) -> None:
+        """Put the form of what is shown in place of the one before."""
+        self._settling = None
+        if self._form_for:
+            self._texts[self._form_for] = self.form.text
+        types = self.type_names()
+        if types and self.name_shown != self._form_for:
+            self._form_for = self.name_shown
+            self.form.load(types[0], self._texts.get(self.name_shown))
+
+    def redraw(self) -> None:
+        """Show who is asked, and what came of it."""
+        if not self.name_shown or not self.is_mounted:
+            return
+        types = self.type_names()
+        told = [] if types else [_("nobody serves it any more")]
+        if len(types) > 1:
+            told = [_("Nodes disagree about its type; Deck asks for {type}.").format(type=types[0])]
+        self.query_one(GraphHead).show(self.name_shown, *told)
+        self.query_one(GraphLinks).show_links(self.links())
+        columns, rows = self.asked()
+        self.asked_rows.display = bool(rows)
+        self.asked_rows.show(columns, rows)
+        self._show_answer()
+        if self.can_cancel != self._could_cancel:
+            self._could_cancel = self.can_cancel
+            self.screen.refresh_bindings()
+
+    def relabel(self) -> None:
+        """Say everything anew."""
+        self.form.relabel()
+        self.redraw()
+
+    def first(self) -> Widget:
+        """The form."""
+        return self.form.editor
+
+    def on_rows_highlighted(self, event: Rows.Highlighted) -> None:
+        """Show what came of another one."""
+        if event.rows is self.asked_rows:
+            event.stop()
+            self._show_answer()
+            self.screen.refresh_bindings()
+
+    def on_yaml_form_submitted(self, event: YamlForm.Submitted) -> None:
+        """Ask."""
+        event.stop()
+        if self.deck.feed.graph is None:
+            self.warn(_("no lesson is running"))
+        elif self._form_for != self.name_shown or not self.type_names():
+            self.warn(_("nobody serves it any more"))
+        else:
+            self.ask(event.value)
+        self.redraw()
+
+    def _show_answer(self) -> None:
+        title, name, tree = self.answer()
+        bar = self.query_one(".ask-title", Static)
+        if bar.content != title:
+            bar.update(title)
+        if isinstance(tree, tuple):
+            self.echo.show_words(name, *tree)
+        else:
+            self.echo.show(name, tree)
+
+
+def now_s() -> float:
+    """Return the time by which waiting is counted, in seconds."""
+    return clock.now()

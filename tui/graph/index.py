@@ -1,0 +1,80 @@
+"""The graph by kinds: what is listed, what is hidden, which words find it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from graph.housekeeping import is_housekeeping
+from tui.graph.place import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
+
+    Typed = TopicRow | ServiceRow | ActionRow
+
+
+class Entry(NamedTuple):
+    """One line of the list."""
+
+    name: str
+    detail: str = ""
+    """Its type, or for a type how many things have it."""
+    housekeeping: bool = False
+
+
+def entries(update: GraphUpdate | None, kind: Kind, installed: Iterable[str] = ()) -> list[Entry]:
+    """Return everything of a kind, sorted by name; types that nobody uses count as ROS's own."""
+    if update is None:
+        return []
+    if kind is Kind.NODE:
+        found = [Entry(row.name, "", is_housekeeping(row.name)) for row in update.nodes]
+    elif kind is Kind.SERVICE:
+        found = [_typed(row.name, row.type_names) for row in update.services]
+    elif kind is Kind.ACTION:
+        found = [_typed(row.name, row.type_names) for row in update.actions]
+    else:
+        found = _types(update, installed)
+    return sorted(set(found))
+
+
+def chosen_of(listed: Iterable[Entry], words: str, *, everything: bool) -> list[Entry]:
+    """Return those that have all the words, without ROS's own unless `everything` is wanted."""
+    parts = words.casefold().split()
+    return [
+        entry
+        for entry in listed
+        if (everything or not entry.housekeeping)
+        and all(part in f"{entry.name} {entry.detail}".casefold() for part in parts)
+    ]
+
+
+def users_of(update: GraphUpdate | None, type_name: str) -> dict[Kind, list[str]]:
+    """Return the names of what is of this type, by kind."""
+    if update is None:
+        return {}
+    rows: dict[Kind, Sequence[Typed]] = {
+        Kind.TOPIC: update.topics,
+        Kind.SERVICE: update.services,
+        Kind.ACTION: update.actions,
+    }
+    found = {
+        kind: [row.name for row in of_kind if type_name in row.type_names]
+        for kind, of_kind in rows.items()
+    }
+    return {kind: names for kind, names in found.items() if names}
+
+
+def _typed(name: str, type_names: tuple[str, ...]) -> Entry:
+    return Entry(name, ", ".join(type_names), is_housekeeping(name))
+
+
+def _types(update: GraphUpdate, installed: Iterable[str]) -> list[Entry]:
+    used = dict.fromkeys(installed, True)
+    rows: tuple[Typed, ...] = (*update.topics, *update.services, *update.actions)
+    for row in rows:
+        hidden = is_housekeeping(row.name)
+        for type_name in row.type_names:
+            used[type_name] = used.get(type_name, True) and hidden
+    return [Entry(name, "", hidden) for name, hidden in used.items()]

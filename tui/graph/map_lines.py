@@ -1,0 +1,193 @@
+"""A node and its neighbours as a drawing: what comes in on the left, what goes out on the right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from rich.cells import cell_len
+
+from text.i18n import _
+from text.plain import plain
+from tui.graph.links import short
+from tui.graph.list import ended
+from tui.graph.place import Kind, Place
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from tui.graph.neighbours import Neighbours, Way
+
+LEFT, CENTRE, RIGHT = 0, 1, 2
+ROOMY = 52
+"""Cells of a side from which on nodes have a column of their own."""
+LONGEST = 200
+UP, DOWN, WEST, EAST = 1, 2, 4, 8
+BENDS = " │││─┘┐┤─└┌├─┴┬┼"
+"""The line that goes to these sides, by the sum of their numbers."""
+SIGNS = {Kind.TOPIC: "", Kind.SERVICE: "()", Kind.ACTION: " ⚑"}
+"""Written behind a name: a service is called like a function, an action is given a goal."""
+
+
+class Piece(NamedTuple):
+    """A text at a place of the drawing."""
+
+    row: int
+    x: int
+    text: str
+    look: str = ""
+    """`name` of a way, `node`, `box`, `line`, `dim`."""
+
+
+class Stop(NamedTuple):
+    """Something that the cursor can stand on."""
+
+    place: Place
+    row: int
+    piece: int
+    """Its number among the pieces."""
+
+
+@dataclass
+class Drawing:
+    """The pieces, and what the cursor can stand on by columns, from top to bottom."""
+
+    height: int
+    pieces: list[Piece] = field(default_factory=list)
+    stops: tuple[list[Stop], list[Stop], list[Stop]] = field(default_factory=lambda: ([], [], []))
+
+    def put(self, piece: Piece, place: Place | None = None, column: int = CENTRE) -> None:
+        """Add a piece, one that the cursor can stand on if it has a `place`."""
+        if place is not None:
+            self.stops[column].append(Stop(place, piece.row, len(self.pieces)))
+        self.pieces.append(piece)
+
+
+def drawing(name: str, around: Neighbours, width: int, height: int, top: int = 0) -> Drawing:
+    """Draw into `width` cells; the node stands in the middle of `height` rows below `top`."""
+    box = min(cell_len(plain(name, LONGEST)) + 4, max(12, width // 3))
+    side = max(6, (width - box - 7) // 2)
+    coming = _heights(around.coming, side, height)
+    going = _heights(around.going, side, height)
+    whole = max(height, sum(coming), sum(going))
+    middle = min(whole - 2, top + height // 2)
+    drawn = Drawing(whole)
+    _side(drawn, around.coming, coming, side, middle, LEFT)
+    _box(drawn, name, side + 3, box, middle)
+    _side(drawn, around.going, going, side, middle, RIGHT, side + 3 + box)
+    return drawn
+
+
+def _heights(ways: Sequence[Way], side: int, height: int) -> list[int]:
+    """Return how many rows each way takes; one more where there is room for all."""
+    above = 0 if side >= ROOMY else 1
+    heights = [above + max(1, len(way.nodes)) for way in ways]
+    roomy = sum(heights) + len(heights) <= height
+    return [rows + 1 for rows in heights] if roomy else heights
+
+
+def _box(drawn: Drawing, name: str, x: int, width: int, middle: int) -> None:
+    inner = ended(plain(name, LONGEST), width - 4)
+    bar = "─" * (width - 2)
+    drawn.put(Piece(middle - 1, x, f"┌{bar}┐", "box"))
+    drawn.put(Piece(middle, x, "│", "box"))
+    drawn.put(Piece(middle, x + 1, f" {inner:{width - 4}} ", "node"), Place(Kind.NODE, name))
+    drawn.put(Piece(middle, x + width - 1, "│", "box"))
+    drawn.put(Piece(middle + 1, x, f"└{bar}┘", "box"))
+
+
+def _side(
+    drawn: Drawing,
+    ways: Sequence[Way],
+    heights: Sequence[int],
+    side: int,
+    middle: int,
+    column: int,
+    x: int = 0,
+) -> None:
+    """Draw the ways of one side; `x` is where the box ends, on the right side."""
+    if not ways:
+        words = _("hears nothing") if column == LEFT else _("says nothing")
+        at = max(0, side - cell_len(words)) if column == LEFT else x + 3
+        drawn.put(Piece(middle, at, ended(words, side), "dim"))
+        return
+    row = max(0, min(middle - sum(heights) // 2, drawn.height - sum(heights)))
+    rows = []
+    for way, height in zip(ways, heights, strict=True):
+        rows.append(row)
+        place = _wide if side >= ROOMY else _narrow
+        place(drawn, way, row, side, column, 0 if column == LEFT else x + 4)
+        row += height
+    _trunk(drawn, rows, middle, side if column == LEFT else x + 1, column)
+
+
+def _trunk(drawn: Drawing, rows: Sequence[int], middle: int, x: int, column: int) -> None:
+    """Draw the line that gathers the ways of a side, and leads to the box or away from it."""
+    towards, away = (WEST, EAST) if column == LEFT else (EAST, WEST)
+    first, last = min(*rows, middle), max(*rows, middle)
+    for row in range(first, last + 1):
+        bend = (UP if row > first else 0) | (DOWN if row < last else 0)
+        bend |= (towards if row in rows else 0) | (away if row == middle else 0)
+        drawn.put(Piece(row, x, BENDS[bend], "line"))
+    if column == LEFT:
+        drawn.put(Piece(middle, x + 1, "─▶", "line"))
+    else:
+        drawn.put(Piece(middle, x - 1, "─", "line"))
+        for row in rows:
+            drawn.put(Piece(row, x + 1, "▶", "line"))
+
+
+def _narrow(drawn: Drawing, way: Way, row: int, side: int, column: int, x: int) -> None:
+    """The way, and below it the nodes at its other end."""
+    name = ended(_named(way), side - 2)
+    drawn.put(Piece(row, x, name, "name"), way.place, column)
+    if column == LEFT:
+        line = " " + "─" * (side - cell_len(name) - 1)
+        drawn.put(Piece(row, cell_len(name), line, "line"))
+    for below, node in enumerate(way.nodes):
+        text = ended(short(node), side - 3)
+        drawn.put(Piece(row + 1 + below, x + 2, text, "node"), Place(Kind.NODE, node), column)
+    if not way.nodes:
+        drawn.put(Piece(row + 1, x + 2, _("nobody"), "dim"))
+
+
+def _wide(drawn: Drawing, way: Way, row: int, side: int, column: int, x: int) -> None:
+    """The way beside the nodes at its other end, each in a row of its own."""
+    name = ended(_named(way), side // 2 - 4)
+    room = side // 2 - 2
+    at = x + side - side // 2 if column == LEFT else x
+    if column == LEFT:
+        _nodes(drawn, way, row, x, room, column)
+    drawn.put(Piece(row, at, name, "name"), way.place, column)
+    rest = side // 2 - cell_len(name)
+    if column == LEFT:
+        drawn.put(Piece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
+    else:
+        if way.nodes:
+            drawn.put(Piece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
+        _nodes(drawn, way, row, x + side // 2, room, column)
+
+
+def _nodes(drawn: Drawing, way: Way, row: int, x: int, room: int, column: int) -> None:
+    if not way.nodes:
+        drawn.put(Piece(row, x, _("nobody"), "dim"))
+    last = len(way.nodes) - 1
+    for number, node in enumerate(way.nodes):
+        at, place = row + number, Place(Kind.NODE, node)
+        bend = (UP if number else 0) | (DOWN if number < last else 0)
+        name = ended(short(node), room - 3)
+        if column == LEFT:
+            bend |= WEST | (0 if number else EAST)
+            drawn.put(Piece(at, x, name, "node"), place, column)
+            line = " " + "─" * (room - cell_len(name) - 2) + BENDS[bend]
+            drawn.put(Piece(at, x + cell_len(name), line, "line"))
+            if not number:
+                drawn.put(Piece(at, x + room, "▶ ", "line"))
+        else:
+            bend |= EAST | (0 if number else WEST)
+            drawn.put(Piece(at, x, f"{BENDS[bend]}▶ ", "line"))
+            drawn.put(Piece(at, x + 3, name, "node"), place, column)
+
+
+def _named(way: Way) -> str:
+    return plain(way.place.name, LONGEST) + SIGNS.get(way.place.kind, "")

@@ -1,0 +1,79 @@
+"""Who talks to a node and whom it talks to: the graph one step around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from graph.housekeeping import is_housekeeping
+from tui.graph.place import Kind, Place
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from graph.data import GraphUpdate, NodeRow
+
+
+@dataclass(frozen=True)
+class Way:
+    """A topic, a service or an action, and the nodes at its other end."""
+
+    place: Place
+    nodes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Neighbours:
+    """The ways that lead to a node, and those that lead from it.
+
+    To it lead what it hears, serves and is sent goals for; from it what it says, and what it asks
+    of others.
+    """
+
+    heard: tuple[Way, ...] = ()
+    served: tuple[Way, ...] = ()
+    goals_taken: tuple[Way, ...] = ()
+    said: tuple[Way, ...] = ()
+    called: tuple[Way, ...] = ()
+    goals_sent: tuple[Way, ...] = ()
+
+    @property
+    def coming(self) -> tuple[Way, ...]:
+        """All ways to it."""
+        return (*self.heard, *self.served, *self.goals_taken)
+
+    @property
+    def going(self) -> tuple[Way, ...]:
+        """All ways from it."""
+        return (*self.said, *self.called, *self.goals_sent)
+
+
+def node_called(update: GraphUpdate | None, name: str) -> NodeRow | None:
+    """Return the node of this full name."""
+    nodes = () if update is None else update.nodes
+    return next((row for row in nodes if row.name == name), None)
+
+
+def neighbours(update: GraphUpdate, node: NodeRow, *, everything: bool = False) -> Neighbours:
+    """Return what stands around a node; ROS's own topics and services if `everything` is wanted."""
+
+    def ways(kind: Kind, names: Iterable[str], end: str) -> tuple[Way, ...]:
+        return tuple(
+            Way(Place(kind, name), _with(update, end, name))
+            for name in sorted(names)
+            if everything or not is_housekeeping(name)
+        )
+
+    return Neighbours(
+        heard=ways(Kind.TOPIC, node.subscribes, "publishes"),
+        served=ways(Kind.SERVICE, node.services, "clients"),
+        goals_taken=ways(Kind.ACTION, node.action_servers, "action_clients"),
+        said=ways(Kind.TOPIC, node.publishes, "subscribes"),
+        called=ways(Kind.SERVICE, node.clients, "services"),
+        goals_sent=ways(Kind.ACTION, node.action_clients, "action_servers"),
+    )
+
+
+def _with(update: GraphUpdate, end: str, name: str) -> tuple[str, ...]:
+    """Return the nodes that have `name` at this end of theirs: `publishes`, and so on."""
+    return tuple(row.name for row in update.nodes if name in getattr(row, end))

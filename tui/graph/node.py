@@ -1,0 +1,119 @@
+"""A node: which process it is, whom it talks to, and its parameters when they are asked for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from text.i18n import _
+from tui.graph.links import GraphLinks
+from tui.graph.neighbours import node_called
+from tui.graph.node_rows import node_rows, process_words, status_of
+from tui.graph.pane import GraphHead, GraphPane, Words
+from tui.graph.parameters import GraphParameters
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+    from textual.widget import Widget
+
+
+class NodePane(GraphPane):
+    """Links above, parameters below once they are wanted."""
+
+    DEFAULT_CSS: ClassVar[str] = """
+    NodePane {
+        GraphLinks { height: 1fr; }
+        GraphParameters { height: 1fr; display: none; border-top: solid $panel; }
+        &.-parameters GraphParameters { display: block; }
+    }
+    .-low NodePane.-parameters, .-flat NodePane.-parameters {
+        GraphLinks, #node-words { display: none; }
+        GraphParameters { border-top: none; }
+    }
+    """
+
+    def compose(self) -> ComposeResult:
+        """Head, links, parameters."""
+        yield GraphHead()
+        yield Words(id="node-words")
+        yield GraphLinks()
+        yield GraphParameters()
+
+    @property
+    def links(self) -> GraphLinks:
+        """What leads away from the node."""
+        return self.query_one(GraphLinks)
+
+    @property
+    def parameters(self) -> GraphParameters:
+        """The node's parameters."""
+        return self.query_one(GraphParameters)
+
+    @property
+    def shows_parameters(self) -> bool:
+        """Whether they are wanted."""
+        return self.has_class("-parameters")
+
+    def show_name(self, name: str) -> None:
+        """Show another node; its parameters are read if those of the one before were shown."""
+        another = name != self.name_shown
+        super().show_name(name)
+        if another:
+            self.parameters.forget()
+            if self.shows_parameters:
+                self._read()
+
+    def toggle_parameters(self) -> None:
+        """Show the parameters, read anew, or hide them."""
+        self.toggle_class("-parameters")
+        if self.shows_parameters:
+            self._read()
+            self.parameters.table.focus()
+        else:
+            self.links.focus()
+        self.screen.refresh_bindings()
+
+    def _read(self) -> None:
+        self.parameters.read(self.name_shown)
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Show the node as it is now."""
+        if not self.name_shown or not self.is_mounted:
+            return
+        update = self.graph_now
+        node = node_called(update, self.name_shown)
+        status = status_of(self.name_shown, self.deck.feed.nodes)
+        if status and not status.state.alive and self.name_shown in self.deck.feed.outside.now:
+            # What runs is somebody's own in its place.
+            status = None
+        self.query_one(GraphHead).show(self.name_shown, process_words(status))
+        if self.shows_parameters:
+            self.parameters.see(() if node is None else node.processes)
+        words = self.query_one(Words)
+        if update is None or node is None:
+            words.show(_("this node has left the graph"), _gone_words(status is not None))
+            words.display = True
+            return
+        rows = node_rows(update, node, everything=self.everything)
+        self.links.show_links(rows)
+        words.display = not rows
+        if not rows:
+            words.show(
+                _("it talks to nobody"),
+                _("It neither publishes nor subscribes, serves nor calls anything."),
+            )
+
+    def relabel(self) -> None:
+        """Say everything anew."""
+        self.parameters.redraw()
+        self.redraw()
+
+    def first(self) -> Widget:
+        """The parameters if they are all there is to be seen, else the links."""
+        return self.links if self.links.display else self.parameters.table
+
+
+def _gone_words(ours: bool) -> str:
+    if ours:
+        return _("Its process is Deck's own: the screens Deck and Logs tell what became of it.")
+    return _("It was stopped, or cannot be reached any more. Below is what it last did.")

@@ -1,0 +1,191 @@
+"""The parameters of a node: read when asked, each with its type and what it may be."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+from textual.containers import Vertical
+from textual.widgets import Static
+
+from text.i18n import _, ngettext, said
+from text.plain import plain
+from tui import clock
+from tui.graph.pane import LONGEST, Words
+from tui.graph.parameter_words import allowed_words, value_text
+from tui.widgets.rows import Cell, Column, Row, Rows
+from tui.widgets.working import Working
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from concurrent.futures import Future
+
+    from textual.app import ComposeResult
+
+    from graph.data import ParameterRow, ParametersResult, Sample
+    from tui.app import DeckApp
+
+ROOMY = 70
+"""Cells from which on there are columns for type and limits."""
+TICK_S = 0.5
+PARAMETER_EVENTS = "/parameter_events"
+"""Where every node tells what was changed of its parameters, by whomever."""
+
+
+class GraphParameters(Vertical, Working):
+    """A table of parameters, or why there is none."""
+
+    DEFAULT_CSS: ClassVar[str] = """
+    GraphParameters {
+        .parameters-title { height: 1; width: 1fr; background: $panel; color: $text-muted;
+            padding: 0 1; }
+        Rows { height: 1fr; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._node = ""
+        self._result: ParametersResult | None = None
+        self._asked_s: float | None = None
+        self._question = 0
+        self._changed = False
+        """Whether one may have changed since the node was asked."""
+        self._processes: tuple[int, ...] | None = None
+        """Of the node that was asked; None until it is known whom it was."""
+
+    def compose(self) -> ComposeResult:
+        """Title, words, table."""
+        yield Static(classes="parameters-title", markup=False)
+        yield Words()
+        yield Rows(id="graph-parameters")
+
+    def on_mount(self) -> None:
+        """Keep the seconds of waiting true."""
+        self.set_interval(TICK_S, self._tick)
+
+    @property
+    def table(self) -> Rows:
+        """The table."""
+        return self.query_one(Rows)
+
+    @property
+    def node(self) -> str:
+        """Whose parameters they are."""
+        return self._node
+
+    @property
+    def rows(self) -> tuple[ParameterRow, ...]:
+        """What was read."""
+        return () if self._result is None else self._result.parameters
+
+    @property
+    def chosen(self) -> ParameterRow | None:
+        """The chosen one."""
+        return next((row for row in self.rows if row.name == self.table.chosen), None)
+
+    def forget(self) -> None:
+        """Show nothing of the node before."""
+        self._question += 1
+        self._node, self._result, self._asked_s, self._processes = "", None, None, None
+        self.redraw()
+
+    def read(self, node: str) -> None:
+        """Ask the node for its parameters; what was read before is shown until it answers."""
+        graph = cast("DeckApp", self.app).feed.graph
+        if node != self._node:
+            self.forget()
+        self._node = node
+        if graph is not None and node:
+            self._question += 1
+            self._changed = False
+            self._asked_s = clock.now()
+            self.run_worker(self._take(graph.parameters(node), self._question), exit_on_error=False)
+        self.redraw()
+
+    def hear(self, events: Iterable[Sample]) -> None:
+        """Read them anew if these messages of /parameter_events tell of this node."""
+        if not any(event.value.get("node") == self._node for event in events):
+            return
+        self._read_anew()
+
+    def see(self, processes: tuple[int, ...]) -> None:
+        """Read them anew if the node lives in others: who starts again has its first values.
+
+        Empty: it is not in the graph, or the middleware does not tell.
+        """
+        if self._processes is None:
+            self._processes = processes
+        elif processes and processes != self._processes:
+            self._processes = processes
+            self._read_anew()
+
+    def _read_anew(self) -> None:
+        if self._asked_s is None:
+            self.read(self._node)
+        else:
+            # The answer that is awaited may be older; one asked anew each time might never come.
+            self._changed = True
+
+    async def _take(self, future: Future[ParametersResult], question: int) -> None:
+        result: Any = await asyncio.wrap_future(future)
+        if question == self._question:
+            self._result, self._asked_s = result, None
+            if self._changed:
+                self.read(self._node)
+            self.redraw()
+
+    def _tick(self) -> None:
+        if self._asked_s is not None:
+            self._label()
+
+    def on_resize(self) -> None:
+        """Show the columns that there is room for."""
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Show what was read, in the language spoken now."""
+        if not self.is_mounted:
+            return
+        self._label()
+        words, table = self.query_one(Words), self.table
+        words.show(*self._why_empty())
+        words.display = bool(words.said[0])
+        table.display = not words.display
+        width = self.size.width
+        name = max((len(row.name) for row in self.rows), default=0)
+        columns = [Column(_("Parameter"), min(name, max(8, int(width * 0.45))) or 8)]
+        columns.append(Column(_("Value")))
+        if width >= ROOMY:
+            columns += [Column(_("Type"), 13), Column(_("Allowed"), 20)]
+        table.show(columns, [_row(row, roomy=width >= ROOMY) for row in self.rows])
+
+    def _label(self) -> None:
+        title = self.query_one(".parameters-title", Static)
+        words = _("Parameters")
+        if self._asked_s is not None:
+            waited = int(clock.now() - self._asked_s)
+            words += " · " + _("asked, no answer for {n} s").format(n=waited)
+        elif self._result is not None and not self._result.error:
+            count = len(self.rows)
+            words = ngettext("{n} parameter", "{n} parameters", count).format(n=count)
+            words += " · " + _("read in {n} ms").format(n=round(self._result.elapsed_s * 1000))
+        if title.content != words:
+            title.update(words)
+
+    def _why_empty(self) -> tuple[str, str]:
+        if self._result is None:
+            if cast("DeckApp", self.app).feed.graph is None:
+                return _("no lesson is running"), ""
+            return _("the node is being asked"), _("A node that hangs answers nothing.")
+        if self._result.error:
+            return _("its parameters could not be read"), plain(said(self._result.error), LONGEST)
+        return ("", "") if self.rows else (_("this node has no parameters"), "")
+
+
+def _row(row: ParameterRow, *, roomy: bool) -> Row:
+    lock = "⊘ " if row.read_only else ""
+    cells = [Cell(plain(row.name, LONGEST)), Cell(lock + value_text(row.value))]
+    if roomy:
+        cells += [Cell(row.type_name, "dim"), Cell(allowed_words(row), "dim")]
+    return Row(row.name, tuple(cells))

@@ -1,0 +1,265 @@
+"""A service: its form, its answers with their times, and the calls of this session."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from graph.data import CallResult
+from text.figures import figure
+from text.i18n import N_, _, decimal, said
+from text.plain import plain
+from tui.clock import time_of_day
+from tui.graph.actions import Cancel
+from tui.graph.ask import AskPane, now_s
+from tui.graph.call_timeout import USUAL_S, CallTimeout
+from tui.graph.links import heading, link, node_links
+from tui.graph.pane import LONGEST
+from tui.graph.parameter_words import typed
+from tui.graph.place import Kind, Place
+from tui.widgets.rows import Cell, Column, Row
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from concurrent.futures import Future
+
+    from textual.app import ComposeResult
+
+    from graph.data import ServiceRow
+
+MOST_CALLS = 50
+"""Of one service that are kept."""
+
+
+@dataclass
+class Call:
+    """One call of this session."""
+
+    number: int
+    request: Mapping[str, Any]
+    asked_s: float
+    timeout_s: float
+    result: CallResult | None = None
+    given_up: bool = False
+    late: bool = False
+    """Whether its answer came after somebody was told that there is none."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether its answer is still awaited."""
+        return self.result is None and not self.given_up
+
+
+class ServicePane(AskPane):
+    """Calls a service; the screen goes on while it waits."""
+
+    submit_title: ClassVar[str] = N_("Call")
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._calls: dict[str, list[Call]] = {}
+        self._number = 0
+        self._timeouts: dict[str, str] = {}
+        """Service to what stood in its field for the time-out."""
+
+    def compose_more(self) -> ComposeResult:
+        """Below the form: how long an answer is waited for."""
+        yield CallTimeout()
+
+    @property
+    def timeout(self) -> CallTimeout:
+        """How long an answer is waited for."""
+        return self.query_one(CallTimeout)
+
+    def show_name(self, name: str) -> None:
+        """Show another one, with its own time-out."""
+        if name != self.name_shown:
+            self._timeouts[self.name_shown] = self.timeout.field.value
+            self.timeout.field.value = self._timeouts.get(name, USUAL_S)
+        super().show_name(name)
+
+    def relabel(self) -> None:
+        """Say everything anew."""
+        super().relabel()
+        self.timeout.relabel()
+
+    @property
+    def calls(self) -> Sequence[Call]:
+        """Those of the service that is shown, the newest first."""
+        return self._calls.get(self.name_shown, [])
+
+    @property
+    def chosen(self) -> Call | None:
+        """The chosen one."""
+        wanted = self.asked_rows.chosen
+        return next((call for call in self.calls if str(call.number) == wanted), None)
+
+    @property
+    def row(self) -> ServiceRow | None:
+        """The service as it is in the graph now."""
+        update = self.graph_now
+        services = () if update is None else update.services
+        return next((row for row in services if row.name == self.name_shown), None)
+
+    def type_names(self) -> tuple[str, ...]:
+        """Return its types."""
+        return () if self.row is None else self.row.type_names
+
+    def links(self) -> Sequence[Row]:
+        """Return its type, who serves it, and who calls it."""
+        row, update = self.row, self.graph_now
+        if row is None or update is None:
+            return [heading(_("It has left the graph."))]
+        callers = [node.name for node in update.nodes if row.name in node.clients]
+        return [
+            *(link(Place(Kind.TYPE, name), "type", _("type")) for name in row.type_names),
+            *node_links(row.nodes, "serves", _("serves it")),
+            *node_links(callers, "calls", _("calls it")),
+        ]
+
+    def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
+        """Return the calls of this session."""
+        return (
+            (Column("", 8), Column("", 3), Column("")),
+            [
+                Row(str(call.number), (Cell(_at(call), "dim"), _sign(call), Cell(_summary(call))))
+                for call in self.calls
+            ],
+        )
+
+    def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
+        """Return what the chosen call has brought."""
+        call = self.chosen
+        if call is None:
+            key = self.submit_key
+            return (
+                _("Answer"),
+                self.name_shown,
+                (_("not called yet"), _("{key} calls it with what is filled in.").format(key=key)),
+            )
+        name = f"{self.name_shown} {call.number}"
+        if call.result is None:
+            return self._waiting(call, name)
+        if call.result.ok and call.result.response is not None:
+            return _answer_title(call, call.result), name, call.result.response
+        words = plain(said(call.result.error), LONGEST)
+        if call.result.late is not None:
+            title = _("No answer within {n} s").format(n=decimal(f"{call.timeout_s:g}"))
+            listens = _("A late answer will be shown here; choose a longer time below the form.")
+            return title, name, (_("no answer yet"), listens)
+        told = _("{n} ms").format(n=decimal(f"{call.result.elapsed_s * 1000:.1f}"))
+        return _("No answer · {time}").format(time=told), name, (_("the call failed"), words)
+
+    def _waiting(self, call: Call, name: str) -> tuple[str, str, tuple[str, str]]:
+        if call.given_up:
+            words = _(
+                "The node may still do what it was asked for; a late answer will be shown here."
+            )
+            return _("No answer"), name, (_("given up"), words)
+        waited = int(now_s() - call.asked_s)
+        title = _("Still waiting: {n} s of {most} s").format(
+            n=waited, most=decimal(f"{call.timeout_s:g}")
+        )
+        key = self.deck.keys_of(Cancel)[0]
+        way_out = _("{key} stops waiting for it.").format(key=key)
+        return title, name, (_("the call is under way"), way_out)
+
+    def ask(self, value: Mapping[str, Any]) -> None:
+        """Call the service."""
+        graph, timeout_s = self.deck.feed.graph, self.timeout.seconds
+        if timeout_s is None:
+            self.warn(_("Not called: correct the waiting time below the form."))
+            self.timeout.field.focus()
+            return
+        if graph is None:
+            return
+        self._number += 1
+        call = Call(self._number, value, now_s(), timeout_s)
+        calls = self._calls.setdefault(self.name_shown, [])
+        calls.insert(0, call)
+        del calls[MOST_CALLS:]
+        future = graph.call(self.name_shown, self.type_names()[0], value, timeout_s)
+        self.run_worker(self._take(call, self.name_shown, future), exit_on_error=False)
+        self.redraw()
+        self.asked_rows.choose(str(call.number))
+
+    async def _take(self, call: Call, name: str, future: Future[CallResult]) -> None:
+        result = await _outcome(call, name, future)
+        if result.late is None:
+            self._show(call, result)
+            return
+        if not call.given_up:
+            self._show(call, result)
+        result = await _outcome(call, name, result.late)
+        call.late = result.ok
+        self._show(call, result)
+        if call.late:
+            words = _("{name}: the answer has come after {n} s.")
+            told = words.format(name=name, n=figure(result.elapsed_s, 1))
+            self.notify(plain(told, LONGEST), markup=False)
+
+    def _show(self, call: Call, result: CallResult) -> None:
+        call.result = result
+        if self.is_mounted:
+            self.redraw()
+            self.screen.refresh_bindings()
+
+    @property
+    def can_cancel(self) -> bool:
+        """Whether a call is under way."""
+        return any(call.waits for call in self.calls)
+
+    def cancel(self) -> None:
+        """Wait no longer for the newest call."""
+        call = next((call for call in self.calls if call.waits), None)
+        if call is not None:
+            call.given_up = True
+            self.redraw()
+
+
+async def _outcome(call: Call, name: str, future: Future[CallResult]) -> CallResult:
+    try:
+        return await asyncio.wrap_future(future)
+    except Exception as error:  # noqa: BLE001 - whatever it was, it is told
+        why = getattr(error, "words", "") or str(error) or type(error).__name__
+        return CallResult(name, False, None, why, now_s() - call.asked_s)
+
+
+def _answer_title(call: Call, result: CallResult) -> str:
+    if call.late:
+        words = _("Late answer after {n} s, awaited for {most} s")
+        return words.format(n=figure(result.elapsed_s, 1), most=decimal(f"{call.timeout_s:g}"))
+    told = _("{n} ms").format(n=decimal(f"{result.elapsed_s * 1000:.1f}"))
+    return _("Answer in {time}").format(time=told)
+
+
+def _at(call: Call) -> str:
+    return time_of_day(call.asked_s)
+
+
+def _sign(call: Call) -> Cell:
+    if call.waits:
+        return Cell("◔", "warn")
+    if call.result is None:
+        return Cell("○", "dim")
+    return Cell("✓", "good") if call.result.ok else Cell("✗", "bad")
+
+
+def _summary(call: Call) -> str:
+    """Return what was asked and what came, in one line."""
+    asked = _flat(call.request)
+    result = call.result
+    if result is None:
+        return asked
+    if not result.ok or result.response is None:
+        return f"{asked} → {plain(said(result.error), LONGEST)}"
+    return f"{asked} → {_flat(result.response)}"
+
+
+def _flat(tree: Mapping[str, Any]) -> str:
+    parts = []
+    for name, value in tree.items():
+        nested = hasattr(value, "items")
+        parts.append(f"{name} " + ("{…}" if nested else typed(value)[:40]))
+    return plain(", ".join(parts), 120)

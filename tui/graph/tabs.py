@@ -1,0 +1,70 @@
+"""The kinds of the graph as tabs, each with its number."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.content import Content
+from textual.message import Message
+from textual.style import Style
+from textual.widget import Widget
+
+from text.i18n import _
+from tui.graph.place import LISTED, TITLES, Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from textual.geometry import Size
+
+
+class GraphTabs(Widget):
+    """One line; the kind in front is bold, and a click chooses."""
+
+    class Selected(Message):
+        """Another kind is wanted."""
+
+        def __init__(self, kind: Kind) -> None:
+            super().__init__()
+            self.kind = kind
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"graph-tabs--tab", "graph-tabs--front"}
+    DEFAULT_CSS = """
+    GraphTabs {
+        width: auto; height: 1; background: $panel;
+        link-style: none; link-color: $foreground; link-background: transparent;
+        link-style-hover: reverse;
+        .graph-tabs--tab { color: $foreground; }
+        .graph-tabs--front { color: $foreground; text-style: bold reverse; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._front = Kind.NODE
+        self._counts: dict[Kind, int] = {}
+
+    def show(self, front: Kind, counts: Mapping[Kind, int]) -> None:
+        """Show how many there are of each kind, and which kind is listed."""
+        if (front, dict(counts)) != (self._front, self._counts):
+            self._front, self._counts = front, dict(counts)
+            self.refresh(layout=True)
+
+    def get_content_width(self, container: Size, viewport: Size) -> int:
+        """As wide as its words."""
+        del container, viewport
+        return self.render().cell_length
+
+    def action_choose(self, kind: str) -> None:
+        """Tell that a tab was clicked."""
+        self.post_message(self.Selected(Kind(kind)))
+
+    def render(self) -> Content:
+        """Draw the tabs."""
+        parts = []
+        for kind in LISTED:
+            name = "front" if kind is self._front else "tab"
+            click = Style.from_meta({"@click": f"choose({kind.value!r})"})
+            style = self.get_visual_style(f"graph-tabs--{name}") + click
+            parts.append(Content.styled(f" {_(TITLES[kind])} {self._counts.get(kind, 0)} ", style))
+        return Content("").join(parts)

@@ -1,0 +1,1 @@
+"""The page that explains every key of the screen in front."""

@@ -1,0 +1,111 @@
+"""Every key of the screen in front, and what that screen shows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+from textual.screen import ModalScreen
+
+from text.i18n import N_, _
+from tui.actions import Acting, Action, bindings, bound
+from tui.frame.key_bar import KeyBar
+from tui.frame.screen import DeckScreen
+from tui.frame.title_bar import TitleBar
+from tui.recording.replay_actions import ReplayAction
+from tui.widgets.page import Entry, Page
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+    from textual.binding import BindingType
+    from textual.screen import Screen
+
+    from tui.app import DeckApp
+    from tui.session.messages import LanguageChanged
+
+
+class CloseHelp(Action["HelpScreen"]):
+    """Back to the screen."""
+
+    id = "help.close"
+    key = "escape,f1,enter"
+    title = N_("Close")
+    means = "help"
+    tooltip = N_("Go back to the screen.")
+    footer = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: HelpScreen) -> None:
+        """Close it."""
+        target.dismiss()
+
+
+class HelpScreen(ModalScreen[None], Acting):
+    """A page made of the actions themselves, so that it cannot be wrong about a key."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(CloseHelp)
+    DEFAULT_CSS = """
+    HelpScreen {
+        background: $background;
+        Page { padding: 0 2; }
+    }
+    """
+
+    def __init__(self, explained: Screen[Any]) -> None:
+        """Explain this screen."""
+        super().__init__()
+        self._explained = explained
+
+    def compose(self) -> ComposeResult:
+        """The page between title and keys."""
+        yield TitleBar()
+        yield Page()
+        yield KeyBar()
+
+    def on_mount(self) -> None:
+        """Write the page."""
+        self.redraw()
+        self.query_one(Page).focus()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Write the page anew."""
+        del message
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Write the page in the language spoken now."""
+        self.query_one(TitleBar).show((), (_("Help"),))
+        self.query_one(Page).show(list(self._entries()))
+
+    def _entries(self) -> Iterable[Entry]:
+        screen = self._explained
+        if isinstance(screen, DeckScreen) and screen.about:
+            yield Entry()
+            yield Entry(_(screen.about))
+        yield from self._section(_("Keys of this screen"), list(bound(screen)))
+        if isinstance(screen, DeckScreen):
+            for heading, actions in screen.more_keys():
+                yield from self._section(heading, list(actions))
+        yield from self._section(_("Keys of every screen"), self._everywhere())
+        yield Entry()
+        yield Entry(
+            _(
+                "Tab moves between panels; the mouse clicks, scrolls and selects. In a text field "
+                "letters, digits and space are typed: use Ctrl and the function keys there."
+            )
+        )
+
+    def _everywhere(self) -> list[type[Action[Any]]]:
+        """Return what the app can do; what is for recordings only beside one."""
+        replayed = cast("DeckApp", self.app).feed.replay is not None
+        actions = list(bound(self.app))
+        return [each for each in actions if replayed or not issubclass(each, ReplayAction)]
+
+    def _section(self, heading: str, actions: list[type[Action[Any]]]) -> Iterable[Entry]:
+        if actions:
+            yield Entry(name=heading)
+        app = cast("DeckApp", self.app)
+        for action in actions:
+            keys = "  ".join(app.keys_of(action))
+            yield Entry(_(action.tooltip), _(action.title), keys)

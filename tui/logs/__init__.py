@@ -1,0 +1,1 @@
+"""The tab of logs, and the log view that other tabs have too."""

@@ -1,0 +1,161 @@
+"""The log with its line of state, and the line in which is asked what to search or where to write.
+
+It knows nothing of keys: a screen's actions call `search`, `find`, `copy`, `save` and the rest.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.containers import Vertical
+
+from text.i18n import _, ngettext
+from text.plain import plain
+from tui import clock
+from tui.logs.bar import LogBar, grouped
+from tui.logs.prompt import LogPrompt
+from tui.logs.save import default_path, home_path, reason, save_lines
+from tui.logs.view import LogView
+from tui.widgets.working import Working
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+CLIPBOARD_LIMIT = 100_000
+"""Bytes; many terminals drop a longer OSC 52 sequence without a word."""
+
+
+class LogPane(Vertical, Working):
+    """A `LogView` with all that can be done to it."""
+
+    DEFAULT_CSS = "LogPane { height: 1fr; width: 1fr; }"
+    view_type: ClassVar[type[LogView]] = LogView
+
+    def __init__(
+        self,
+        *,
+        max_lines: int = 20_000,
+        period_s: float = 0.1,
+        file_of: Callable[[str], str] = lambda _node: "",
+        id: str | None = None,
+    ) -> None:
+        """As for `LogView`."""
+        super().__init__(id=id)
+        self.view = self.view_type(max_lines=max_lines, period_s=period_s, file_of=file_of)
+        self.save_folder = ""
+        """Where files are written unless somebody names another place."""
+        self._lines: Sequence[str] = ()
+        self._refused: Path | None = None
+
+    def compose(self) -> ComposeResult:
+        """The lines, the question, the state."""
+        yield self.view
+        yield LogPrompt()
+        yield LogBar()
+
+    @property
+    def prompt(self) -> LogPrompt:
+        """Where questions are asked."""
+        return self.query_one(LogPrompt)
+
+    @on(LogView.Changed)
+    def _show_state(self, _event: LogView.Changed) -> None:
+        self.query_one(LogBar).show(self.view)
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        self.view.lay_out()
+        self.query_one(LogBar).show(self.view)
+
+    def search(self) -> None:
+        """Ask what to search for; what is written is searched for at once."""
+        self.prompt.ask("search", _("search:"), self.view.log_filter.search)
+
+    def find(self, step: int) -> None:
+        """Go to the next (1) or previous (-1) line found."""
+        if not self.view.log_filter.search:
+            self.search()
+        elif not self.view.find(step):
+            self.app.bell()
+
+    def copy(self) -> None:
+        """Copy the lines chosen to the clipboard of the terminal."""
+        lines = self.view.chosen_lines()
+        if lines:
+            self._copy(lines)
+        else:
+            self.notify(_("Choose lines first: up, down, with Shift several."))
+
+    def copy_all(self) -> None:
+        """Copy all lines shown."""
+        self._copy(self.view.shown_lines())
+
+    def _copy(self, lines: Sequence[str]) -> None:
+        text = "\n".join(lines)
+        self.app.copy_to_clipboard(text)
+        words = ngettext("{count} line copied", "{count} lines copied", len(lines))
+        words = words.format(count=grouped(len(lines)))
+        if len(text.encode("utf-8", "replace")) > CLIPBOARD_LIMIT:
+            words += "\n" + _("That is a lot for a terminal: if nothing arrives, write a file.")
+        self.notify(words)
+
+    def save(self) -> None:
+        """Ask for a file to write to: the lines chosen, if more than one is, else all shown."""
+        chosen = self.view.chosen_lines()
+        self._lines = chosen if len(chosen) > 1 else self.view.shown_lines()
+        self._refused = None
+        count = ngettext("write {count} line to:", "write {count} lines to:", len(self._lines))
+        path = default_path(self.save_folder, clock.now())
+        self.prompt.ask("save", count.format(count=grouped(len(self._lines))), str(path))
+
+    @on(LogPrompt.Edited)
+    def _search_edited(self, event: LogPrompt.Edited) -> None:
+        if event.kind == "search":
+            self._search_for(event.text)
+
+    @on(LogPrompt.Answered)
+    def _answered(self, event: LogPrompt.Answered) -> None:
+        if event.kind == "search":
+            self._close_prompt()
+            self.view.find(-1)
+        elif event.kind == "save":
+            path = event.text.strip()
+            if path:
+                self.run_worker(self._save(home_path(path)), exclusive=True, group="save")
+            else:
+                self.prompt.remark(_("Name a file."))
+
+    @on(LogPrompt.GivenUp)
+    def _given_up(self, event: LogPrompt.GivenUp) -> None:
+        if event.kind == "search":
+            self._search_for("")
+        self._close_prompt()
+
+    def _search_for(self, text: str) -> None:
+        chosen = self.view.log_filter
+        only_found = chosen.only_found and bool(text)
+        self.view.log_filter = replace(chosen, search=text, only_found=only_found)
+
+    def _close_prompt(self) -> None:
+        self.prompt.close()
+        self.view.focus()
+
+    async def _save(self, path: Path) -> None:
+        try:
+            size = await asyncio.to_thread(
+                save_lines, path, self._lines, replace=path == self._refused
+            )
+        except FileExistsError:
+            self._refused = path
+            self.prompt.remark(_("There is such a file: Enter again overwrites it."))
+        except (OSError, ValueError) as error:
+            self.prompt.remark(plain(reason(error)))
+        else:
+            self._close_prompt()
+            words = ngettext("{size} byte saved to {path}", "{size} bytes saved to {path}", size)
+            self.notify(words.format(size=grouped(size), path=plain(str(path))), markup=False)

@@ -1,0 +1,158 @@
+"""What all nodes say: filtered, searched, copied, written to a file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import monotonic
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
+
+from launcher.status import Severity
+from text.i18n import N_
+from tui.actions import bindings
+from tui.frame.screen import DeckScreen
+from tui.logs.actions import LOGS_ACTIONS
+from tui.logs.filter_nodes import LogNodes
+from tui.logs.pane import LogPane
+from tui.logs.view import LogView
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from tui.logs.filter import LogFilter
+    from tui.session.messages import LanguageChanged, LogArrived, SessionChanged, StatusChanged
+
+COUNTS_EVERY_S = 0.5
+
+
+class LogsScreen(DeckScreen):
+    """The log of every node; at the left the nodes, which on a narrow screen come when asked."""
+
+    tab: ClassVar[str] = "logs"
+    about: ClassVar[str] = N_(
+        "What all nodes say. The arrow keys choose lines, with Shift several; that pauses the "
+        "log, End follows it again. The list has the nodes with their lines, warnings (W) and "
+        "errors (E): ● is shown, ○ is muted, ★ is shown alone."
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *bindings(*LOGS_ACTIONS),
+        Binding("escape", "close_nodes", show=False),
+    ]
+    DEFAULT_CSS = """
+    LogsScreen LogNodes {
+        width: 38;
+        border-right: vkey $panel;
+    }
+    LogsScreen.-wide LogNodes { width: 46; }
+    LogsScreen.-compact LogNodes, LogsScreen.-tiny LogNodes {
+        display: none;
+        layer: overlay;
+        dock: left;
+        width: 42;
+        max-width: 100%;
+        height: auto;
+        max-height: 80%;
+        border: round $primary;
+    }
+    LogsScreen.-compact LogNodes.-open, LogsScreen.-tiny LogNodes.-open { display: block; }
+    """
+
+    _counted_s = 0.0
+
+    def compose_body(self) -> ComposeResult:
+        """The nodes beside the lines."""
+        with Horizontal():
+            yield LogNodes()
+            yield LogPane(file_of=self.feed.log_file)
+
+    @property
+    def pane(self) -> LogPane:
+        """The lines."""
+        return self.query_one(LogPane)
+
+    @property
+    def node_list(self) -> LogNodes:
+        """The nodes."""
+        return self.query_one(LogNodes)
+
+    @property
+    def chosen_node(self) -> str | None:
+        """The node that is meant: the chosen row of the list in focus, else the chosen line's."""
+        if self.node_list.has_focus:
+            return self.node_list.chosen or None
+        return self.pane.view.chosen_node
+
+    def on_mount(self) -> None:
+        """Begin at the newest line."""
+        self.pane.view.focus()
+        self.set_interval(COUNTS_EVERY_S, self._show_nodes)
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Another session begins with an empty log; one that has ended keeps its lines."""
+        del message
+        session = self.feed.session
+        if session is not None:
+            self.pane.save_folder = session.log_dir
+            if self.pane.view.ring.entries:
+                self.pane.view.clear()
+
+    def on_status_changed(self, message: StatusChanged) -> None:
+        """Know the nodes before they speak."""
+        self.pane.view.know_nodes(message.nodes)
+        self._show_nodes()
+
+    def on_log_arrived(self, message: LogArrived) -> None:
+        """Take the lines; the counts of the nodes follow at their own pace."""
+        self.pane.view.append(message.lines, message.skipped)
+        if monotonic() - self._counted_s > COUNTS_EVERY_S:
+            self._counted_s = monotonic()
+            self._show_nodes()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw anew."""
+        del message
+        self.pane.words_changed()
+        self._show_nodes()
+
+    @on(LogView.Changed)
+    def _keys_changed(self) -> None:
+        self.refresh_bindings()
+
+    @on(LogNodes.Highlighted)
+    def _node_changed(self) -> None:
+        self.refresh_bindings()
+
+    @on(LogNodes.Opened)
+    def _mute(self, event: LogNodes.Opened) -> None:
+        self.choose(self.pane.view.log_filter.toggled(event.key))
+
+    def choose(self, chosen: LogFilter) -> None:
+        """Show these lines."""
+        self.pane.view.log_filter = chosen
+        self._show_nodes()
+
+    def hear_all(self) -> None:
+        """Let every node be heard, at every severity."""
+        heard = self.pane.view.log_filter.all_nodes()
+        self.choose(replace(heard, minimum=Severity.DEBUG))
+
+    def toggle_nodes(self) -> None:
+        """Go to the list of nodes; back to the lines if it is there already."""
+        if self.node_list.has_focus:
+            self.action_close_nodes()
+        else:
+            self.node_list.add_class("-open")
+            self.node_list.focus()
+
+    def action_close_nodes(self) -> None:
+        """Back to the lines."""
+        self.node_list.remove_class("-open")
+        self.pane.view.focus()
+
+    def _show_nodes(self) -> None:
+        view = self.pane.view
+        names = dict.fromkeys((*self.feed.nodes, *self.feed.outside.now, *view.ring.counts))
+        self.node_list.show_nodes(names, view.ring.counts, view.log_filter)

@@ -1,0 +1,1 @@
+"""The panel of the head: where it looks, and what it was told."""

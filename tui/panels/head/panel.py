@@ -1,0 +1,75 @@
+"""Where the head looks, and what it was told by the LLM's commands."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from text.i18n import N_, _
+from tui.panels.head.reading import PAN, TILT, Pose, head_in
+from tui.panels.head.widget import HeadPanel
+from tui.panels.joints import Joints
+from tui.panels.panel import Panel, trouble_of
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+
+STATE, RESULT = "/head_state", "/llm_result"
+
+
+class HeadFeed(Panel):
+    """Pan and tilt, from above and from the side."""
+
+    title = N_("Head")
+    least = 3
+    weight = 4
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._joints = Joints(STATE, (PAN, TILT))
+
+    def compose(self) -> ComposeResult:
+        """The drawing."""
+        yield HeadPanel()
+
+    def watched(self) -> set[str]:
+        """The pose."""
+        return {STATE}
+
+    def followed(self) -> set[str]:
+        """What came of the LLM's commands."""
+        return {RESULT}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show the newest pose and the newest command."""
+        drawing = self.query_one(HeadPanel)
+        for sample in update.samples.get(STATE, ()):
+            pose = head_in(sample.value)
+            if pose is not None:
+                drawing.show(pose)
+            self._joints.hear(sample, read=pose is not None)
+        drawing.show_instead(self._joints.instead)
+        for sample in update.samples.get(RESULT, ()):
+            self._hear(str(sample.value.get("data", "")))
+        drawing.show_trouble(*trouble_of(update, STATE))
+
+    def _hear(self, text: str) -> None:
+        try:
+            said: Any = json.loads(text)
+            if said["event"] == "head":
+                drawing = self.query_one(HeadPanel)
+                drawing.command(Pose(float(said["pan"]), float(said["tilt"])))
+                if "error" in said:
+                    drawing.answer(str(said["error"]))
+                else:
+                    drawing.answer(_("done") if said.get("sum") == 1 else _("refused"))
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
+            # Anybody may publish there; what is not ours is not shown.
+            return
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        super().words_changed()
+        self.query_one(HeadPanel).words_changed()

@@ -1,0 +1,68 @@
+"""Where the head looks, out of a JointState."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from text.figures import whole
+from text.i18n import _
+
+PAN, TILT = "pan_joint", "tilt_joint"
+LIMIT_DEG = 90.0
+SAME_WITHIN_DEG = 0.5
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Degrees, + is left and up."""
+
+    pan_deg: float
+    tilt_deg: float
+
+    @property
+    def pan_words(self) -> str:
+        """`45° left`."""
+        return _words(self.pan_deg, _("{degrees}° left"), _("{degrees}° right"))
+
+    @property
+    def tilt_words(self) -> str:
+        """`10° up`."""
+        return _words(self.tilt_deg, _("{degrees}° up"), _("{degrees}° down"))
+
+    @property
+    def is_known(self) -> bool:
+        """Whether both angles are: a head of servos has none before it was moved."""
+        return math.isfinite(self.pan_deg) and math.isfinite(self.tilt_deg)
+
+    def near(self, other: Pose) -> bool:
+        """Whether the two are the same but for rounding."""
+        pan, tilt = self.pan_deg - other.pan_deg, self.tilt_deg - other.tilt_deg
+        return abs(pan) < SAME_WITHIN_DEG and abs(tilt) < SAME_WITHIN_DEG
+
+
+def _words(degrees: float, plus: str, minus: str) -> str:
+    if not math.isfinite(degrees):
+        return "---"
+    if not round(degrees):
+        return "0°"
+    return (plus if degrees > 0 else minus).format(degrees=whole(abs(degrees)))
+
+
+def head_in(value: Mapping[str, Any]) -> Pose | None:
+    """Read a sensor_msgs/JointState in radians; None if it is not about the head.
+
+    A joint that is missing counts as not a number.
+    """
+    names = [str(name) for name in value.get("name", ())]
+    if PAN not in names and TILT not in names:
+        return None
+    positions = value.get("position", ())
+
+    def degrees(joint: str) -> float:
+        at = names.index(joint) if joint in names else len(positions)
+        return math.degrees(float(positions[at])) if at < len(positions) else math.nan
+
+    return Pose(degrees(PAN), degrees(TILT))

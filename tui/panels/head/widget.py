@@ -1,0 +1,142 @@
+"""The head: where it looks, seen from above and from the side, and what it was told."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from text.i18n import _
+from text.plain import plain
+from tui.panels.head.reading import LIMIT_DEG, Pose
+from tui.widgets.dots import Dots, Point
+from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
+
+CAPTION_FROM = 10
+DRAWN_FROM = (22, 6)
+"""Columns and lines from which on the two views are drawn."""
+
+
+class HeadPanel(Drawing):
+    """Shows a `Pose`, the pose that was commanded last, and the service's answer."""
+
+    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
+        """Begin with no reading."""
+        super().__init__(id=id, classes=classes)
+        self._pose: Pose | None = None
+        self._told: Pose | None = None
+        self._answer = ""
+        self._moving = False
+
+    def show(self, pose: Pose) -> None:
+        """Show this pose; it moves while it differs from the one before."""
+        before = self._pose if self._pose is not None and self._pose.is_known else None
+        moving = before is not None and pose.is_known and not before.near(pose)
+        if (pose, moving) != (self._pose, self._moving):
+            self._pose, self._moving = pose, moving
+            self.redraw()
+
+    def command(self, told: Pose) -> None:
+        """Mark where the head was told to look; its answer is not known yet."""
+        self._told, self._answer = told, ""
+        self.redraw()
+
+    def answer(self, words: str) -> None:
+        """Show what the service answered, in words."""
+        self._answer = plain(words, 200)
+        self.redraw()
+
+    @property
+    def has_value(self) -> bool:
+        """Whether a reading ever came."""
+        return self._pose is not None
+
+    def draw(self, width: int, height: int) -> list[Line]:
+        """As much as there is room for."""
+        pose = self._pose
+        if pose is None:
+            return []
+        state = self._state()
+        numbers: Line = [
+            Ink(_("pan") + " ", "muted"),
+            Ink(pose.pan_words, "accent"),
+            Ink("  " + _("tilt") + " ", "muted"),
+            Ink(pose.tilt_words, "second"),
+        ]
+        words = self._in_words(numbers, state, width)
+        if width < DRAWN_FROM[0] or height < DRAWN_FROM[1]:
+            return [beside(numbers, state, width)] if height == 1 else words
+        caption = [_caption(width)] if height >= CAPTION_FROM else []
+        rows = max(0, height - len(words) - len(caption))
+        return [*caption, *self._views(pose, width, rows), *words]
+
+    def _in_words(self, numbers: Line, state: Line, width: int) -> list[Line]:
+        """Where it looks and whether it moves; then what it was told, and the answer to it."""
+        told = self._told_lines(width)
+        if cells_of(numbers) + cells_of(state) < width:
+            return [beside(numbers, state, width), *told]
+        if cells_of(numbers) <= width:
+            return [numbers, beside([], state, width), *told]
+        second = [Ink(numbers[2].text.lstrip(), "muted"), numbers[3]]
+        return [numbers[:2], second, state, *told]
+
+    def _state(self) -> Line:
+        if self.stale:
+            return [Ink(self.stale_words, "alert")]
+        if self._pose is not None and not self._pose.is_known:
+            return [Ink(_("unknown until it turns"), "muted")]
+        return [Ink(_("moving"), "warn") if self._moving else Ink(_("at rest"), "muted")]
+
+    def _told_lines(self, width: int) -> list[Line]:
+        told = self._told
+        lines: list[Line] = []
+        if told is not None:
+            words = _("told: {pan}, {tilt}").format(pan=told.pan_words, tilt=told.tilt_words)
+            lines.append([Ink(f"╱ {words}", "muted")])
+        if self._answer:
+            lines.append([Ink(self._answer, "muted")])
+        if len(lines) == 2 and cells_of(lines[0]) + cells_of(lines[1]) < width:
+            return [beside(lines[0], lines[1], width)]
+        return [[Ink(fit(line[0].text, width), "muted")] for line in lines]
+
+    def _views(self, pose: Pose, width: int, rows: int) -> list[Line]:
+        columns = (width - 2) // 2
+        above, side = Dots(columns, rows), Dots(columns, rows)
+        radius = min(above.width / 2, above.height / 2) - 2
+        told = self._told
+        dial = Dial(above, (above.width / 2, (above.height + radius) / 2), radius, 90.0)
+        dial.draw(pose.pan_deg, None if told is None else told.pan_deg, "accent")
+        dial = Dial(side, ((side.width - radius) / 2, side.height / 2), radius, 0.0)
+        dial.draw(pose.tilt_deg, None if told is None else told.tilt_deg, "second")
+        gap = Ink(" " * (width - 2 * columns))
+        return [[*one, gap, *other] for one, other in zip(above.lines(), side.lines(), strict=True)]
+
+
+def _caption(width: int) -> Line:
+    half = width // 2
+    return [Ink(fit(_("from above"), half), "muted"), Ink(fit(_("from right"), half), "muted")]
+
+
+class Dial(NamedTuple):
+    """Half a circle of so many dots around a centre; `zero_deg` is where 0 lies, 90 is upwards."""
+
+    dots: Dots
+    centre: Point
+    radius: float
+    zero_deg: float
+
+    def draw(self, degrees: float, told_deg: float | None, look: str) -> None:
+        """The scale, the needle, and a mark where the head was told to look."""
+        for step in range(-90, 91, 15):
+            self.dots.dot(*self._at(step, 1.0), "muted")
+        if told_deg is not None and math.isfinite(told_deg):
+            self.dots.line(self._at(told_deg, 0.75), self._at(told_deg, 1.1), "strong")
+        if math.isfinite(degrees):
+            shown = max(-LIMIT_DEG, min(LIMIT_DEG, degrees))
+            self.dots.line(self._at(shown, 0.0), self._at(shown, 0.95), look)
+            for turn in (-20.0, 20.0):
+                self.dots.line(self._at(shown, 0.95), self._at(shown + turn, 0.7), look)
+
+    def _at(self, degrees: float, share: float) -> Point:
+        angle = math.radians(self.zero_deg + degrees)
+        reach = self.radius * share
+        return self.centre[0] + reach * math.cos(angle), self.centre[1] - reach * math.sin(angle)

@@ -1,0 +1,1 @@
+"""The panel of the map: where the robot is and what is around it."""

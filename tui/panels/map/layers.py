@@ -1,0 +1,44 @@
+"""What stays from frame to frame: grid, room and path are drawn once, then only what is new."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tui.panels.map.canvas import Canvas
+from tui.panels.map.scene import draw_grid, draw_ground, draw_path, grid_step_m
+
+if TYPE_CHECKING:
+    from tui.panels.map.field import Field
+    from tui.panels.map.reading import Ground
+    from tui.panels.map.trail import Trail
+
+
+class Layers:
+    """The canvas below all that moves."""
+
+    def __init__(self) -> None:
+        self._canvas = Canvas(1, 1)
+        self._drawn: tuple[Field, Ground | None, Trail, int] | None = None
+        self._done = (0, 0)
+        """Pieces of the path, and points of the last of them, that have been drawn."""
+
+    def canvas(self, view: Field, ground: Ground | None, trail: Trail) -> Canvas:
+        """A copy with grid, room and path, to draw the rest on."""
+        wanted = (view, ground, trail, trail.revision)
+        if wanted != self._drawn:
+            self._drawn, self._done = wanted, (0, 0)
+            self._canvas = Canvas(view.columns, view.rows)
+            draw_grid(self._canvas, view, grid_step_m(view))
+            if ground is not None:
+                draw_ground(self._canvas, view, ground)
+        self._go_on(view, trail)
+        return self._canvas.copy()
+
+    def _go_on(self, view: Field, trail: Trail) -> None:
+        pieces, points = self._done
+        for number in range(max(0, pieces - 1), len(trail.pieces)):
+            piece = trail.pieces[number]
+            # The last point drawn is where the next line begins.
+            first = max(0, points - 1) if number == pieces - 1 else 0
+            draw_path(self._canvas, view, piece[first:])
+        self._done = len(trail.pieces), len(trail.pieces[-1]) if trail.pieces else 0

@@ -1,0 +1,128 @@
+"""The map in words: what its signs mean, and how long a metre is on it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from text.figures import figure
+from text.i18n import _, decimal
+from text.plain import plain
+from tui.panels.map.field import bar_length_m
+from tui.panels.map.scene import (
+    BLIND_SIGN,
+    FREE_SIGN,
+    FRONT,
+    GOAL,
+    GOAL_SIGN,
+    HIT_SIGN,
+    PATH,
+    ROBOT,
+    TRUTH,
+    grid_step_m,
+)
+from tui.panels.sonar.bar import ink_of
+from tui.panels.sonar.words import remark
+from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robot.motion.odometry import Pose
+    from tui.panels.map.field import Field
+    from tui.panels.map.scene import Scene
+    from tui.panels.sonar.words import Bounds
+
+BAR_CELLS = 12
+"""The scale bar is no longer."""
+GAP = "  "
+
+
+class Entry(NamedTuple):
+    """A line of the legend; where there is no room, those of a high rank are left out."""
+
+    rank: int
+    line: Line
+
+
+def entries(scene: Scene, view: Field, driven_m: float, remarks: Sequence[str]) -> list[Entry]:
+    """All there is to say, in the order in which it is read; `remarks` warn of something."""
+    said = [Entry(0, [Ink(plain(words, 200), "alert")]) for words in remarks if words]
+    said += _robot(scene.pose)
+    if driven_m >= 0.05:
+        words = _("path {metres} m").format(metres=figure(driven_m, 1))
+        said.append(Entry(7, [Ink("─ ", PATH), Ink(words)]))
+    if scene.goal is not None:
+        metres = scene.pose.distance_to(scene.goal)
+        words = _("goal {metres} m away").format(metres=figure(metres, 1))
+        said.append(Entry(3, [Ink(f"{GOAL_SIGN} ", GOAL), Ink(words)]))
+    said += [Entry(4, _ray(place, metres, scene.bounds)) for place, metres in scene.rays.items()]
+    if scene.truth is not None:
+        metres = scene.pose.distance_to(scene.truth)
+        words = _("truth {metres} m off").format(metres=decimal(f"{metres:.2f}"))
+        said.append(Entry(5, [Ink("◇ ", TRUTH), Ink(words)]))
+    said.append(Entry(2, scale_bar(view)))
+    said.append(Entry(8, [Ink(_("x → right, y ↑ up"), "muted")]))
+    words = _("· every {metres} m").format(metres=decimal(f"{grid_step_m(view):g}"))
+    said.append(Entry(9, [Ink(words, "muted")]))
+    return said
+
+
+def _robot(pose: Pose) -> list[Entry]:
+    place = _("x {x}  y {y} m").format(x=decimal(f"{pose.x_m:.2f}"), y=decimal(f"{pose.y_m:.2f}"))
+    degrees = round(math.degrees(pose.heading_rad))
+    heading = _("heading {degrees}°").format(degrees=degrees)
+    return [
+        Entry(1, [Ink("▲ ", ROBOT), Ink(place, "strong")]),
+        Entry(6, [Ink("  "), Ink(heading)]),
+    ]
+
+
+def _ray(place: str, metres: float, bounds: Bounds) -> Line:
+    name = _("front") if place == FRONT else _("rear")
+    words = remark(metres) or _("{metres} m").format(metres=figure(metres, 1))
+    sign = BLIND_SIGN if math.isnan(metres) else FREE_SIGN if metres == math.inf else HIT_SIGN
+    return [Ink(f"{sign} ", ink_of(metres, bounds)), Ink(f"{name} {words}")]
+
+
+def scale_bar(view: Field) -> Line:
+    """A bar of a round number of metres, as long as these are on the map."""
+    metres = bar_length_m(view, BAR_CELLS)
+    cells = max(1, round(metres * view.dots_per_m / 2))
+    bar = "├" + "─" * (cells - 2) + "┤" if cells > 1 else "│"
+    return [Ink(f"{bar} "), Ink(_("{metres} m").format(metres=decimal(f"{metres:g}")), "strong")]
+
+
+def column(said: Sequence[Entry], width: int, height: int) -> list[Line]:
+    """Below each other, in exactly so many cells; what matters least is left out."""
+    lines = [beside(entry.line, [], width) for entry in _foremost(said, height)]
+    return [*lines, *([[Ink(" " * width)]] * (height - len(lines)))]
+
+
+def rows(said: Sequence[Entry], width: int, height: int) -> list[Line]:
+    """Beside each other in at most so many lines; what matters least is left out."""
+    for count in range(len(said), 0, -1):
+        lines = _packed(_foremost(said, count), width)
+        if len(lines) <= height:
+            return lines
+    line = min(said, key=lambda entry: entry.rank).line if said else []
+    return [beside(line, [], width)] if line else []
+
+
+def _foremost(said: Sequence[Entry], count: int) -> list[Entry]:
+    """So many of those that matter most, in the order in which they are read."""
+    kept = sorted(range(len(said)), key=lambda at: (said[at].rank, at))[:count]
+    return [said[at] for at in sorted(kept)]
+
+
+def _packed(said: Sequence[Entry], width: int) -> list[Line]:
+    lines: list[Line] = []
+    for entry in said:
+        line = [Ink(entry.line[0].text.lstrip(), entry.line[0].look), *entry.line[1:]]
+        if lines and cells_of(lines[-1]) + len(GAP) + cells_of(line) <= width:
+            lines[-1] = [*lines[-1], Ink(GAP), *line]
+        elif cells_of(line) <= width:
+            lines.append(line)
+        else:
+            lines.append([Ink(fit("".join(ink.text for ink in line), width), line[-1].look)])
+    return lines

@@ -1,0 +1,118 @@
+"""What the map is drawn from, out of the messages: pose, goal and room. Whatever comes is borne."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robot.motion.odometry import Point, Pose, yaw_from_quaternion
+from tui.panels.map.field import Extent
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+FARTHEST_M = 1e6
+"""A pose beyond it is no place."""
+OCCUPIED_FROM = 50
+"""Of 100, in a nav_msgs/OccupancyGrid."""
+_MOST_CELLS = 4_000_000
+"""Of a larger room every second, third, ... cell is looked at: the screen must not wait for it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """A room as somebody has mapped it; each message makes a new one."""
+
+    cells: NDArray[np.int8]
+    """Shape (rows, columns): -1 unknown, 0 free, 100 occupied."""
+    cell_m: float
+    origin: Pose
+    """Where the corner of the first cell is, and how its rows are turned."""
+    frame: str
+    extent: Extent | None
+    """What is known of it, None if nothing is."""
+
+    def centres(
+        self, rows: NDArray[np.float64], columns: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where cells are, x and y in metres."""
+        along, up = (columns + 0.5) * self.cell_m, (rows + 0.5) * self.cell_m
+        cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
+        return self.origin.x_m + cos * along - sin * up, self.origin.y_m + sin * along + cos * up
+
+    def occupied_at(self, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether something stands at places; nothing does outside."""
+        east, north = x_m - self.origin.x_m, y_m - self.origin.y_m
+        cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
+        columns = np.floor((cos * east + sin * north) / self.cell_m)
+        rows = np.floor((cos * north - sin * east) / self.cell_m)
+        high, wide = self.cells.shape
+        inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
+        found = np.zeros(x_m.shape, dtype=np.bool_)
+        at = rows[inside].astype(np.intp), columns[inside].astype(np.intp)
+        found[inside] = self.cells[at] >= OCCUPIED_FROM
+        return found
+
+
+def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
+    """Read an Odometry or a PoseStamped: pose and frame; None if it is no place."""
+    try:
+        inner = value["pose"]
+        inner = inner.get("pose", inner)
+        place, turn = inner["position"], inner["orientation"]
+        heading = yaw_from_quaternion(*(float(turn[axis]) for axis in "xyzw"))
+        pose = Pose(float(place["x"]), float(place["y"]), heading)
+        frame = str(value["header"]["frame_id"])
+    except (KeyError, TypeError, ValueError, AttributeError):
+        return None
+    near = pose.is_finite and max(abs(pose.x_m), abs(pose.y_m)) <= FARTHEST_M
+    return (pose, frame) if near else None
+
+
+def goal_in(value: Mapping[str, Any]) -> Point | None:
+    """Read a PoseStamped that tells of a goal; None if there is none any more."""
+    found = pose_in(value)
+    if found is None or not found[1]:
+        return None
+    return Point(found[0].x_m, found[0].y_m)
+
+
+def ground_in(value: Mapping[str, Any]) -> Ground | None:
+    """Read an OccupancyGrid; None for one that makes no sense."""
+    try:
+        info, frame = value["info"], str(value["header"]["frame_id"])
+        rows, columns = int(info["height"]), int(info["width"])
+        cell_m = float(info["resolution"])
+        read = pose_in({"header": value["header"], "pose": info["origin"]})
+        data = value["data"]
+        cells = (
+            np.frombuffer(data, dtype=np.int8)
+            if isinstance(data, bytes)
+            else np.asarray(data, dtype=np.int8)
+        ).reshape(rows, columns)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        return None
+    if read is None or not 0.0 < cell_m <= FARTHEST_M or min(rows, columns) < 1:
+        return None
+    stride = math.ceil(math.sqrt(cells.size / _MOST_CELLS))
+    cells, cell_m = cells[::stride, ::stride], cell_m * stride
+    ground = Ground(cells, cell_m, read[0], frame, None)
+    return Ground(cells, cell_m, read[0], frame, _known(ground))
+
+
+def _known(ground: Ground) -> Extent | None:
+    known = ground.cells >= 0
+    rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+    if not rows.size:
+        return None
+    # Half a cell on each side: the outer edges of the outermost cells.
+    x, y = ground.centres(
+        np.array([rows[0] - 0.5, rows[0] - 0.5, rows[-1] + 0.5, rows[-1] + 0.5]),
+        np.array([columns[0] - 0.5, columns[-1] + 0.5, columns[0] - 0.5, columns[-1] + 0.5]),
+    )
+    return Extent(float(x.min()), float(x.max()), float(y.min()), float(y.max()))

@@ -1,0 +1,218 @@
+"""The map: room, robot, the path that it drove, what its sonars see, and where it drives to."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from text.i18n import _
+from tui.panels.map.field import Extent, Field, fitted
+from tui.panels.map.layers import Layers
+from tui.panels.map.legend import column, entries, rows
+from tui.panels.map.scene import Scene, along, draw_scene, ray_origin, robot_corners
+from tui.panels.map.trail import Trail
+from tui.panels.sonar.words import COURSE
+from tui.widgets.drawing import Drawing, Ink, Line
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robot.motion.odometry import Point, Pose
+    from tui.panels.map.legend import Entry
+    from tui.panels.map.reading import Ground
+    from tui.panels.sonar.words import Bounds
+
+MOST_ROWS = 5
+"""Of the legend below the map."""
+LEGEND = 28
+"""Cells of the legend beside the map."""
+SIDE_WORTH = 0.9
+"""A map so much smaller is given for a legend beside it, which says more."""
+FIELD_FROM = (16, 3)
+"""Columns and lines below which nothing is drawn, and only told."""
+AROUND_M = 1.0
+"""Floor that is shown around what is known, without a room."""
+MARGIN_M = 0.1
+FARTHEST_SEEN_M = 100.0
+"""No sonar sees farther: a wall beyond it is not made room for."""
+STEADY_M = 0.03
+"""A distance that changes by less has not changed: sonars tremble."""
+APART_M, APART_RAD = 0.05, math.radians(5)
+"""From here on the truth is shown beside what odometry believes."""
+
+
+class RoomMap(Drawing):
+    """Takes values by `show_...`; `settle` draws them if that can be seen."""
+
+    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
+        """Begin with an empty floor."""
+        super().__init__(id=id, classes=classes)
+        self._scene: Scene | None = None
+        self._truth: Pose | None = None
+        self._goal: Point | None = None
+        self._rays: dict[str, float] = {}
+        self._bounds = COURSE
+        self._ground: Ground | None = None
+        self._frame = ""
+        self._seen: Extent | None = None
+        """What the rays have reached, as far as there is no room."""
+        self._trail = Trail()
+        self._layers = Layers()
+        self._view: Field | None = None
+        self._last: object = None
+
+    @property
+    def has_value(self) -> bool:
+        """Whether it is known where the robot is."""
+        return self._scene is not None
+
+    def show_pose(self, pose: Pose, frame: str = "") -> None:
+        """The robot is here."""
+        self._frame = frame
+        self._trail.add(pose.x_m, pose.y_m)
+        self._scene = Scene(pose)
+
+    def show_truth(self, pose: Pose | None) -> None:
+        """The simulated robot is here indeed; None if nobody tells."""
+        self._truth = pose
+
+    def show_goal(self, goal: Point | None) -> None:
+        """It drives to this point; None if it drives to none."""
+        self._goal = goal
+
+    def show_ray(self, place: str, metres: float | None) -> None:
+        """A sonar measures so much; None if there is no such sonar."""
+        if metres is None:
+            self._rays.pop(place, None)
+            return
+        steady_m = max(STEADY_M, 0.6 / self._view.dots_per_m if self._view else 0.0)
+        before = self._rays.get(place)
+        if before is None or not abs(metres - before) < steady_m:
+            self._rays[place] = metres
+
+    def show_bounds(self, bounds: Bounds) -> None:
+        """Show rays below these distances as near."""
+        self._bounds = bounds
+
+    def show_ground(self, ground: Ground) -> None:
+        """The room is like this."""
+        self._ground = ground
+
+    def forget_path(self) -> None:
+        """What was driven so far belongs to another time."""
+        self._trail.clear()
+        self._seen = None
+
+    def settle(self) -> None:
+        """Draw what has come, if a cell looks different for it."""
+        if self._scene is None:
+            return
+        self._scene = Scene(
+            self._scene.pose,
+            self._truth_apart(self._scene.pose),
+            self._goal,
+            dict(self._rays),
+            self._bounds,
+        )
+        look = self._look(self._scene)
+        if look != self._last or not self._lines:
+            self._last = look
+            self.redraw()
+
+    def draw(self, width: int, height: int) -> list[Line]:
+        """The map with its legend beside or below it, whichever leaves it larger."""
+        scene = self._scene
+        if scene is None:
+            return []
+        extent = self._extent(scene)
+        below = _legend_rows(extent, width, height)
+        under = fitted(extent, width, max(1, height - below))
+        self._view = under
+        if width < FIELD_FROM[0] or height - below < FIELD_FROM[1]:
+            return rows(self._entries(scene, under), width, height)
+        if width - LEGEND - 1 >= FIELD_FROM[0]:
+            at_side = fitted(extent, width - LEGEND - 1, height)
+            if at_side.dots_per_m >= SIDE_WORTH * under.dots_per_m:
+                self._view = at_side
+                legend = column(self._entries(scene, at_side), LEGEND, height)
+                field = self._field(scene, at_side)
+                return [
+                    [*left, Ink(" "), *right] for left, right in zip(field, legend, strict=True)
+                ]
+        return [*self._field(scene, under), *rows(self._entries(scene, under), width, below)]
+
+    def _field(self, scene: Scene, view: Field) -> list[Line]:
+        canvas = self._layers.canvas(view, self._ground, self._trail)
+        draw_scene(canvas, view, scene)
+        return canvas.lines()
+
+    def _entries(self, scene: Scene, view: Field) -> list[Entry]:
+        remarks = [self.stale_words if self.stale else "", self._other_frame()]
+        return entries(scene, view, self._trail.length_m, remarks)
+
+    def _other_frame(self) -> str:
+        """A room in another frame may lie elsewhere; the transform is not known here."""
+        ground = self._ground
+        if ground is None or not ground.frame or ground.frame == self._frame:
+            return ""
+        return _("room in frame {frame}, not {own}").format(frame=ground.frame, own=self._frame)
+
+    def _extent(self, scene: Scene) -> Extent:
+        """The room; or, where there is none, the floor that was driven and seen."""
+        x, y = scene.pose.x_m, scene.pose.y_m
+        here = Extent(x, x, y, y).holding(*self._trail.bounds)
+        if scene.goal is not None:
+            here = here.holding((scene.goal.x_m, scene.goal.y_m))
+        room = self._ground.extent if self._ground else None
+        if room is not None:
+            room = room.widened(MARGIN_M)
+            return room if room.joined(here) == room else room.joined(here.widened(0.5).rounded())
+        seen = [
+            along(*ray_origin(scene.pose, place), metres)
+            for place, metres in scene.rays.items()
+            if abs(metres) <= FARTHEST_SEEN_M
+        ]
+        self._seen = (self._seen or here).holding(*seen) if seen else self._seen
+        known = here if self._seen is None else here.joined(self._seen)
+        return known.widened(AROUND_M if self._seen is None else AROUND_M / 2).rounded()
+
+    def _truth_apart(self, pose: Pose) -> Pose | None:
+        """The truth, where it differs from the pose."""
+        truth = self._truth
+        if truth is None:
+            return None
+        turned = abs(math.remainder(truth.heading_rad - pose.heading_rad, math.tau))
+        return truth if pose.distance_to(truth) >= APART_M or turned >= APART_RAD else None
+
+    def _look(self, scene: Scene) -> object:
+        """What tells frames apart that look different."""
+        view = self._view
+        if view is None:
+            return scene
+        shapes = [robot_corners(view, scene.pose)]
+        if scene.truth is not None:
+            shapes.append(robot_corners(view, scene.truth))
+        said: Mapping[int, object] = dict(enumerate(self._entries(scene, view)))
+        dots = [[(round(x), round(y)) for x, y in shape] for shape in shapes]
+        return (
+            dots,
+            dict(scene.rays),
+            scene.bounds,
+            scene.goal,
+            self._ground,
+            said,
+            self._trail.revision,
+        )
+
+
+def _legend_rows(extent: Extent, width: int, height: int) -> int:
+    """Lines of the legend below the map: more than a few only where they cost the map nothing."""
+    few = 1 if height < 8 else 2 if height < 20 else 3
+    largest = fitted(extent, width, max(1, height - few)).dots_per_m
+    free = [
+        count
+        for count in range(few, MOST_ROWS + 1)
+        if height - count >= FIELD_FROM[1]
+        and fitted(extent, width, height - count).dots_per_m >= largest
+    ]
+    return max(free, default=few)

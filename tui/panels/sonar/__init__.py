@@ -1,0 +1,1 @@
+"""The panel of the sonars: how far the next obstacle is."""

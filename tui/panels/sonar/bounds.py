@@ -1,0 +1,37 @@
+"""Which distances are near, as the safety node that runs just now has it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from tui.emergency.state import SAFETY_TOPIC
+from tui.panels.panel import newest, row_of
+from tui.panels.sonar.words import COURSE, FREE_FROM_M, Bounds
+from tui.teleop.gate import Gate, gate_in
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+
+
+def bounds_of(update: GraphUpdate, before: Bounds) -> Bounds:
+    """Return the bounds the safety node told of last, which were `before`.
+
+    Those of the course where nobody tells any: a node of one's own, or none.
+    """
+    row = row_of(update, SAFETY_TOPIC)
+    if row is None or not row.publishers:
+        return COURSE
+    sample = newest(update, SAFETY_TOPIC)
+    gate = None if sample is None else gate_in(sample)
+    return before if gate is None else _told(gate)
+
+
+def _told(gate: Gate) -> Bounds:
+    stop_below_m, slow_m = gate.critical_m, gate.slow_m
+    if stop_below_m is None or not 0.0 < stop_below_m < math.inf:
+        return COURSE
+    if slow_m is not None and stop_below_m < slow_m < math.inf:
+        # Who is slowed ever more towards that distance stands when it is reached.
+        return Bounds(math.nextafter(stop_below_m, math.inf), slow_m)
+    return Bounds(stop_below_m, max(stop_below_m, FREE_FROM_M))

@@ -1,0 +1,69 @@
+"""How far the next obstacle is, ahead and behind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from text.i18n import N_
+from tui.emergency.state import SAFETY_TOPIC
+from tui.panels.other_type import other_type
+from tui.panels.panel import ALWAYS, Panel, newest, row_of, trouble_of
+from tui.panels.sonar.bounds import bounds_of
+from tui.panels.sonar.widget import SonarPanel
+from tui.panels.sonar.words import COURSE
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+
+TYPE = "std_msgs/msg/Float32"
+TOPICS = {"front": "/sensor/sonar_front", "rear": "/sensor/sonar_rear"}
+
+
+class SonarFeed(Panel):
+    """The front sonar, and the rear one where somebody publishes it."""
+
+    title = N_("Sonar")
+    least = 2
+    weight = 2
+    across_below = ALWAYS
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._bounds = COURSE
+
+    def compose(self) -> ComposeResult:
+        """The gauges."""
+        yield SonarPanel()
+
+    def watched(self) -> set[str]:
+        """Both sonars, and what counts as near."""
+        return {*TOPICS.values(), SAFETY_TOPIC}
+
+    def kept(self) -> set[str]:
+        """Both sonars: the trend has no gap."""
+        return set(TOPICS.values())
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show every reading, for the trend."""
+        gauges = self.query_one(SonarPanel)
+        rear = row_of(update, TOPICS["rear"])
+        if rear is not None and rear.publishers:
+            # One that has fallen silent stays, and says so.
+            gauges.set_both(True)
+        self._bounds = bounds_of(update, self._bounds)
+        gauges.set_bounds(self._bounds)
+        for place, topic in TOPICS.items():
+            for sample in update.samples.get(topic, ()):
+                metres = sample.value.get("data")
+                if isinstance(metres, (int, float)):
+                    gauges.show(place, float(metres), sample.received_s)
+            if topic in update.samples:
+                gauges.show_instead(place, other_type(newest(update, topic), TYPE))
+            gauges.show_trouble(place, *trouble_of(update, topic))
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        super().words_changed()
+        self.query_one(SonarPanel).words_changed()

@@ -1,0 +1,1 @@
+"""The panel of the voice: what human and robot say."""

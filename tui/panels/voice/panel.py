@@ -1,0 +1,92 @@
+"""What human and robot say to each other."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from text.i18n import N_
+from tui.panels.other_type import other_type
+from tui.panels.panel import Panel, newest, row_of, trouble_of
+from tui.panels.voice.widget import Speaker, VoicePanel
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+    from tui.widgets.drawing import Instead
+
+TYPE = "std_msgs/msg/ByteMultiArray"
+TOPICS: dict[str, Speaker] = {"/audio/mic_raw": "human", "/audio/speaker_raw": "robot"}
+HEARD_FIRST = "/audio/mic_raw"
+LEVEL = "/audio/level"
+SILENT_S = 2.0
+"""A driver that tells no level for so long has no microphone."""
+
+
+class VoiceFeed(Panel):
+    """The talk so far."""
+
+    title = N_("Voice")
+    least = 2
+    weight = 2
+    across_below = 80
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._instead: dict[str, Instead | None] = {}
+
+    def compose(self) -> ComposeResult:
+        """The transcript."""
+        yield VoicePanel()
+
+    def followed(self) -> set[str]:
+        """Microphone and loudspeaker, nothing missed."""
+        return set(TOPICS)
+
+    def watched(self) -> set[str]:
+        """How loud it is now."""
+        return {LEVEL}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Add what was said, in the order in which it came."""
+        talk = self.query_one(VoicePanel)
+        said = [sample for topic in TOPICS for sample in update.samples.get(topic, ())]
+        for sample in sorted(said, key=lambda one: one.received_s):
+            data = sample.value.get("data", b"")
+            if isinstance(data, bytes):
+                talk.hear(TOPICS[sample.topic], data, sample.received_s)
+        self._show_level(talk, update)
+        instead = self._of_another_type(update)
+        talk.show_instead(instead)
+        talk.show_trouble(*((None,) if instead else trouble_of(update, HEARD_FIRST)))
+
+    def _of_another_type(self, update: GraphUpdate) -> Instead | None:
+        """Return what to say of the first topic that carries another type."""
+        for topic in TOPICS:
+            if topic in update.samples:
+                self._instead[topic] = other_type(newest(update, topic), TYPE)
+            row, words = row_of(update, topic), self._instead.get(topic)
+            if row is not None and row.publishers and words is not None:
+                return words
+        return None
+
+    def _show_level(self, talk: VoicePanel, update: GraphUpdate) -> None:
+        sample = newest(update, LEVEL)
+        dbfs = sample.value.get("data") if sample is not None else None
+        if isinstance(dbfs, (int, float)) and math.isfinite(dbfs):
+            talk.show_level(float(dbfs))
+            return
+        teller, microphone = row_of(update, LEVEL), row_of(update, HEARD_FIRST)
+        if teller is not None and teller.publishers:
+            if teller.trouble is not None or (teller.age_s or 0.0) > SILENT_S:
+                talk.show_level(None, missing=True)
+            return
+        # The course's own microphone tells no level.
+        there = microphone is not None and microphone.publishers > 0
+        talk.show_level(None, missing=not there and talk.has_talk)
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        super().words_changed()
+        self.query_one(VoicePanel).words_changed()

@@ -1,0 +1,139 @@
+"""The talk between human and robot: who said what when, the newest at the bottom.
+
+Under it stands how loud the microphone is.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Literal
+
+from rich.cells import cell_len
+
+from text.i18n import _
+from tui.logs.index import folded
+from tui.logs.rows import clock
+from tui.panels.voice.level import level_line
+from tui.panels.voice.reading import Heard, heard
+from tui.widgets.drawing import Drawing, Ink, Line, fit
+
+Speaker = Literal["human", "robot"]
+KEPT = 200
+SAME_SOUND_S = 1.0
+"""Pieces of sound that follow each other this closely are one."""
+WITH_TIME_FROM = 36
+LEAST_TEXT = 8
+
+
+@dataclass(frozen=True)
+class Saying:
+    """Something that was said."""
+
+    who: Speaker
+    time_s: float
+    what: Heard
+
+
+class VoicePanel(Drawing):
+    """Shows messages of microphone (`human`) and loudspeaker (`robot`)."""
+
+    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
+        """Begin with silence."""
+        super().__init__(id=id, classes=classes)
+        self._sayings: deque[Saying] = deque(maxlen=KEPT)
+        self._dbfs: float | None = None
+        self._missing = False
+
+    def hear(self, who: Speaker, data: bytes, time_s: float) -> None:
+        """Take a message of bytes at a unix time: UTF-8 text or 16-bit PCM, whatever it is."""
+        saying = Saying(who, time_s, heard(data))
+        last = next((one for one in reversed(self._sayings) if one.who == who), None)
+        if last is not None and _one_sound(last, saying):
+            self._sayings.remove(last)
+            saying = Saying(who, time_s, last.what.and_then(saying.what))
+        self._sayings.append(saying)
+        self.redraw()
+
+    def show_level(self, dbfs: float | None, *, missing: bool = False) -> None:
+        """Show how loud the microphone is, None: nobody tells; or that it is `missing`."""
+        if (dbfs, missing) != (self._dbfs, self._missing):
+            self._dbfs, self._missing = dbfs, missing
+            self.redraw()
+
+    def clear(self) -> None:
+        """Forget what was said."""
+        self._sayings.clear()
+        self._dbfs, self._missing = None, False
+        self.refresh()
+
+    @property
+    def stale(self) -> bool:
+        """What was said stays said."""
+        return False
+
+    @property
+    def has_value(self) -> bool:
+        """Whether anything was said, or could be heard."""
+        return bool(self._sayings) or self._dbfs is not None or self._missing
+
+    @property
+    def has_talk(self) -> bool:
+        """Whether anything was said."""
+        return bool(self._sayings)
+
+    @property
+    def draws(self) -> bool:
+        """What was said is not hidden by words about what cannot be read."""
+        return self.has_talk or super().draws
+
+    def draw(self, width: int, height: int) -> list[Line]:
+        """As many of the newest as there is room for, and the level."""
+        below = [level_line(self._dbfs, width)] if self._tells_level else []
+        if not self._sayings:
+            return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
+        if self._instead is not None:
+            below[:0] = [[Ink(text, "alert")] for text in folded(self._instead.detail, width)]
+        talk = self._talk(width, max(1, height - len(below)))
+        return [*talk, *below][:height]
+
+    @property
+    def _tells_level(self) -> bool:
+        return self._dbfs is not None or self._missing
+
+    def _talk(self, width: int, height: int) -> list[Line]:
+        if height == 1:
+            newest = self._sayings[-1]
+            lead, room = self._lead(newest, width)
+            return [[*lead, Ink(fit(newest.what.words, room).rstrip(), _body(newest.what))]]
+        lines: list[Line] = []
+        for saying in reversed(self._sayings):
+            lines[:0] = self._saying_lines(saying, width)
+            if len(lines) >= height:
+                return lines[-height:]
+        return lines
+
+    def _saying_lines(self, saying: Saying, width: int) -> list[Line]:
+        lead, room = self._lead(saying, width)
+        first, *rest = folded(saying.what.words, room)
+        body = _body(saying.what)
+        indent = Ink(" " * (width - room))
+        return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
+
+    def _lead(self, saying: Saying, width: int) -> tuple[Line, int]:
+        """Who and when, and the cells that are left for what."""
+        names = {"human": _("human"), "robot": _("robot")}
+        name = fit(names[saying.who], max(map(cell_len, names.values())))
+        when = f"{clock(saying.time_s, 8)} " if width >= WITH_TIME_FROM else ""
+        sign, look = ("▸", "accent") if saying.who == "human" else ("◂", "second")
+        lead = [Ink(when, "muted"), Ink(f"{sign} {name} ", look)]
+        return lead, max(LEAST_TEXT, width - sum(cell_len(ink.text) for ink in lead))
+
+
+def _body(what: Heard) -> str:
+    return "muted" if what.is_sound else ""
+
+
+def _one_sound(last: Saying, saying: Saying) -> bool:
+    both = last.what.is_sound and saying.what.is_sound
+    return both and abs(saying.time_s - last.time_s) <= SAME_SOUND_S

@@ -1,0 +1,1 @@
+"""The panel of the wheels: how fast they turn, and how they are steered."""

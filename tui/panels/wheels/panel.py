@@ -1,0 +1,83 @@
+"""How fast the wheels turn; without a differential, how fast they would."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robot.kinematics import wheel_speeds
+from text.i18n import N_
+from tui.panels.joints import Joints
+from tui.panels.other_type import other_type
+from tui.panels.panel import Panel, first_published, newest, trouble_of
+from tui.panels.wheels.reading import LEFT, RIGHT, Wheels, wheels_in
+from tui.panels.wheels.widget import WheelsPanel
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate
+    from tui.widgets.drawing import Instead
+
+WHEELS, DRIVE = "/wheel_commands", "/drive"
+DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
+
+
+class WheelsFeed(Panel):
+    """The rear wheels and the steering, from above."""
+
+    title = N_("Wheels")
+    least = 4
+    weight = 4
+    across_below = 80
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._joints = Joints(WHEELS, (LEFT, RIGHT))
+        self._instead: Instead | None = None
+        """Of the drive commands."""
+
+    def compose(self) -> ComposeResult:
+        """The drawing."""
+        yield WheelsPanel()
+
+    def watched(self) -> set[str]:
+        """What the wheels are told, and what the chassis is told."""
+        return {WHEELS, DRIVE}
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show the newest speeds."""
+        topic = first_published(update, (WHEELS, DRIVE))
+        self.name_source("" if topic == WHEELS else topic)
+        drawing = self.query_one(WheelsPanel)
+        sample = newest(update, topic)
+        if sample is not None:
+            wheels = wheels_in(sample.value) if topic == WHEELS else would_be(sample.value)
+            if wheels is not None:
+                drawing.show(wheels)
+            if topic == WHEELS:
+                self._joints.hear(sample, read=wheels is not None)
+            else:
+                self._instead = other_type(sample, DRIVE_TYPE)
+        drawing.show_instead(self._joints.instead if topic == WHEELS else self._instead)
+        drawing.show_trouble(*trouble_of(update, topic))
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        super().words_changed()
+        self.query_one(WheelsPanel).words_changed()
+
+
+def would_be(value: Mapping[str, Any]) -> Wheels | None:
+    """Return what an AckermannDriveStamped would make the wheels do; None if it is none."""
+    drive = value.get("drive")
+    if not drive:
+        return None
+    speed, steering = float(drive["speed"]), float(drive["steering_angle"])
+    try:
+        speeds = wheel_speeds(speed, steering)
+    except ValueError:
+        return None
+    return Wheels(speeds.left_m_s, speeds.right_m_s, steering)

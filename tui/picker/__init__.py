@@ -1,0 +1,1 @@
+"""The list of lessons, and what is asked or told before one opens."""

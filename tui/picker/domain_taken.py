@@ -1,0 +1,118 @@
+"""Asks before a second session is started in a domain: both would hear each other."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.content import Content
+
+from text.i18n import N_, _, said
+from text.plain import plain
+from tui.actions import Action, bindings
+from tui.dialogs.dialog import Dialog
+
+if TYPE_CHECKING:
+    from textual.binding import BindingType
+
+    from launcher.errors import DomainTakenError
+
+
+class Answer(Enum):
+    """What is to be done."""
+
+    APART = "apart"
+    """Start it in the domain that is free."""
+    TOGETHER = "together"
+    """Start it where the other is."""
+    NOT = "not"
+
+
+class StartApart(Action["DomainTakenScreen"]):
+    """In the domain that is free."""
+
+    id = "domain_taken.apart"
+    key = "enter"
+    title = N_("Start in the free domain")
+    tooltip = N_("Start it in another domain: the two do not hear each other.")
+    footer = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: DomainTakenScreen) -> None:
+        """Answer so."""
+        target.dismiss(Answer.APART)
+
+
+class StartTogether(Action["DomainTakenScreen"]):
+    """Where the other is."""
+
+    id = "domain_taken.together"
+    key = "s,ы"
+    title = N_("Start beside it")
+    means = "start"
+    tooltip = N_("Start it in the same domain: their nodes see and hear each other.")
+    footer = True
+    palette = False
+
+    @classmethod
+    def possible(cls, target: DomainTakenScreen) -> bool | None:
+        """Not where both have nodes of one name, or both drive."""
+        return target.taken.can_share
+
+    @classmethod
+    async def run(cls, target: DomainTakenScreen) -> None:
+        """Answer so."""
+        target.dismiss(Answer.TOGETHER)
+
+
+class StartNot(Action["DomainTakenScreen"]):
+    """Not at all."""
+
+    id = "domain_taken.not"
+    key = "escape"
+    title = N_("Do not start")
+    tooltip = N_("Start nothing.")
+    footer = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: DomainTakenScreen) -> None:
+        """Answer so."""
+        target.dismiss(Answer.NOT)
+
+
+class DomainTakenScreen(Dialog[Answer]):
+    """Names who is in the domain, and a domain that is free."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(StartApart, StartTogether, StartNot)
+
+    def __init__(self, name: str, taken: DomainTakenError) -> None:
+        """Ask about starting `name` in a domain that is `taken`."""
+        super().__init__()
+        self._profile = name
+        self.taken = taken
+
+    def title_words(self) -> str:
+        """Name what was found."""
+        return _("Domain {domain} is in use").format(domain=self.taken.domain)
+
+    def words(self) -> Content:
+        """Say who is there, what it would mean, and which domain is free."""
+        taken = self.taken
+        if taken.can_share:
+            means = _("In one domain the nodes of both would see and hear each other.")
+        else:
+            means = _("Both have nodes of the same name, or both drive: one domain is not enough.")
+        lines = [
+            Content(_("Running there already:")),
+            *(Content.styled(plain(said(one), 300), "bold") for one in taken.sessions),
+            Content(""),
+            Content(means),
+            Content(
+                _("Domain {free} is free: {name} can start in it.").format(
+                    free=taken.free, name=plain(self._profile)
+                )
+            ),
+        ]
+        return Content("\n").join(lines)

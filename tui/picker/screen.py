@@ -1,0 +1,313 @@
+"""The lessons there are: what each starts and shows, and what runs in the background already."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING, ClassVar, cast
+
+from textual import work
+from textual.containers import Horizontal, VerticalScroll
+from textual.content import Content
+from textual.screen import Screen
+from textual.widgets import Static
+
+from launcher.errors import LauncherError
+from text.i18n import N_, _, ngettext, pick, said
+from text.plain import plain
+from tui.actions import Acting, Action, bindings
+from tui.dialogs.end_session import started
+from tui.frame.key_bar import KeyBar
+from tui.frame.screen import BREAKPOINTS, HEIGHTS
+from tui.frame.title_bar import TitleBar
+from tui.session.hardware_words import hardware_words
+from tui.session.orders import WatchOrder
+from tui.widgets.rows import Cell, Column, Row, Rows
+from tui.widgets.working import Working
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+    from textual.binding import BindingType
+
+    from launcher.status import SessionInfo
+    from tui.app import DeckApp
+    from tui.session.messages import LanguageChanged
+    from tui.session.orders import Lesson, Order
+
+RUNNING = "running:"
+WATCHED = "watch:"
+"""The row for what others have started."""
+
+PANELS = {
+    "sonar": N_("sonar"),
+    "wheels": N_("wheels"),
+    "map": N_("map"),
+    "camera": N_("camera"),
+    "head": N_("head"),
+    "voice": N_("voice"),
+    "composer": N_("composer"),
+}
+
+
+class StartLesson(Action["PickerScreen"]):
+    """Start what is chosen."""
+
+    id = "lesson.start"
+    key = "enter"
+    title = N_("Start")
+    tooltip = N_("Start the chosen lesson's nodes and show them.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def possible(cls, target: PickerScreen) -> bool | None:
+        """Not a broken one."""
+        return True if target.order() is not None else None
+
+    @classmethod
+    async def run(cls, target: PickerScreen) -> None:
+        """Open it."""
+        target.open_chosen()
+
+
+class PickerScreen(Screen[None], Acting, Working):
+    """A list of lessons, and beside or below it all about the chosen one."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(StartLesson)
+    HORIZONTAL_BREAKPOINTS = BREAKPOINTS
+    VERTICAL_BREAKPOINTS = HEIGHTS
+    DEFAULT_CSS = """
+    PickerScreen {
+        #picker { height: 1fr; layout: vertical; }
+        #lessons { height: auto; max-height: 16; }
+        #about { height: 1fr; min-height: 5; padding: 0 2; border-top: solid $panel; }
+        #about-text { height: auto; }
+        &.-home #picker, &.-wide #picker { layout: horizontal; }
+        &.-home #lessons, &.-wide #lessons {
+            width: 5fr; height: 1fr; max-height: 100%; margin: 1 1;
+        }
+        &.-home #about, &.-wide #about {
+            width: 4fr; height: 1fr; padding: 2 3; border-top: none; border-left: solid $panel;
+        }
+        &.-flat #about { display: none; }
+        &.-flat #lessons { height: 1fr; max-height: 100%; margin: 0; }
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lessons: list[Lesson] = []
+        self._sessions: list[SessionInfo] = []
+        self._offered = ""
+        self._domain: int | None = None
+        """What is looked at without a lesson; None if the one that is set cannot be."""
+
+    @property
+    def deck(self) -> DeckApp:
+        """The app."""
+        return cast("DeckApp", self.app)
+
+    def compose(self) -> ComposeResult:
+        """Put the list beside what is said of the chosen lesson."""
+        yield TitleBar()
+        with Horizontal(id="picker"):
+            yield Rows(header=False, id="lessons")
+            with VerticalScroll(id="about", can_focus=False):
+                yield Static(id="about-text", markup=False)
+        yield KeyBar()
+
+    def on_mount(self) -> None:
+        """Show what is there, once it is known."""
+        self.query_one(Rows).focus()
+        self.redraw()
+        self.look()
+
+    def on_screen_resume(self) -> None:
+        """Look again: sessions come and go."""
+        if self._lessons:
+            self.look()
+
+    @work(exclusive=True)
+    async def look(self) -> None:
+        """Ask for the lessons and for what runs."""
+        with suppress(LauncherError):
+            self._domain = self.deck.sessions.pad.domain(self.deck.sessions.order.domain)
+        self._lessons = await self.deck.sessions.pad.lessons()
+        self._offer()
+        self._sessions = await self.deck.sessions.pad.running()
+        self._offer()
+        if self.is_current:
+            await self.deck.sessions.pad.prepare()
+
+    def _offer(self) -> None:
+        """Draw what is known, the likeliest row chosen, unless a person has chosen another."""
+        rows = self.query_one(Rows)
+        untouched = rows.chosen in ("", self._offered)
+        self.redraw()
+        if untouched:
+            self._offered = self._first()
+            rows.choose(self._offered)
+
+    def _first(self) -> str:
+        """Return the row to begin with: what runs, the lesson of the last time, or the first."""
+        if self._sessions:
+            return f"{RUNNING}{self._sessions[0].name}"
+        last = self.deck.last_lesson
+        named = [_key(lesson) for lesson in self._lessons if lesson.name == last]
+        return next(iter(named or map(_key, self._lessons)), "")
+
+    def redraw(self) -> None:
+        """Draw everything in the language spoken now."""
+        title = _("The lessons")
+        self.query_one(TitleBar).show((), (title,))
+        rows: list[Row] = []
+        if self._sessions:
+            rows.append(_heading(_("Already running")))
+            rows += [self._running_row(session) for session in self._sessions]
+            rows.append(_heading(""))
+        if self._domain is not None:
+            words = _("Look at what runs in domain {domain}").format(domain=self._domain)
+            rows += [Row(WATCHED, (Cell("⌕"), Cell(words))), _heading("")]
+        rows.append(_heading(_("Lessons") if self._lessons else _("Looking for lessons…")))
+        rows += [self._lesson_row(lesson) for lesson in self._lessons]
+        self.query_one(Rows).show([Column("", 4, right=True), Column("")], rows)
+        self._show_about()
+
+    def order(self) -> Order | None:
+        """Return what Enter would open; None where that is nothing."""
+        session, lesson = self._chosen_session(), self._chosen_lesson()
+        if self._chosen == WATCHED and self._domain is not None:
+            return self.deck.sessions.order._replace(watch=WatchOrder(self._domain))
+        if session is not None:
+            return self.deck.sessions.order._replace(attach=session.name)
+        if lesson is not None and not lesson.error:
+            return self.deck.sessions.order._replace(profile=lesson.path)
+        return None
+
+    def open_chosen(self) -> None:
+        """Open what is chosen."""
+        order = self.order()
+        if order is not None:
+            self.deck.sessions.open(order)
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Draw anew."""
+        del message
+        self.redraw()
+
+    def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
+        """Tell about the chosen one."""
+        del message
+        self._show_about()
+        self.refresh_bindings()
+
+    def on_rows_opened(self, message: Rows.Opened) -> None:
+        """Open what was clicked twice."""
+        message.stop()
+        self.open_chosen()
+
+    @property
+    def _chosen(self) -> str:
+        return next((rows.chosen for rows in self.query(Rows)), "")
+
+    def _chosen_lesson(self) -> Lesson | None:
+        chosen = self._chosen
+        return next((lesson for lesson in self._lessons if _key(lesson) == chosen), None)
+
+    def _chosen_session(self) -> SessionInfo | None:
+        chosen = self._chosen
+        found = (one for one in self._sessions if f"{RUNNING}{one.name}" == chosen)
+        return next(found, None)
+
+    def _running_row(self, session: SessionInfo) -> Row:
+        title = _title(session.name, session.title)
+        words = _("{title} · domain {domain}").format(title=title, domain=session.domain)
+        cells = (Cell("▶", "good"), Cell(words))
+        return Row(f"{RUNNING}{session.name}", cells)
+
+    def _lesson_row(self, lesson: Lesson) -> Row:
+        if lesson.error:
+            return Row(_key(lesson), (Cell("✗", "bad"), Cell(plain(lesson.name), "bad")))
+        return Row(
+            _key(lesson), (Cell(plain(lesson.lesson)), Cell(_title(lesson.name, lesson.title)))
+        )
+
+    def _show_about(self) -> None:
+        session, lesson = self._chosen_session(), self._chosen_lesson()
+        if session is not None:
+            words = _about_session(session)
+        elif lesson is not None:
+            words = _about_lesson(lesson)
+        elif self._chosen == WATCHED:
+            words = _about_watching(self._domain)
+        else:
+            words = Content("")
+        self.query_one("#about-text", Static).update(words)
+
+
+def _key(lesson: Lesson) -> str:
+    """Return the row's key: names may be given twice."""
+    return str(lesson.path)
+
+
+def _heading(text: str) -> Row:
+    return Row("", (Cell(""), Cell(text, "dim")))
+
+
+def _title(name: str, title: object) -> str:
+    text = pick(title) if isinstance(title, dict) else ""
+    return plain(text or name, 200)
+
+
+def _about_session(session: SessionInfo) -> Content:
+    return Content("\n").join(
+        [
+            Content.styled(_title(session.name, session.title), "bold $accent"),
+            Content(""),
+            Content(_("Already running: Enter shows it and leaves it running.")),
+            Content(started(session)),
+            Content(""),
+            _field(_("Domain"), str(session.domain)),
+            _field(_("Hardware"), hardware_words(session.hardware)),
+            _field(_("File"), plain(session.profile)),
+        ]
+    )
+
+
+def _about_watching(domain: int | None) -> Content:
+    return Content("\n").join(
+        [
+            Content.styled(_("A robot that is already running"), "bold $accent"),
+            Content(""),
+            Content(
+                _(
+                    "Starts nothing. Shows nodes, topics, services and logs of whatever was started"
+                    " in the domain: by `ros2 run`, by `ros2 launch`, in another window."
+                )
+            ),
+            Content(""),
+            _field(_("Domain"), str(domain)),
+            _field(_("Also"), "deck watch --domain N --discovery subnet"),
+        ]
+    )
+
+
+def _about_lesson(lesson: Lesson) -> Content:
+    lines = [Content.styled(_title(lesson.name, lesson.title), "bold $accent"), Content("")]
+    if lesson.error:
+        lines.append(Content.styled(_("✗ cannot be started"), "bold $text-error"))
+        lines += [Content(plain(line)) for line in said(lesson.error).splitlines()]
+        return Content("\n").join(lines)
+    about = pick(lesson.about)
+    if about:
+        lines += [Content(plain(about, 2000)), Content("")]
+    count = len(lesson.nodes)
+    starts = ngettext("Starts {n} node", "Starts {n} nodes", count).format(n=count)
+    lines.append(_field(starts, plain(", ".join(lesson.nodes))))
+    shows = [_(PANELS[panel]) if panel in PANELS else plain(panel) for panel in lesson.panels]
+    lines.append(_field(_("Shows"), ", ".join([*shows, _("log")])))
+    lines.append(_field(_("File"), plain(str(lesson.path))))
+    return Content("\n").join(lines)
+
+
+def _field(name: str, value: str) -> Content:
+    return Content.assemble((f"{name}: ", "bold"), value)

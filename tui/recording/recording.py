@@ -1,0 +1,154 @@
+"""Recording from the screen: begun and ended by a key, shown in the title, ended with the session.
+
+All that touches the disk or ROS is done on threads; here it is only asked for and told.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from text.i18n import _, said
+from text.plain import plain
+from tui.recording.words import (
+    complaints,
+    is_low,
+    length_words,
+    low_words,
+    progress,
+    rate_words,
+    size_words,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from textual.timer import Timer
+
+    from graph.recording.recorder import Recorder, RecordingStatus
+    from launcher.status import SessionInfo
+    from tui.app import DeckApp
+
+LOOK_S = 1.0
+
+
+class Recording:
+    """The recording of the session on the screen, if there is one."""
+
+    def __init__(self, app: DeckApp) -> None:
+        """Record the session of `app`."""
+        self._app = app
+        self._recorder: Recorder | None = None
+        self._timer: Timer | None = None
+        self._busy = asyncio.Lock()
+        self._slow_told = self._low_told = False
+
+    @property
+    def active(self) -> bool:
+        """Whether it records."""
+        return self._recorder is not None
+
+    @property
+    def status(self) -> RecordingStatus | None:
+        """How it stands, None while nothing is recorded."""
+        return None if self._recorder is None else self._recorder.status
+
+    @property
+    def words(self) -> Sequence[str]:
+        """What the title says of it, the longest first: `● rec 12 s 3.4 MB 80 kB/s`, or nothing."""
+        status = self.status
+        if status is None:
+            return ()
+        length, size = length_words(status.seconds), size_words(status.bytes)
+        short = _("● rec {length} {size}").format(length=length, size=size)
+        return (f"{short} {rate_words(status.bytes_per_s)}", short, f"● {size}")
+
+    def toggle(self, *, images: bool = True) -> None:
+        """Begin, with pictures or without, or end."""
+        self._app.run_worker(self.end() if self.active else self._begin(images), group="recording")
+
+    async def end(self) -> None:
+        """End it, if there is one, and say where it is."""
+        async with self._busy:
+            recorder, self._recorder = self._recorder, None
+            if self._timer is not None:
+                self._timer.stop()
+            if recorder is None:
+                return
+            self._changed()
+            self._tell(await asyncio.to_thread(recorder.stop))
+
+    async def _begin(self, images: bool) -> None:
+        from graph.bag.errors import BagError
+        from launcher.errors import LauncherError
+
+        async with self._busy:
+            session = self._app.feed.session
+            if session is None or self.active:
+                return
+            try:
+                recorder = await asyncio.to_thread(_started, session, images)
+            except BagError as error:
+                self._complain(said(error.words))
+                return
+            except LauncherError as error:
+                self._complain(said(error.args[0]))
+                return
+            self._recorder = recorder
+            self._slow_told = self._low_told = False
+            self._timer = self._app.set_interval(LOOK_S, self._look)
+        folder = plain(recorder.status.folder, 400)
+        words = _("Recording into {folder}; {key} ends it.")
+        key = self._app.keys_of(_toggle())[0]
+        self._app.notify(words.format(folder=folder, key=key), markup=False)
+        self._changed()
+
+    def _look(self) -> None:
+        """Keep the title true, and say what goes wrong when it does."""
+        status = self.status
+        if status is None:
+            return
+        if status.ended or status.error:
+            self.toggle()
+        elif status.slow and not self._slow_told:
+            self._slow_told = True
+            self._complain(_("The disk does not keep up with the recording."))
+        elif is_low(status) and not self._low_told:
+            self._low_told = True
+            words = _("Recording: {words}.")
+            self._complain(words.format(words=low_words(status)))
+        self._changed()
+
+    def _tell(self, status: RecordingStatus) -> None:
+        """Say where it is, and what is wrong with it."""
+        for sentence in complaints(status):
+            self._complain(sentence)
+        words = _("Recorded: {words}\n{folder}")
+        folder = plain(status.folder, 400)
+        self._app.notify(words.format(words=progress(status), folder=folder), markup=False)
+
+    def _complain(self, sentence: str) -> None:
+        self._app.notify(plain(sentence, 400), severity="warning", markup=False)
+
+    def _changed(self) -> None:
+        front = self._app.feed.front
+        if front is not None:
+            front.show_frame()
+        self._app.refresh_bindings()
+
+
+def _toggle() -> type:
+    from tui.recording.actions import RecordToggle
+
+    return RecordToggle
+
+
+def _started(session: SessionInfo, images: bool) -> Recorder:
+    """Begin to record everything of the session, where `deck replay` finds it by its name."""
+    from graph.recording.recorder import Recorder
+    from launcher.rundir import new_recording
+
+    folder = new_recording(session.name)
+    recorder = Recorder(session.domain, session.discovery, folder, images=images)
+    recorder.start()
+    return recorder

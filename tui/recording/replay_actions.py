@@ -1,0 +1,144 @@
+"""What can be done to a recording that is played, on every screen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from text.i18n import N_
+from tui.actions.action import Action
+
+if TYPE_CHECKING:
+    from graph.replay.replay import Replay
+    from tui.app import DeckApp
+
+SKIP_S = 5.0
+
+
+class ReplayAction(Action["DeckApp"]):
+    """Something that needs a recording on the screen."""
+
+    @classmethod
+    def possible(cls, target: DeckApp) -> bool | None:
+        """Only in a replay."""
+        return target.feed.replay is not None
+
+    @classmethod
+    async def run(cls, target: DeckApp) -> None:
+        """Do it."""
+        if target.feed.replay is not None:
+            cls.do(target.feed.replay)
+            target.replay_changed()
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Ask the replay for it."""
+        raise NotImplementedError
+
+
+class PlayPause(ReplayAction):
+    """Stand still, or go on."""
+
+    id = "replay.toggle"
+    key = "f7"
+    title = N_("Pause")
+    tooltip = N_("Pause the recording, or play it; at its end, start again.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def label(cls, target: DeckApp) -> str:
+        """By what it would do now."""
+        replay = target.feed.replay
+        return N_("Play") if replay is not None and replay.state.paused else cls.title
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Pause, or go on."""
+        replay.toggle()
+
+
+class Step(ReplayAction):
+    """One message on."""
+
+    id = "replay.step"
+    key = "full_stop,ю"
+    title = N_("Step")
+    tooltip = N_("Pause and show the next message of the topics on the screen.")
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Take one."""
+        replay.step()
+
+
+class Back(ReplayAction):
+    """A little back."""
+
+    id = "replay.back"
+    key = "shift+left"
+    title = N_("5 s back")
+    tooltip = N_("Jump five seconds back in the recording.")
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Jump."""
+        replay.skip(-SKIP_S)
+
+
+class Forward(ReplayAction):
+    """A little forward."""
+
+    id = "replay.forward"
+    key = "shift+right"
+    title = N_("5 s on")
+    tooltip = N_("Jump five seconds ahead in the recording.")
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Jump."""
+        replay.skip(SKIP_S)
+
+
+class Slower(ReplayAction):
+    """Slower."""
+
+    id = "replay.slower"
+    key = "minus,underscore"
+    title = N_("Slower")
+    tooltip = N_("Play the recording slower: down to a tenth.")
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Take the next lower rate."""
+        replay.change_rate(faster=False)
+
+
+class Faster(ReplayAction):
+    """Faster."""
+
+    id = "replay.faster"
+    key = "plus,equals_sign"
+    title = N_("Faster")
+    tooltip = N_("Play the recording faster: up to ten times.")
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Take the next higher rate."""
+        replay.change_rate(faster=True)
+
+
+class Loop(ReplayAction):
+    """Again and again."""
+
+    id = "replay.loop"
+    key = "L,Д"
+    title = N_("Loop")
+    tooltip = N_("At the end of the recording start again, or stay there.")
+
+    @classmethod
+    def do(cls, replay: Replay) -> None:
+        """Loop, or loop no more."""
+        replay.set_loop(not replay.state.loop)
+
+
+REPLAY_ACTIONS = (PlayPause, Step, Back, Forward, Slower, Faster, Loop)

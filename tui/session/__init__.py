@@ -1,0 +1,4 @@
+"""What runs, as the screens see it: the session, the graph, and the messages that tell of both.
+
+The screen reaches the supervisor and the ROS graph by the two ports (`ports`) alone.
+"""

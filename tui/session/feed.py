@@ -1,0 +1,267 @@
+"""The session and its graph as they are now, told to every screen that has been opened.
+
+Events of the session arrive on the app's own loop, updates of the graph from the observer's
+thread by way of an inbox.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from textual.message import Message
+
+from text.i18n import _
+from tui.emergency.state import FOLLOWED
+from tui.frame.screen import DeckScreen
+from tui.session.history import KEPT_LINES, LogHistory
+from tui.session.inbox import GraphInbox
+from tui.session.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
+from tui.session.outside import Outside
+from tui.session.rosout import TOPIC as ROSOUT
+from tui.session.rosout import RosoutReader
+from tui.session.watching import WATCH
+
+if TYPE_CHECKING:
+    from graph.data import GraphUpdate
+    from graph.replay.replay import Replay
+    from launcher.events import Event
+    from launcher.status import LogLine, NodeStatus, SessionInfo
+    from tui.app import DeckApp
+    from tui.session.ports import GraphLink, SessionLink
+
+
+class GraphReady(Message, bubble=False):
+    """An update of the graph waits in the inbox."""
+
+
+class Feed:
+    """What is known of the session; the only one who tells screens of it."""
+
+    def __init__(self, app: DeckApp) -> None:
+        """Post to the screens of `app`."""
+        self._app = app
+        self._inbox = GraphInbox(lambda: app.post_message(GraphReady()))
+        self._screens: list[DeckScreen] = []
+        self.link: SessionLink | None = None
+        """None while nothing runs."""
+        self.graph: GraphLink | None = None
+        self.update: GraphUpdate | None = None
+        """The newest of the graph; None until the first."""
+        self.history = LogHistory()
+        self.outside = Outside()
+        """Nodes of the domain that Deck has not started, beside those it has."""
+        self._rosout = RosoutReader()
+        self.ended = ""
+        """Why the session before has ended."""
+        self._remains: Mapping[str, NodeStatus] = {}
+        """Its nodes."""
+
+    @property
+    def replay(self) -> Replay | None:
+        """The recording that is played in place of a robot, None for a robot."""
+        return getattr(self.link, "replay", None)
+
+    @property
+    def blind(self) -> str:
+        """What to say above the reason why nothing can be seen: ROS is no matter of a replay."""
+        if self.replay is not None:
+            return _("The recording cannot be read")
+        return _("ROS cannot be observed")
+
+    @property
+    def watching(self) -> bool:
+        """Whether what runs was started by others, and is only looked at."""
+        return self.link is not None and self.link.session.run_id == WATCH
+
+    @property
+    def of_others(self) -> bool:
+        """Whether it is a session that somewhere else was started, and can be ended from here."""
+        link = self.link
+        return link is not None and not (link.own or self.watching or self.replay is not None)
+
+    @property
+    def session(self) -> SessionInfo | None:
+        """What runs, None while nothing does."""
+        return None if self.link is None else self.link.session
+
+    @property
+    def nodes(self) -> Mapping[str, NodeStatus]:
+        """Every node of the session, in the profile's order; of one that has ended, too."""
+        return self._remains if self.link is None else self.link.nodes
+
+    @property
+    def opened(self) -> bool:
+        """Whether there is a session to be looked at, be it one that has ended."""
+        return self.link is not None or bool(self.ended)
+
+    @property
+    def front(self) -> DeckScreen | None:
+        """The screen of the session that is in front, below any dialog."""
+        stack = reversed(self._app.screen_stack)
+        return next((screen for screen in stack if isinstance(screen, DeckScreen)), None)
+
+    def connect(self, link: SessionLink, graph: GraphLink) -> None:
+        """Show this session from now on."""
+        self.link, self.graph = link, graph
+        self.update, self.ended, self._remains = None, "", {}
+        self.history.clear()
+        self.outside.forget()
+        self._rosout = RosoutReader()
+        self.tell(SessionChanged)
+        self._tell_status(frozenset(link.nodes))
+        self.ask_for_topics()
+        graph.start(self._inbox.put)
+
+    async def disconnect(self, ended: str = "") -> None:
+        """Let go of the session; stopping it is not done here."""
+        # The recorder has threads of its own, and a bag to be ended in order.
+        await self._app.recording.end()
+        link, graph = self.link, self.graph
+        self.link = self.graph = None
+        self.ended = ended
+        self.outside.forget()
+        if ended and link is not None:
+            self._show_remains(link.nodes)
+        if graph is not None:
+            await asyncio.to_thread(graph.stop)
+        if link is not None:
+            await link.aclose()
+        self.tell(lambda: SessionChanged(ended))
+
+    def _show_remains(self, nodes: Mapping[str, NodeStatus]) -> None:
+        # The first frame does without.
+        from tui.session.remains import ended_nodes, silent_graph
+
+        self._remains = ended_nodes(nodes, self.ended)
+        self._tell_status(frozenset(nodes))
+        if self.update is not None:
+            silent = self.update = silent_graph(self.update)
+            self.tell(lambda: GraphChanged(silent))
+
+    def close(self) -> None:
+        """Forget the session that has ended, and the screens that showed it."""
+        self.ended, self._remains = "", {}
+        self._screens.clear()
+        self.history.clear()
+
+    def log_file(self, node: str) -> str:
+        """Return the path of the file with all lines of a node, empty if there is none."""
+        folder = "" if self.session is None else self.session.log_dir
+        return f"{folder}/{node}.log" if folder and node in self.nodes else ""
+
+    def note(self, lines: Sequence[LogLine]) -> None:
+        """Add lines of this screen's own to the log."""
+        self.history.add(lines)
+        self.tell(lambda: LogArrived(tuple(lines), {}))
+
+    async def listen(self) -> None:
+        """Hand over what the session says until it ends."""
+        link = self.link
+        if link is None:
+            return
+        async for event in link.events(past=KEPT_LINES):
+            if link is not self.link:
+                return
+            try:
+                await self._on_event(event)
+            except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+                self._app.faults.caught(error)
+
+    async def _on_event(self, event: Event) -> None:
+        # The first frame does without.
+        from launcher.events import ClosedEvent, LogEvent, StatusEvent, StraysEvent
+
+        if isinstance(event, StatusEvent):
+            self._tell_status(frozenset(node.name for node in event.nodes))
+        elif isinstance(event, LogEvent):
+            self.history.add(event.lines)
+            self.tell(lambda: LogArrived(event.lines, event.skipped))
+        elif isinstance(event, StraysEvent):
+            self._app.sessions.ask_about(event.strays)
+        elif isinstance(event, ClosedEvent):
+            self._app.sessions.ended(event.reason)
+            await self.disconnect(event.reason)
+
+    def take_update(self) -> GraphUpdate | None:
+        """Return the update that waits."""
+        update = self._inbox.take()
+        if update is None or self.graph is None:
+            return None
+        self.update = update
+        return update
+
+    def hand_over(self, update: GraphUpdate) -> None:
+        """Give an update to the screens that want it."""
+        self._see_outside(update)
+        front = self.front
+        for screen in self._screens:
+            wanted = screen.follow_topics() | screen.keep_topics()
+            if screen is front or not update.samples.keys().isdisjoint(wanted):
+                screen.post_message(GraphChanged(update))
+        self._note_rosout(update)
+
+    def _see_outside(self, update: GraphUpdate) -> None:
+        session = self.session
+        if session is None or self._hears_everybody:
+            return
+        if self.outside.see(update, self.nodes, session.run_id):
+            self.ask_for_topics()
+
+    @property
+    def _hears_everybody(self) -> bool:
+        """Whether all nodes are others', as those of a recording are."""
+        return self.watching or self.replay is not None
+
+    def _note_rosout(self, update: GraphUpdate) -> None:
+        """Nodes that others have started can be heard on /rosout only."""
+        samples = update.samples.get(ROSOUT, ())
+        if self._hears_everybody:
+            lines = self._rosout.lines(samples)
+        else:
+            lines = self.outside.lines(samples, self.nodes) if self.outside.now else ()
+        if lines:
+            self.note(lines)
+
+    def catch_up(self, screen: DeckScreen) -> None:
+        """Tell a screen that has just been opened how things stand, and keep telling it."""
+        if screen in self._screens:
+            return
+        self._screens.append(screen)
+        if not self.opened:
+            return
+        screen.post_message(SessionChanged())
+        screen.post_message(StatusChanged(dict(self.nodes), frozenset(self.nodes)))
+        if self.history:
+            screen.post_message(LogArrived(self.history.all(), {}))
+        if self.update is not None:
+            screen.post_message(GraphChanged(self.update))
+
+    def forget(self, screen: DeckScreen) -> None:
+        """Tell this screen nothing any more."""
+        if screen in self._screens:
+            self._screens.remove(screen)
+
+    def ask_for_topics(self) -> None:
+        """Ask the graph for what the screen in front shows, and for what any follows or keeps."""
+        graph, front = self.graph, self.front
+        if graph is None:
+            return
+        own = {*FOLLOWED, ROSOUT} if self._hears_everybody or self.outside.now else FOLLOWED
+        followed = set(own).union(*(screen.follow_topics() for screen in self._screens))
+        kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
+        graph.watch(kept if front is None else kept | front.watch_topics())
+        graph.follow(followed)
+        graph.watch_goals(set() if front is None else front.watch_goals())
+        graph.measure(front is not None and front.measure_all)
+        graph.period_s = 0.25 if front is None else front.period_s
+
+    def _tell_status(self, changed: frozenset[str]) -> None:
+        nodes = dict(self.nodes)
+        self.tell(lambda: StatusChanged(nodes, changed))
+
+    def tell(self, make: Callable[[], Message]) -> None:
+        """Post to every screen a message of its own: Textual marks those that are handled."""
+        for screen in self._screens:
+            screen.post_message(make())

@@ -1,0 +1,175 @@
+"""What can be done while driving by keys; each letter also under its Cyrillic key."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from text.i18n import N_
+from tui.actions.action import Action
+from tui.deck.actions import DeckAction
+from tui.teleop.keys import Move
+
+if TYPE_CHECKING:
+    from tui.deck.screen import LessonDeck
+    from tui.teleop.widget import TeleopPanel
+
+
+class OpenTeleop(DeckAction):
+    """Drive the robot by keys."""
+
+    id = "deck.teleop"
+    key = "t,е"
+    title = N_("Drive")
+    means = "drive"
+    tooltip = N_(
+        "Drive by the arrow keys or W A S D while they are held; letting go stops. Escape closes."
+    )
+    footer = True
+    from_elsewhere = True
+
+    @classmethod
+    def possible(cls, target: LessonDeck) -> bool | None:
+        """Only where there is a robot: not in a recording, and not when the session is over."""
+        return target.feed.link is not None and target.feed.replay is None
+
+    @classmethod
+    async def run(cls, target: LessonDeck) -> None:
+        """Open the panel, or go to it."""
+        await target.open_teleop()
+
+
+class TeleopAction(Action["TeleopPanel"]):
+    """Something in the panel."""
+
+
+class CloseTeleop(TeleopAction):
+    """Drive no more."""
+
+    id = "teleop.close"
+    key = "escape,t,е"
+    title = N_("Close")
+    means = "drive"
+    tooltip = N_("Stop, and leave driving.")
+    footer = True
+
+    @classmethod
+    async def run(cls, target: TeleopPanel) -> None:
+        """Stop and go."""
+        target.close()
+
+
+class Faster(TeleopAction):
+    """A higher limit."""
+
+    id = "teleop.faster"
+    key = "plus,equals_sign"
+    title = N_("Faster")
+    tooltip = N_("Drive 0.05 m/s faster from the next press on, up to 0.5 m/s.")
+    footer = True
+    steps = 1
+
+    @classmethod
+    async def run(cls, target: TeleopPanel) -> None:
+        """Change the speed of the keys."""
+        target.limits = target.limits.faster(cls.steps)
+
+
+class Slower(Faster):
+    """A lower limit."""
+
+    id = "teleop.slower"
+    key = "minus,underscore"
+    title = N_("Slower")
+    tooltip = N_("Drive 0.05 m/s slower from the next press on.")
+    steps = -1
+
+
+class MoveAction(TeleopAction):
+    """A key that drives while it is held; one click counts as one short press."""
+
+    move: ClassVar[Move]
+    footer = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: TeleopPanel) -> None:
+        """Press it once."""
+        target.press(cls.move)
+
+
+class DriveForward(MoveAction):
+    """Forward."""
+
+    id = "teleop.forward"
+    key = "up,w,ц"
+    title = N_("Forward")
+    tooltip = N_("Forward while it is held; pressed again in a curve: straight on.")
+    move = Move.FORWARD
+
+
+class DriveBack(MoveAction):
+    """Back."""
+
+    id = "teleop.back"
+    key = "down,s,ы"
+    title = N_("Back")
+    tooltip = N_("Backwards while it is held; pressed again in a curve: straight back.")
+    move = Move.BACK
+
+
+class SteerLeft(MoveAction):
+    """To the left."""
+
+    id = "teleop.left"
+    key = "left,a,ф"
+    title = N_("Left")
+    tooltip = N_("Left while it is held; what drives goes on in a curve.")
+    move = Move.LEFT
+
+
+class SteerRight(MoveAction):
+    """To the right."""
+
+    id = "teleop.right"
+    key = "right,d,в"
+    title = N_("Right")
+    tooltip = N_("Right while it is held; what drives goes on in a curve.")
+    move = Move.RIGHT
+
+
+class Sharper(TeleopAction):
+    """Sharper curves."""
+
+    id = "teleop.sharper"
+    key = "right_square_bracket,ъ"
+    title = N_("Sharper")
+    tooltip = N_("Steer 0.05 rad more from the next press on, up to 0.5 rad.")
+    steps = 1
+
+    @classmethod
+    async def run(cls, target: TeleopPanel) -> None:
+        """Change the steering of the keys."""
+        target.limits = target.limits.sharper(cls.steps)
+
+
+class Wider(Sharper):
+    """Wider curves."""
+
+    id = "teleop.wider"
+    key = "left_square_bracket,х"
+    title = N_("Wider")
+    tooltip = N_("Steer 0.05 rad less from the next press on.")
+    steps = -1
+
+
+TELEOP_ACTIONS = (
+    CloseTeleop,
+    Faster,
+    Slower,
+    DriveForward,
+    DriveBack,
+    SteerLeft,
+    SteerRight,
+    Sharper,
+    Wider,
+)

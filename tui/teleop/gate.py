@@ -1,0 +1,181 @@
+"""What the gate says of itself on /safety_state, and the same in the language of the screen."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from text.figures import figure
+from text.i18n import N_, _
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from graph.data import Sample
+
+NODE = "safety_stop"
+STOPPED = "emergency_stop"
+HELD = {
+    "blocked_forward": N_("forward is blocked"),
+    "blocked_backward": N_("backward is blocked"),
+    "blocked": N_("motion is blocked"),
+    STOPPED: N_("emergency stop"),
+    "starting": N_("the gate is starting"),
+}
+EXPLAINED = {"blocked_forward", "blocked_backward", "blocked"}
+"""Held by what the sonars show."""
+PLACES = {
+    "front": {
+        "free": N_("{metres} m ahead"),
+        "close": N_("obstacle {metres} m ahead"),
+        "invalid": N_("no valid distance ahead"),
+        "silent": N_("the front sonar is silent"),
+    },
+    "rear": {
+        "free": N_("{metres} m behind"),
+        "close": N_("obstacle {metres} m behind"),
+        "invalid": N_("no valid distance behind"),
+        "silent": N_("the rear sonar is silent"),
+    },
+}
+NOTHING_NEAR = {"front": N_("nothing ahead"), "rear": N_("nothing behind")}
+"""Nothing in the range of the sensor."""
+TOO_CLOSE = {
+    "front": N_("obstacle ahead too close to measure"),
+    "rear": N_("obstacle behind too close to measure"),
+}
+REFUSED = {
+    "m/s": N_("{value} m/s, limit {limit} m/s"),
+    "rad": N_("{value} rad, limit {limit} rad"),
+}
+BEYOND = re.compile(r"(?P<value>\S+) (?P<unit>\S+), limit (?P<limit>\S+) (?P=unit)")
+STAMP = re.compile(r"stamp (?P<age>\S+) s old")
+SOURCES = {"/drive_teleop": N_("the keys")}
+"""Those that are known by a better name than their topic."""
+
+
+@dataclass(frozen=True)
+class Gate:
+    """The gate's own words, as they came."""
+
+    verdict: str = ""
+    """`free`, or one of `HELD`."""
+    sights: Mapping[str, str] = field(default_factory=dict)
+    """`front` and `rear` to `free`, `close`, `invalid` or `silent`; only the sensors it has."""
+    metres: Mapping[str, float] = field(default_factory=dict)
+    """`front` and `rear` to the newest distance, where there is one."""
+    source: str = ""
+    """The topic that is obeyed now, empty if none is."""
+    ignored: str = ""
+    """A topic that is not, because it ranks lower."""
+    share: float = 1.0
+    """How much of the asked speed it allows, 0 to 1."""
+    message: str = ""
+    refused: str = ""
+    """What was asked for in the last moments and refused: `0.8 m/s, limit 0.5 m/s`."""
+    critical_m: float | None = None
+    """Nearer than this is danger; None if it does not tell."""
+    slow_m: float | None = None
+    """Nearer than this it slows; not above `critical_m`: it never does."""
+
+    @property
+    def is_held(self) -> bool:
+        """Whether it keeps the robot from going one way or the other."""
+        return self.verdict in HELD
+
+    @property
+    def is_slowed(self) -> bool:
+        """Whether it lets through only a part of the speed."""
+        return 0.0 < self.share < 1.0
+
+
+def gate_in(sample: Sample) -> Gate | None:
+    """Read a diagnostic_msgs/DiagnosticArray; None if the gate does not speak in it."""
+    statuses: Any = sample.value.get("status", ())
+    for status in statuses if isinstance(statuses, (list, tuple)) else ():
+        if isinstance(status, Mapping) and status.get("name") == NODE:
+            return _read(status)
+    return None
+
+
+def _read(status: Mapping[str, Any]) -> Gate:
+    values: dict[str, str] = {}
+    for pair in status.get("values", ()):
+        if isinstance(pair, Mapping):
+            values[str(pair.get("key", ""))] = str(pair.get("value", ""))
+    metres = {place: _number(values.get(f"{place}_m", "")) for place in PLACES}
+    share = _number(values.get("allowed", ""))
+    return Gate(
+        values.get("verdict", ""),
+        {place: values[place] for place in PLACES if place in values},
+        {place: number for place, number in metres.items() if number is not None},
+        values.get("source", ""),
+        values.get("ignored", ""),
+        1.0 if share is None else share,
+        str(status.get("message", "")),
+        values.get("refused", ""),
+        _number(values.get("critical_m", "")),
+        _number(values.get("slow_m", "")),
+    )
+
+
+def held_words(gate: Gate) -> str:
+    """Say what is held and why; empty if nothing is."""
+    if not gate.is_held:
+        return ""
+    why = ""
+    if gate.verdict in EXPLAINED:
+        why = ", ".join(
+            _sight(gate, place, sight) for place, sight in gate.sights.items() if sight != "free"
+        )
+    return _(HELD[gate.verdict]) + (f": {why}" if why else "")
+
+
+def refused_words(gate: Gate) -> str:
+    """Say what was refused; empty if nothing was."""
+    told, what = gate.refused, plain(gate.refused, 60)
+    if (found := BEYOND.fullmatch(told)) and found["unit"] in REFUSED:
+        words = REFUSED[found["unit"]]
+        what = _(words).format(value=found["value"], limit=found["limit"])
+    elif found := STAMP.fullmatch(told):
+        what = _("stamp {age} s old").format(age=found["age"])
+    return _("refused: {what}").format(what=what) if told else ""
+
+
+def gate_words(gate: Gate) -> str:
+    """Say what is held or slowed and why, else how far it is, and who is obeyed or not."""
+    parts = [held_words(gate), refused_words(gate)]
+    sights = (_sight(gate, place, sight) for place, sight in gate.sights.items())
+    far = ", ".join(filter(None, sights))
+    if gate.is_slowed:
+        slowed = _("slowed to {percent} %").format(percent=round(100 * gate.share))
+        parts.append(f"{slowed}: {far}" if not gate.is_held else slowed)
+    elif not gate.is_held:
+        free = _("the way is free")
+        parts.append((f"{free}: {far}" if far else free) if gate.verdict else gate.message)
+    if gate.source:
+        source = _(SOURCES[gate.source]) if gate.source in SOURCES else gate.source
+        parts.append(_("obeys {source}").format(source=source))
+    if gate.ignored:
+        parts.append(_("ignores {source}").format(source=gate.ignored))
+    return plain(" · ".join(filter(None, parts)), 400)
+
+
+def _sight(gate: Gate, place: str, sight: str) -> str:
+    metres = gate.metres.get(place)
+    if sight == "free" and metres is None:
+        return ""
+    if metres is not None and math.isinf(metres) and sight in ("free", "close"):
+        return _((NOTHING_NEAR if sight == "free" else TOO_CLOSE)[place])
+    words = PLACES[place].get(sight, "{metres}")
+    return _(words).format(metres="?" if metres is None else figure(metres))
+
+
+def _number(text: str) -> float | None:
+    try:
+        number = float(text)
+    except ValueError:
+        return None
+    return None if math.isnan(number) else number

@@ -1,0 +1,283 @@
+"""Driving by keys: has the focus, reads the keys, and holds what they ask for.
+
+It publishes nothing itself: the observer's thread repeats a command for as long as the newest key
+allows, so that a screen that hangs, or is no more, leaves no command behind.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, cast
+
+from textual.content import Content
+from textual.message import Message
+
+from graph.publishing.dead_man_switch import Holding
+from robot.words import STOP, DriveSetpoint
+from text.i18n import N_, _
+from text.plain import plain
+from tui import clock
+from tui.actions import REGISTRY, Acting, bindings
+from tui.actions.app import EmergencyRelease
+from tui.emergency.state import SAFETY_TOPIC
+from tui.panels.panel import newest, row_of
+from tui.panels.wheels.reading import Wheels, wheels_in
+from tui.teleop.actions import TELEOP_ACTIONS, MoveAction, OpenTeleop
+from tui.teleop.gate import Gate, gate_in, gate_words
+from tui.teleop.keys import NOTHING, Move, TeleopLimits
+from tui.teleop.route import (
+    DRIVE_SAFE,
+    DRIVE_TYPE,
+    RATE_HZ,
+    WHEELS,
+    Route,
+    command,
+    nowhere_words,
+    route,
+)
+from tui.teleop.view import Driving, drawn
+from tui.widgets.drawing import Drawing, Line
+from tui.yaml_form.words import reason_words
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+    from textual.events import Key
+    from textual.timer import Timer
+
+    from graph.data import GraphUpdate, Sample
+    from tui.app import DeckApp
+
+LOOK_S = 0.05
+"""How often it is looked whether a key is still down, while any is."""
+TITLE = N_("Drive by keys")
+
+
+class TeleopPanel(Drawing, Acting, can_focus=True):
+    """What the keys ask, what the gate allows, what the wheels do; large where there is room."""
+
+    class Closed(Message):
+        """It is to be taken away."""
+
+    BINDINGS: ClassVar = bindings(*TELEOP_ACTIONS)
+    DEFAULT_CSS = """
+    TeleopPanel {
+        height: 8; min-height: 4; padding: 0 1;
+        border-top: solid $primary 60%; border-title-style: bold;
+        border-title-color: $foreground;
+        &:focus { border-top: heavy $accent; }
+    }
+    """
+    topics: ClassVar = frozenset({DRIVE_SAFE, WHEELS, SAFETY_TOPIC})
+    """What it shows."""
+
+    def __init__(self) -> None:
+        super().__init__(id="teleop")
+        self._keys = NOTHING
+        self._limits = TeleopLimits()
+        self._route = Route()
+        self._allowed: DriveSetpoint | None = None
+        self._wheels: Wheels | None = None
+        self._gate: Gate | None = None
+        self._error = ""
+        self._timer: Timer | None = None
+
+    @property
+    def has_value(self) -> bool:
+        """There is always something to say."""
+        return True
+
+    @property
+    def _deck(self) -> DeckApp:
+        return cast("DeckApp", self.app)
+
+    @property
+    def limits(self) -> TeleopLimits:
+        """How fast and how sharp the keys drive, from the next press on."""
+        return self._limits
+
+    @limits.setter
+    def limits(self, limits: TeleopLimits) -> None:
+        self._limits = limits
+        self.redraw()
+
+    @property
+    def asked(self) -> DriveSetpoint:
+        """What the keys ask for now."""
+        return self._keys.at(clock.steady()).setpoint(self._limits)
+
+    # The keys
+
+    def check_consume_key(self, key: str, character: str | None) -> bool:
+        """Keep letters from the screen and the app: a slip while driving must not end a node."""
+        del key
+        return character is not None and character.isalpha()
+
+    async def on_key(self, event: Key) -> None:
+        """Take the keys that drive with the time at which they were pressed, however late."""
+        key = event.key
+        if event.character is not None and event.character.isalpha():
+            # Caps lock is no reason not to drive.
+            key = event.character.lower()
+        active = self.screen.active_bindings.get(key)
+        action = None if active is None else REGISTRY.get(active.binding.id or "")
+        if active is None or active.node is not self or action is None:
+            return
+        if issubclass(action, MoveAction):
+            event.stop()
+            event.prevent_default()
+            self.press(action.move, event.time)
+
+    def press(self, move: Move, at_s: float | None = None) -> None:
+        """A key is down, or was at that moment of the steady clock."""
+        now_s = clock.steady()
+        at_s = now_s if at_s is None else min(at_s, now_s)
+        deck = self._deck
+        graph = deck.feed.graph
+        if graph is None or not self._route.topic or deck.brake.state.engaged:
+            self.redraw()
+            return
+        if deck.nap.may_precede(at_s):
+            return
+        self._keys = self._keys.pressed(move, at_s)
+        if self._keys.at(now_s) is NOTHING:
+            # It has waited too long to be obeyed.
+            self._keys = NOTHING
+            return
+        asked = command(self._keys.setpoint(self._limits))
+        word = Holding(asked, command(STOP), RATE_HZ, self._keys.until_s)
+        held = graph.hold(self._route.topic, DRIVE_TYPE, word)
+        held.add_done_callback(self._held)
+        if self._timer is not None:
+            self._timer.resume()
+        self.redraw()
+
+    def release(self) -> None:
+        """Whatever was down is up."""
+        self._keys = NOTHING
+        graph = self._deck.feed.graph
+        if graph is not None and self._route.topic:
+            graph.let_go(self._route.topic)
+        self.redraw()
+
+    def close(self) -> None:
+        """Drive no more."""
+        self.release()
+        self.post_message(self.Closed())
+
+    def _held(self, done: Future[int]) -> None:
+        """Told on the observer's thread."""
+        error = None if done.cancelled() else done.exception()
+        words = reason_words(error) if isinstance(error, Exception) else ""
+        if words != self._error:
+            self._error = words
+            self.app.call_later(self.redraw)
+
+    def _look(self) -> None:
+        if self._keys.at(clock.steady()) is NOTHING:
+            self._keys = NOTHING
+            if self._timer is not None:
+                self._timer.pause()
+        self.redraw()
+
+    # What is told
+
+    def on_mount(self) -> None:
+        """Be ready to publish, without publishing anything."""
+        self._timer = self.set_interval(LOOK_S, self._look, pause=True)
+        self._entitle()
+        if self._deck.feed.update is not None:
+            self.show(self._deck.feed.update)
+
+    def on_unmount(self) -> None:
+        """Leave nothing moving."""
+        self.release()
+
+    def on_focus(self) -> None:
+        """The keys come here."""
+        self.redraw()
+
+    def on_blur(self) -> None:
+        """The keys go elsewhere, or the terminal has lost the focus."""
+        self.release()
+
+    def show(self, update: GraphUpdate) -> None:
+        """Show the newest of the topics."""
+        self._follow(route(update))
+        for sample in update.samples.get(SAFETY_TOPIC, ()):
+            self._gate = gate_in(sample) or self._gate
+        self._allowed = _drive(newest(update, DRIVE_SAFE)) or self._allowed
+        turned = newest(update, WHEELS)
+        self._wheels = (None if turned is None else wheels_in(turned.value)) or self._wheels
+        for topic in (DRIVE_SAFE, WHEELS):
+            row = row_of(update, topic)
+            if row is None or not row.publishers:
+                self._forget(topic)
+        self.redraw()
+
+    def _follow(self, found: Route) -> None:
+        """Drive by another topic from now on, with a publisher made before it is needed."""
+        if found.topic != self._route.topic:
+            self.release()
+            graph = self._deck.feed.graph
+            if graph is not None and found.topic:
+                ready = graph.prepare_hold(found.topic, DRIVE_TYPE)
+                # If it cannot be made, the first key will say so.
+                ready.add_done_callback(lambda done: done.cancelled() or done.exception())
+        self._route = found
+        self._entitle()
+
+    def _forget(self, topic: str) -> None:
+        if topic == DRIVE_SAFE:
+            self._allowed = self._gate = None
+        else:
+            self._wheels = None
+
+    def _entitle(self) -> None:
+        topic = f" → {self._route.topic}" if self._route.topic else ""
+        self.border_title = Content(_(TITLE) + topic)
+
+    def words_changed(self) -> None:
+        """Draw anew in another language."""
+        self._entitle()
+        super().words_changed()
+
+    # What is drawn
+
+    def draw(self, width: int, height: int) -> list[Line]:
+        """As much as there is room for."""
+        words, look = self._told()
+        driving = Driving(
+            self.asked, self._allowed, self._route.gated, self._wheels, self._limits, words, look
+        )
+        return drawn(driving, width, height)
+
+    def _told(self) -> tuple[str, str]:
+        """Say what is to be known now, the gravest first, and how it looks."""
+        if self._deck.brake.state.engaged:
+            key = self._deck.keys_of(EmergencyRelease)[0]
+            return _("emergency stop: nothing moves; {key} releases").format(key=key), "stop"
+        if not self._route.topic:
+            return nowhere_words(), "warn"
+        if not self.has_focus:
+            key = self._deck.keys_of(OpenTeleop)[0]
+            words = _("the keys go elsewhere now; {key}, or a click here, brings them back")
+            return words.format(key=key), "warn"
+        if self._error:
+            return plain(self._error, 400), "bad"
+        return self._told_by_gate()
+
+    def _told_by_gate(self) -> tuple[str, str]:
+        if not self._route.gated:
+            return _("no gate: the keys drive past every sonar"), "warn"
+        if self._gate is None:
+            return _("the gate has not said anything yet"), "muted"
+        look = "warn" if self._gate.is_held or self._gate.is_slowed else "good"
+        return gate_words(self._gate), look
+
+
+def _drive(sample: Sample | None) -> DriveSetpoint | None:
+    """Read an AckermannDriveStamped; None if it is none."""
+    drive = None if sample is None else sample.value.get("drive")
+    if not isinstance(drive, dict):
+        return None
+    return DriveSetpoint(float(drive["speed"]), float(drive["steering_angle"]))

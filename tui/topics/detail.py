@@ -1,0 +1,248 @@
+"""One topic: what it is, and below that its newest message, a picture, or who is on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.cells import chop_cells
+from textual.containers import Vertical
+from textual.content import Content
+from textual.widget import Widget
+
+from graph.data import Trouble
+from text.i18n import _
+from text.plain import plain
+from tui.topics.echo_filter import EchoFilter
+from tui.topics.echo_tree import EchoTree
+from tui.topics.endpoints import TopicEndpoints
+from tui.topics.words import advice, ends, figures, packed
+from tui.widgets.image_view import ImageView
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from textual.app import ComposeResult
+    from textual.geometry import Size
+
+    from graph.data import Sample, TopicRow
+    from tui.widgets.half_blocks import Pixels
+    from tui.widgets.image_view import Scale
+
+
+class TopicHead(Widget):
+    """Name and type, figures, and who is on the topic: as many lines as there is height for.
+
+    A name that is longer than a line goes on in the next: it is told whole nowhere else.
+    """
+
+    DEFAULT_CSS = """
+    TopicHead {
+        height: auto; width: 1fr; background: $panel; color: $foreground;
+        text-wrap: nowrap; text-overflow: ellipsis;
+    }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._texts: tuple[str, str, tuple[str, ...], str] = ("", "", (), "")
+
+    def show(self, name: str, type_name: str, figures: Sequence[str], below: str) -> None:
+        """Show these texts, drawn only if one of them is new."""
+        texts = (plain(name), plain(type_name), tuple(figures), below)
+        if texts != self._texts:
+            before = self._count()
+            self._texts = texts
+            self.refresh(layout=self._count() != before)
+
+    def on_resize(self) -> None:
+        """Fold the figures anew."""
+        self.refresh(layout=True)
+
+    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
+        """As many lines as the figures take at this width, with those above and below."""
+        del container, viewport
+        return self._count(width)
+
+    def render(self) -> Content:
+        """Draw the lines."""
+        name, type_name, parts, below = self._texts
+        width = max(1, self.size.width)
+        *above, last = chop_cells(name, width) or [""]
+        lines = [Content.styled(part, "bold") for part in above]
+        lines.append(Content.assemble((last, "bold"), "  ", (type_name, "dim")))
+        lines += [Content(text) for text in (*packed(parts, width), below) if text]
+        return Content("\n").join(lines)
+
+    def _count(self, width: int | None = None) -> int:
+        name, _type, parts, below = self._texts
+        width = max(1, width or self.size.width)
+        named = len(chop_cells(name, width)) or 1
+        if self.screen.has_class("-low") or self.screen.has_class("-flat"):
+            return named + 1
+        return named + len(packed(parts, width)) + bool(below)
+
+
+class TopicDetail(Vertical):
+    """Shows what is known of one topic; the screen tells it row, message and picture."""
+
+    DEFAULT_CSS = """
+    TopicDetail { width: 1fr; height: 1fr; }
+    TopicDetail > ImageView, TopicDetail > TopicEndpoints { display: none; }
+    TopicDetail.-picture > ImageView { display: block; }
+    TopicDetail.-picture > EchoTree { display: none; }
+    TopicDetail.-endpoints > TopicEndpoints { display: block; }
+    TopicDetail.-endpoints > EchoTree, TopicDetail.-endpoints > ImageView { display: none; }
+    """
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._row: TopicRow | None = None
+        self._sample: Sample | None = None
+        self._newest: Sample | None = None
+        """Whether it fits the expression or not."""
+
+    def compose(self) -> ComposeResult:
+        """The head above tree, picture and endpoints, of which one is shown."""
+        yield TopicHead()
+        yield EchoFilter()
+        yield EchoTree()
+        yield ImageView()
+        yield TopicEndpoints()
+
+    @property
+    def echo(self) -> EchoTree:
+        """The message as a tree."""
+        return self.query_one(EchoTree)
+
+    @property
+    def filter(self) -> EchoFilter:
+        """Which messages are shown."""
+        return self.query_one(EchoFilter)
+
+    @property
+    def picture(self) -> ImageView:
+        """The message as a picture."""
+        return self.query_one(ImageView)
+
+    @property
+    def endpoints(self) -> TopicEndpoints:
+        """Everyone on the topic."""
+        return self.query_one(TopicEndpoints)
+
+    @property
+    def front(self) -> Widget:
+        """What is shown below the head."""
+        if self.as_endpoints:
+            return self.endpoints
+        return self.picture if self.as_picture else self.echo
+
+    @property
+    def sample(self) -> Sample | None:
+        """The newest message of those that are shown."""
+        return self._sample
+
+    def fitting(self, samples: Sequence[Sample]) -> Sample | None:
+        """Return the newest of these that is to be shown, if one is; all of them are counted."""
+        if samples:
+            self._newest = samples[-1]
+        return self.filter.fitting(samples)
+
+    def filter_anew(self) -> Sample | None:
+        """Return the newest message if it is to be shown; one that is not goes out of sight."""
+        found = self.filter.fitting(() if self._newest is None else (self._newest,))
+        if found is None and not self.filter.is_wrong:
+            self._sample = None
+            self._say()
+        return found
+
+    def show_topic(self, row: TopicRow | None) -> None:
+        """Show how the topic is now; another topic than before begins without a message."""
+        if row is None or self._row is None or row.name != self._row.name:
+            self._sample = self._newest = None
+            self.show_as_picture(False)
+            # That of another topic must not stand there until its turn has come.
+            self.picture.show_words("")
+            self.filter.show_topic("" if row is None else row.name)
+        self._row = row
+        self._say()
+
+    def show_message(self, sample: Sample) -> None:
+        """Show a new message of the topic that is shown."""
+        resized = self._sample is None or self._sample.size_bytes != sample.size_bytes
+        self._sample = sample
+        if resized:
+            self._say()
+        self.echo.show(sample.topic, sample.value)
+
+    def show_picture(self, rgb: Pixels, caption: str, scale: Scale | None, hz: str) -> None:
+        """Show the newest message as a picture."""
+        self.picture.show(rgb, caption, scale, hz)
+
+    def show_no_picture(self, headline: str, detail: str = "") -> None:
+        """Say why the newest message is no picture."""
+        self.picture.show_words(headline, detail)
+
+    @property
+    def as_picture(self) -> bool:
+        """Whether the picture is in front of the tree."""
+        return self.has_class("-picture")
+
+    def show_as_picture(self, picture: bool) -> None:
+        """Bring the picture to the front, or the tree."""
+        if picture != self.as_picture:
+            self.set_class(picture, "-picture")
+
+    @property
+    def as_endpoints(self) -> bool:
+        """Whether the endpoints are in front of message and picture."""
+        return self.has_class("-endpoints")
+
+    def show_as_endpoints(self, endpoints: bool) -> None:
+        """Bring the endpoints to the front, or the message."""
+        if endpoints == self.as_endpoints:
+            return
+        had_focus = self.front.has_focus
+        self.set_class(endpoints, "-endpoints")
+        if endpoints:
+            self.endpoints.show(self._row)
+        if had_focus and self.front.can_focus:
+            self.front.focus()
+
+    def relabel(self) -> None:
+        """Draw again, after the language changed."""
+        self._say()
+        self.endpoints.relabel()
+        self.echo.relabel()
+        self.filter.relabel()
+
+    def _say(self) -> None:
+        head, row = self.query_one(TopicHead), self._row
+        if self.as_endpoints:
+            self.endpoints.show(row)
+        if row is None:
+            head.show(_("no topic is chosen"), "", (), "")
+            self.echo.show_words("", "")
+            return
+        headline, way_out = advice(row)
+        size = None if self._sample is None else self._sample.size_bytes
+        state = figures(row, size)
+        if self.echo.paused:
+            state = [_("PAUSED"), *state]
+        types = " | ".join(row.type_names)
+        if self._sample is not None:
+            # That it is quiet is said by the figures, and most topics may be.
+            quiet = row.trouble is Trouble.QUIET
+            trouble = "" if quiet else " ".join(filter(None, (headline, way_out)))
+            head.show(row.name, types, state, trouble or ends(row))
+            return
+        head.show(row.name, types, state, ends(row))
+        self._say_why_empty(row.name, headline, way_out)
+
+    def _say_why_empty(self, topic: str, headline: str, way_out: str) -> None:
+        waiting = _("waiting for a message"), _("It is shown as soon as one comes.")
+        words = (headline, way_out) if headline else waiting
+        if self.filter.in_force and (self._newest is not None or not headline):
+            words = self.filter.why_none()
+        self.echo.show_words(topic, *words)
+        if self.as_picture:
+            self.picture.show_words(*words)

@@ -1,0 +1,207 @@
+"""The newest message of a topic as a folding tree that stays still while its values change."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.binding import Binding, BindingType
+from textual.geometry import Region, Size
+from textual.message import Message
+
+from tui.topics.echo_lines import EchoLine, echo_lines
+from tui.topics.echo_rows import EchoRows
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from textual.events import Click
+
+    from graph.data import Value
+    from tui.topics.echo_lines import Path
+
+HUGE_JUMP = 1_000_000
+
+
+class EchoTree(EchoRows):
+    """Shows a message as a tree, or words where there is none.
+
+    What is folded belongs to the topic and outlives its messages. While it is paused it keeps
+    what it shows.
+    """
+
+    class PauseChanged(Message):
+        """The tree was paused, or goes on."""
+
+        def __init__(self, paused: bool) -> None:
+            super().__init__()
+            self.paused = paused
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "move(-1)", show=False),
+        Binding("down,j", "move(1)", show=False),
+        Binding("pageup", "page(-1)", show=False),
+        Binding("pagedown", "page(1)", show=False),
+        Binding("home", f"move(-{HUGE_JUMP})", show=False),
+        Binding("end", f"move({HUGE_JUMP})", show=False),
+        Binding("enter", "toggle_fold", show=False),
+        Binding("right,l", "unfold", show=False),
+        Binding("left,h", "fold", show=False),
+    ]
+
+    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self._topic = ""
+        self._message: Mapping[str, Value] | None = None
+        self._waiting: Mapping[str, Value] | None = None
+        """What came while it was paused."""
+        self._folds: dict[str, dict[Path, bool]] = {}
+        self._paused = False
+
+    def show(self, topic: str, message: Mapping[str, Value]) -> None:
+        """Show a message of a topic; another topic ends a pause."""
+        if topic != self._topic:
+            self._begin(topic)
+        if self._paused and self._message is not None:
+            self._waiting = message
+            return
+        self._words = ("", "")
+        self._message = message
+        self._flatten()
+
+    def show_words(self, topic: str, headline: str, detail: str = "") -> None:
+        """Show why there is no message."""
+        if topic != self._topic:
+            self._begin(topic)
+        elif (headline, detail) == self._words and self._message is None:
+            return
+        self._message, self._lines, self._cursor = None, [], 0
+        self._words = (headline, detail)
+        self.virtual_size = Size(0, 0)
+        self.refresh()
+
+    @property
+    def message(self) -> Mapping[str, Value] | None:
+        """The message shown now."""
+        return self._message
+
+    @property
+    def lines(self) -> Sequence[EchoLine]:
+        """The lines of the tree as they are now."""
+        return self._lines
+
+    @property
+    def paused(self) -> bool:
+        """Whether newer messages wait."""
+        return self._paused
+
+    def pause(self, paused: bool) -> None:
+        """Keep what is shown, or go on with the newest message."""
+        if paused == self._paused:
+            return
+        self._paused = paused
+        if not paused and self._waiting is not None:
+            self._message, self._waiting = self._waiting, None
+            self._flatten()
+        self.post_message(self.PauseChanged(paused))
+
+    @property
+    def at_cursor(self) -> Path | None:
+        """The path of the line with the cursor."""
+        line = self._line_at(self._cursor)
+        return None if line is None else line.path
+
+    def mark(self, marks: Mapping[Path, str]) -> None:
+        """Write these letters behind the lines at these paths."""
+        if marks != self._marks:
+            self._marks = dict(marks)
+            self.refresh()
+
+    def relabel(self) -> None:
+        """Draw again, after the language changed."""
+        self._flatten()
+        self.refresh()
+
+    def action_move(self, by: int) -> None:
+        """Move the cursor."""
+        self._move_to(self._cursor + by)
+
+    def action_page(self, pages: int) -> None:
+        """Move the cursor by a page."""
+        self._move_to(self._cursor + pages * max(1, self.size.height - 1))
+
+    def action_toggle_fold(self) -> None:
+        """Fold or unfold the branch at the cursor."""
+        line = self._line_at(self._cursor)
+        if line is not None and line.open is not None:
+            self._set_open(line.path, not line.open)
+
+    def action_unfold(self) -> None:
+        """Unfold the branch at the cursor, or go into it."""
+        line = self._line_at(self._cursor)
+        if line is not None and line.open is False:
+            self._set_open(line.path, True)
+        elif line is not None and line.open:
+            self.action_move(1)
+
+    def action_fold(self) -> None:
+        """Fold the branch at the cursor, or go out to the one it lies in."""
+        line = self._line_at(self._cursor)
+        if line is None:
+            return
+        if line.open:
+            self._set_open(line.path, False)
+            return
+        parents = [i for i, other in enumerate(self._lines) if other.path == line.path[:-1]]
+        if parents:
+            self._move_to(parents[0])
+
+    def on_click(self, event: Click) -> None:
+        """Take the line that was clicked, and fold or unfold it."""
+        index = event.y + self.scroll_offset.y
+        if self._line_at(index) is not None:
+            self._move_to(index)
+            self.action_toggle_fold()
+
+    def _begin(self, topic: str) -> None:
+        self._topic = topic
+        self._message = self._waiting = None
+        self._lines, self._cursor = [], 0
+        self.pause(False)
+        self.scroll_to(0, 0, animate=False, immediate=True)
+
+    def _flatten(self) -> None:
+        if self._message is None:
+            return
+        folds = self._folds.setdefault(self._topic, {})
+        before = self._lines
+        at = before[self._cursor].path if self._cursor < len(before) else None
+        self._lines = echo_lines(self._message, folds.get)
+        if len(before) != len(self._lines):
+            self.virtual_size = Size(0, len(self._lines))
+            self._cursor = self._find(at)
+            self.refresh()
+            return
+        top = self.scroll_offset.y
+        for index in range(top, min(top + self.size.height, len(self._lines))):
+            self._refresh_difference(index, before[index], self._lines[index])
+
+    def _find(self, path: Path | None) -> int:
+        for index, line in enumerate(self._lines):
+            if line.path == path:
+                return index
+        return max(0, min(self._cursor, len(self._lines) - 1))
+
+    def _line_at(self, index: int) -> EchoLine | None:
+        return self._lines[index] if 0 <= index < len(self._lines) else None
+
+    def _set_open(self, path: Path, opened: bool) -> None:
+        self._folds.setdefault(self._topic, {})[path] = opened
+        self._flatten()
+
+    def _move_to(self, index: int) -> None:
+        index = max(0, min(index, len(self._lines) - 1))
+        if index != self._cursor:
+            self.refresh_line(self._cursor)
+            self._cursor = index
+            self.refresh_line(index)
+        self.scroll_to_region(Region(0, index, 1, 1), animate=False, immediate=True)

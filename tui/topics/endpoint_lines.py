@@ -1,0 +1,162 @@
+"""Who is on a topic and by which quality of service, as lines: what does not fit comes first."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rich.cells import cell_len
+
+from graph.qos_fit import LEASE, LIVELINESS, mismatches
+from text.i18n import _, ngettext
+from text.plain import plain
+from tui.topics.endpoint_columns import Column, columns_for, left_over
+from tui.topics.qos_words import pair_words
+from tui.topics.words import names
+from tui.widgets.drawing import Ink, Line, fit
+
+if TYPE_CHECKING:
+    from graph.data import EndpointInfo, TopicRow
+    from graph.qos_fit import Mismatch
+
+MARK = 2
+MOST_PAIRS = 12
+LONGEST = 400
+FITS, MISFIT = "✓", "✗"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A publisher and a subscriber that the middleware does not join, and by which policy."""
+
+    publisher: EndpointInfo
+    subscriber: EndpointInfo
+    mismatch: Mismatch
+
+
+def misfits(row: TopicRow) -> list[Pair]:
+    """Every pair of one type that does not fit."""
+    return [
+        Pair(publisher, subscriber, found)
+        for publisher in row.published_by
+        for subscriber in row.subscribed_by
+        if subscriber.type_name == publisher.type_name
+        for found in mismatches([publisher], [subscriber])
+    ]
+
+
+def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
+    """The topic's endpoints within so many cells: what to mend, publishers, subscribers."""
+    pairs = misfits(row)
+    disagree = len(_types(row)) > 1
+    columns = columns_for(width - MARK)
+    lines = [*_types_lines(row, width)] if disagree else []
+    lines += _pair_lines(pairs, width)
+    if not lines and row.published_by and row.subscribed_by:
+        lines.append([Ink(f"{FITS} ", "good"), Ink(_("every subscriber hears every publisher"))])
+    for is_publisher, ends in ((True, row.published_by), (False, row.subscribed_by)):
+        lines.append([])
+        lines.append(_title(is_publisher, len(ends), columns))
+        for end in ends:
+            at = [
+                pair
+                for pair in pairs
+                if end is (pair.publisher if is_publisher else pair.subscriber)
+            ]
+            bad = frozenset(_column(pair.mismatch.policy) for pair in at)
+            lines += _end_lines(end, columns, bad, width, with_type=disagree)
+        if is_publisher and row.own_publishers:
+            lines.append([Ink(" " * MARK), Ink(_("Deck itself publishes here"))])
+        elif not ends:
+            nobody = _("nobody publishes") if is_publisher else _("nobody listens")
+            lines.append([Ink(" " * MARK), Ink(nobody, "muted")])
+    return [*lines, [], *_notes(row, width)]
+
+
+def _column(policy: str) -> str:
+    """Return the column that shows the policy: the lease stands beside the kind."""
+    return LIVELINESS if policy == LEASE else policy
+
+
+def _types(row: TopicRow) -> list[str]:
+    ends = (*row.published_by, *row.subscribed_by)
+    return list(dict.fromkeys(end.type_name for end in ends))
+
+
+def _types_lines(row: TopicRow, width: int) -> Iterator[Line]:
+    words = _("Peers disagree about the type; a message passes only where both have the same.")
+    yield from _wrapped(MISFIT, words, width, "bad")
+    for type_name in _types(row):
+        publishers = [end for end in row.published_by if end.type_name == type_name]
+        subscribers = [end for end in row.subscribed_by if end.type_name == type_name]
+        parts = []
+        if publishers:
+            parts.append(_("published by {nodes}").format(nodes=names(publishers)))
+        if subscribers:
+            parts.append(_("expected by {nodes}").format(nodes=names(subscribers)))
+        yield from _wrapped("", f"{plain(type_name, LONGEST)}: {', '.join(parts)}", width)
+
+
+def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
+    # A node with two endpoints alike makes two pairs that read the same.
+    told = list(dict.fromkeys(pair_words(pair.mismatch.facts()) for pair in pairs))
+    lines: list[Line] = []
+    for words in told[:MOST_PAIRS]:
+        lines += _wrapped(MISFIT, words, width, "bad")
+    rest = len(told) - MOST_PAIRS
+    if rest > 0:
+        more = ngettext("… and {n} more pair", "… and {n} more pairs", rest).format(n=rest)
+        lines.append([Ink(" " * MARK), Ink(more, "muted")])
+    return lines
+
+
+def _title(is_publisher: bool, count: int, columns: Sequence[Column]) -> Line:
+    title = _("Publishers") if is_publisher else _("Subscribers")
+    texts = [f"{title} ({count})", *(column.title for column in columns[1:])]
+    return [Ink(" " * MARK), *_cells(texts, columns, ["strong", *["muted"] * len(columns)])]
+
+
+def _end_lines(
+    end: EndpointInfo,
+    columns: Sequence[Column],
+    bad: frozenset[str],
+    width: int,
+    *,
+    with_type: bool,
+) -> Iterator[Line]:
+    mark = Ink(f"{MISFIT} ", "bad") if bad else Ink(" " * MARK)
+    looks = ["bad" if column.id in bad else "" for column in columns]
+    texts = [column.text(end) for column in columns]
+    yield [mark, *_cells(texts, columns, looks)]
+    below = [texts[0]] if cell_len(texts[0]) > columns[0].width else []
+    below += [plain(end.type_name, LONGEST)] if with_type else []
+    below += [f"{column.title} {column.text(end)}" for column in left_over(columns)]
+    if below:
+        yield from _wrapped("", " · ".join(below), width, "muted", indent=2 * MARK)
+
+
+def _cells(texts: Sequence[str], columns: Sequence[Column], looks: Sequence[str]) -> Line:
+    last = len(columns) - 1
+    return [
+        Ink(fit(text, column.width) + ("" if place == last else " "), look)
+        for place, (text, column, look) in enumerate(zip(texts, columns, looks, strict=False))
+    ]
+
+
+def _notes(row: TopicRow, width: int) -> Iterator[Line]:
+    ends = (*row.published_by, *row.subscribed_by)
+    if any(not end.history or not end.liveliness for end in ends):
+        words = _("“–” is unknown: the middleware does not send it.")
+        yield from _wrapped("", words, width, "muted")
+
+
+def _wrapped(
+    mark: str, text: str, width: int, look: str = "", *, indent: int = MARK
+) -> Iterator[Line]:
+    """A mark and a text folded beside it; the mark carries the look where there is one."""
+    room = max(8, width - indent)
+    for place, part in enumerate(textwrap.wrap(text, room)):
+        head = Ink((mark if not place else "").ljust(indent), look if mark else "")
+        yield [head, Ink(part, "" if mark else look)]

@@ -1,0 +1,1 @@
+"""Numbers of topics against time, drawn in braille."""

@@ -1,0 +1,251 @@
+"""Numeric fields of topics against time, several in one picture.
+
+Drawn by hand: textual-plot and plotext draw the whole picture anew for each update, and over SSH a
+picture must cost no more than the cells that have changed. Here the window moves by whole cells,
+the axis keeps its numbers while they suit, and what does not change is not sent.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from textual.message import Message
+
+from text.i18n import _, decimal
+from tui.topics.plot.axis import Axis, steadied
+from tui.topics.plot.field import PlotField
+from tui.topics.plot.legend import legend_in_short, legend_lines
+from tui.widgets.drawing import Drawing, Ink, Line
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from graph.data import GraphUpdate, Sample
+    from tui.topics.plot.history import Columns, History
+
+WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
+LOOKS = ("accent", "second", "good", "warn", "bad", "strong")
+NAMES = "ABCDEF"
+"""A curve is known by its letter, whatever its colour."""
+_TICKS_S = {10.0: 1.0, 30.0: 5.0, 60.0: 10.0, 300.0: 30.0}
+WIDE = 100
+"""Cells from which on every tick of time has its label, else every other one."""
+ROWS_PER_TICK = 4
+LEAST_ROWS = 8
+"""Fewer rows than these for the curves: the legend gives way."""
+LABEL_LEAST = 5
+
+
+@dataclass
+class Series:
+    """One field with its name in the picture, its look and its history."""
+
+    field: PlotField
+    letter: str
+    look: str
+    history: History
+    is_number: bool = True
+    """Whether the newest message had a number there."""
+
+    def take(self, sample: Sample) -> None:
+        """Add the number of one message."""
+        number = self.field.number(sample.value)
+        self.is_number = number is not None
+        self.history.add(sample.received_s - sample.age_s, number)
+
+
+class TopicPlot(Drawing):
+    """Shows up to six fields; they are those of any topics and stay until they are taken out."""
+
+    class Changed(Message):
+        """Other fields, another window, or a pause."""
+
+    DEFAULT_CSS = """
+    TopicPlot { height: 1fr; }
+    """
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._series: list[Series] = []
+        self._window_s = WINDOWS_S[1]
+        self._now_s = 0.0
+        self._paused_s: float | None = None
+        self._axis: Axis | None = None
+
+    @property
+    def fields(self) -> tuple[PlotField, ...]:
+        """What is plotted."""
+        return tuple(series.field for series in self._series)
+
+    @property
+    def topics(self) -> set[str]:
+        """The topics of which every message is wanted."""
+        return {series.field.topic for series in self._series}
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no more fields are taken."""
+        return len(self._series) >= len(NAMES)
+
+    @property
+    def window_s(self) -> float:
+        """Seconds from the left edge to the right."""
+        return self._window_s
+
+    @property
+    def paused(self) -> bool:
+        """Whether the picture stands still; what comes meanwhile is kept."""
+        return self._paused_s is not None
+
+    @property
+    def has_value(self) -> bool:
+        """Whether anything is plotted."""
+        return bool(self._series)
+
+    def marks(self, topic: str) -> Mapping[tuple[str | int, ...], str]:
+        """The letters of a topic's fields, by their paths."""
+        return {
+            series.field.path: series.letter
+            for series in self._series
+            if series.field.topic == topic
+        }
+
+    def toggle(self, wanted: PlotField, newest: Sample | None = None) -> bool:
+        """Take a field into the picture, or out of it; tell whether it is in now.
+
+        `newest` is the message that is there already. One more field than there are letters is
+        not taken.
+        """
+        from tui.topics.plot.history import History
+
+        kept = [series for series in self._series if series.field != wanted]
+        if len(kept) == len(self._series):
+            if self.is_full:
+                return False
+            place = min(set(range(len(NAMES))) - {NAMES.index(s.letter) for s in kept})
+            kept.append(Series(wanted, NAMES[place], LOOKS[place], History()))
+            if newest is not None and newest.topic == wanted.topic:
+                kept[-1].take(newest)
+        added = len(kept) > len(self._series)
+        self._series = kept
+        self._axis = None
+        self.redraw()
+        self.post_message(self.Changed())
+        return added
+
+    def clear(self) -> None:
+        """Take everything out."""
+        self._series = []
+        self._axis = self._paused_s = None
+        self.refresh()
+        self.post_message(self.Changed())
+
+    def take(self, update: GraphUpdate) -> None:
+        """Add the messages of an update and draw what has changed."""
+        self._now_s = update.time_s
+        for series in self._series:
+            for sample in update.samples.get(series.field.topic, ()):
+                series.take(sample)
+        if self._series and self.display and not self.paused:
+            self.redraw()
+
+    def next_window(self) -> None:
+        """Look at more seconds, after the most at the fewest again."""
+        at = WINDOWS_S.index(self._window_s)
+        self._window_s = WINDOWS_S[(at + 1) % len(WINDOWS_S)]
+        self._axis = None
+        self.redraw()
+        self.post_message(self.Changed())
+
+    def pause(self, paused: bool) -> None:
+        """Let the picture stand, or go on."""
+        if paused != self.paused:
+            self._paused_s = self._now_s if paused else None
+            self.redraw()
+            self.post_message(self.Changed())
+
+    def draw(self, width: int, height: int) -> list[Line]:
+        """A title, what the letters stand for, and the curves between their axes."""
+        end_s = self._now_s if self._paused_s is None else self._paused_s
+        title = f"{_('Plot')} · {window_text(self._window_s)}"
+        if self.paused:
+            title += f" · {_('PAUSED')}"
+        if height < len(self._series) + LEAST_ROWS + 3:
+            legend = legend_in_short(self._series, width, title)
+        else:
+            legend = legend_lines(self._series, end_s, self._window_s, width, title)
+        rows = height - len(legend) - 1
+        return [*legend, *(self._picture(end_s, width, rows) if rows >= 1 else [])]
+
+    def _picture(self, end_s: float, width: int, rows: int) -> list[Line]:
+        """Curves and axes in so many rows of cells, and the times below."""
+        from tui.topics.plot.curve import curve
+        from tui.topics.plot.grid import Grid
+
+        axis = self._axis = self._suiting_axis(end_s, rows)
+        labels = {self._row_of(tick, axis, rows): axis.label(tick) for tick in axis.ticks}
+        left = max(LABEL_LEAST, *(len(text) for text in labels.values())) + 1
+        across = width - left - 2
+        if across < 2:
+            return []
+        # The window ends at a whole cell: the curves move by cells and keep their shape.
+        cell_s = self._window_s / across
+        edge_s = math.ceil(end_s / cell_s) * cell_s
+        grid = Grid(rows, across, labels)
+        ends: dict[int, Ink] = {}
+        for number, series in enumerate(self._series, start=1):
+            columns = series.history.columns(edge_s, self._window_s, 2 * across)
+            grid.draw(curve(columns, axis, rows), number)
+            self._letter(series, columns, axis, rows, ends)
+        lines = []
+        for row, line in enumerate(grid.lines([series.look for series in self._series])):
+            label = labels.get(row, "").rjust(left - 1) + ("┤" if row in labels else "│")
+            lines.append([Ink(label, "muted"), *line, ends.get(row, Ink(" "))])
+        return [*lines, self._times(left, across)]
+
+    def _suiting_axis(self, end_s: float, rows: int) -> Axis:
+        ranges = [series.history.range(end_s, self._window_s) for series in self._series]
+        known = [one for one in ranges if one is not None]
+        low = min((one[0] for one in known), default=0.0)
+        high = max((one[1] for one in known), default=1.0)
+        return steadied(self._axis, low, high, max(1, rows // ROWS_PER_TICK))
+
+    @staticmethod
+    def _row_of(value: float, axis: Axis, rows: int) -> int:
+        share = (axis.high - value) / (axis.high - axis.low)
+        return min(rows - 1, max(0, round(share * (rows * 4 - 1)) // 4))
+
+    def _letter(
+        self, series: Series, columns: Columns, axis: Axis, rows: int, ends: dict[int, Ink]
+    ) -> None:
+        """Write the letter beside the curve's end; where one stands already, above or below."""
+        numbers = [number for number in columns.last.tolist() if math.isfinite(number)]
+        if not numbers:
+            return
+        row = self._row_of(numbers[-1], axis, rows)
+        free = sorted(set(range(rows)) - set(ends), key=lambda place: abs(place - row))
+        if free:
+            ends[free[0]] = Ink(series.letter, series.look)
+
+    def _times(self, left: int, across: int) -> Line:
+        """Seconds before now below the picture, at round places."""
+        text = " " * (left + across + 1)
+        ticks_s = _TICKS_S[self._window_s] * (1 if across >= WIDE else 2)
+        for tick in range(int(self._window_s / ticks_s) + 1):
+            ago_s = tick * ticks_s
+            word = f"-{window_text(ago_s)}" if ago_s else _("now")
+            share = 1 - ago_s / self._window_s
+            at = min(left + round(share * across) - len(word) // 2, left + across + 1 - len(word))
+            at = max(at, 0)
+            if not text[max(0, at - 2) : at + len(word) + 1].strip():
+                text = text[:at] + word + text[at + len(word) :]
+        return [Ink(text, "muted")]
+
+
+def window_text(seconds: float) -> str:
+    """`30 s`, `5 min`."""
+    if seconds < 120:
+        return _("{n} s").format(n=decimal(f"{seconds:g}"))
+    return _("{n} min").format(n=decimal(f"{seconds / 60:g}"))

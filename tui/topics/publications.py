@@ -1,0 +1,57 @@
+"""What Deck publishes again and again, with how many were sent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.cells import cell_len
+
+from text.i18n import _, decimal, said
+from text.plain import plain
+from tui.widgets.rows import Cell, Column, Row, Rows
+
+if TYPE_CHECKING:
+    from graph.data import Publication
+
+MOST_LINES = 5
+
+
+class Publications(Rows):
+    """One row each; Enter stops the chosen one. There is nothing to see while there is none."""
+
+    DEFAULT_CSS = """
+    Publications { display: none; border-top: solid $panel; }
+    Publications.-some { display: block; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shown: tuple[Publication, ...] = ()
+
+    def show_publications(self, publications: tuple[Publication, ...]) -> None:
+        """Show these."""
+        self._shown = publications
+        columns = (
+            Column(_("Publishing")),
+            Column(_("Hz"), 7, right=True),
+            Column(_("Sent"), max(8, cell_len(_("Sent"))), right=True),
+            Column(_("Subscribers"), 11, right=True),
+        )
+        self.show(columns, [_row(one) for one in publications])
+        self.set_class(bool(publications), "-some")
+        # The header and the line above it come on top of the rows.
+        self.styles.height = min(MOST_LINES, len(publications)) + 2
+
+    @property
+    def chosen_number(self) -> int | None:
+        """Deck's number of the chosen one."""
+        return int(self.chosen) if self._shown and self.chosen else None
+
+
+def _row(one: Publication) -> Row:
+    if one.error:
+        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(said(one.error), 200)}", "bad")
+        return Row(str(one.number), (words,))
+    heard = Cell(str(one.subscribers), "" if one.subscribers else "warn")
+    cells = (Cell(plain(one.topic, 200)), Cell(decimal(f"{one.hz:g}")), Cell(str(one.sent)), heard)
+    return Row(str(one.number), cells)

@@ -1,0 +1,299 @@
+"""The dialog from which messages are published: once, or at a rate."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.containers import Vertical
+from textual.content import Content
+
+from graph.messages.yaml_form import filled
+from graph.messages.yaml_text import is_cut
+from text.i18n import _, decimal, ngettext
+from tui.actions import bindings
+from tui.actions.app import EmergencyStop
+from tui.dialogs.dialog import Dialog
+from tui.frame import title
+from tui.frame.key_bar import KeyBar
+from tui.frame.title_bar import TitleBar
+from tui.topics.publications import Publications
+from tui.topics.publish_actions import PUBLISH_ACTIONS
+from tui.topics.publish_rate import PublishRate
+from tui.topics.publish_target import PublishTarget
+from tui.yaml_form.form import YamlForm
+from tui.yaml_form.type_field import TypeField
+from tui.yaml_form.words import reason_words
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from concurrent.futures import Future
+
+    from textual.app import ComposeResult
+
+    from graph.data import Publication, Sample, TopicRow, Value
+    from tui.session.ports import GraphLink
+    from tui.topics.screen import TopicsScreen
+
+LOOK_S = 0.25
+DONE_WITHIN_S = 8.0
+"""A new publisher may wait four seconds for its subscribers."""
+LONGEST_ARRAY = 1000
+"""Elements of an array that are taken into the form."""
+
+
+def open_publish(screen: TopicsScreen) -> None:
+    """Open the dialog for the topic that is chosen on this screen."""
+    row = screen.table.chosen_row
+    screen.app.push_screen(PublishDialog(row, lambda: screen.detail.sample))
+
+
+class PublishDialog(Dialog[None]):
+    """Topic, type and form; below them a rate, and what is being published now."""
+
+    BINDINGS: ClassVar = bindings(*PUBLISH_ACTIONS)
+    DEFAULT_CSS: ClassVar[str] = """
+    PublishDialog {
+        align: center top; background: $background;
+        TitleBar { dock: top; }
+        #dialog { width: 120; height: 1fr; max-height: 100%; padding: 0 1; }
+        YamlForm { border-top: solid $panel; border-bottom: solid $panel; }
+    }
+    """
+
+    def __init__(self, row: TopicRow | None, sample: Callable[[], Sample | None]) -> None:
+        """Begin with the topic of `row`, a new one for None; `sample` is its newest message."""
+        super().__init__()
+        self._row = row
+        self._sample = sample
+        self._listed: tuple[Publication, ...] | None = None
+
+    def title_words(self) -> str:
+        """Return the title."""
+        return _("Publish a message")
+
+    def words(self) -> Content:
+        """Return nothing: there is no text."""
+        return Content("")
+
+    def compose(self) -> ComposeResult:
+        """Topic and type, the form, the rate, and what is being published."""
+        yield TitleBar()
+        with Vertical(id="dialog"):
+            yield PublishTarget()
+            yield YamlForm(submits=False)
+            yield PublishRate()
+            yield Publications()
+            yield KeyBar()
+
+    def on_mount(self) -> None:
+        """Show the chosen topic, and keep looking at what is published."""
+        # A tab would put its screen in this one's place, above the topics.
+        self.query_one(TitleBar).disabled = True
+        self.redraw()
+        self._look()
+        self.set_interval(LOOK_S, self._look)
+        if self._row is None:
+            self.target.field.focus()
+            return
+        self.target.field.value = self._row.name
+        self._follow_topic()
+        self.form.editor.focus()
+
+    @property
+    def target(self) -> PublishTarget:
+        """The topic and its type."""
+        return self.query_one(PublishTarget)
+
+    @property
+    def rate(self) -> PublishRate:
+        """The rate, and what is said beside it."""
+        return self.query_one(PublishRate)
+
+    @property
+    def form(self) -> YamlForm:
+        """The message."""
+        return self.query_one(YamlForm)
+
+    @property
+    def is_publishing(self) -> bool:
+        """Whether anything is being published."""
+        return bool(self._listed)
+
+    @property
+    def newest(self) -> Sample | None:
+        """The newest message of the topic that stands here, if it is the chosen one."""
+        sample = self._sample()
+        if sample is None or not self.is_mounted:
+            return None
+        return sample if sample.topic == self.target.topic else None
+
+    def redraw(self) -> None:
+        """Say everything in the language spoken now."""
+        dialog = self.query_one("#dialog")
+        dialog.border_title = Content(self.title_words())
+        stop = f"{self.deck.keys_of(EmergencyStop)[-1]} {_(EmergencyStop.title)}"
+        dialog.border_subtitle = Content(stop)
+        self.target.relabel()
+        self.form.relabel()
+        self.rate.relabel()
+        self._listed = None
+        self._look()
+
+    def publish_once(self) -> None:
+        """Publish the message, and say who got it."""
+        ready = self._ready()
+        if ready is not None:
+            graph, topic, value = ready
+            self.rate.tell(lambda: _("Publishing…"))
+            future = graph.publish(topic, self.form.type_name, value)
+            self.run_worker(self._confirm_once(topic, future), group="publish")
+
+    def publish_at_rate(self) -> None:
+        """Publish the message again and again, in place of an earlier one on the same topic."""
+        hz = self.rate.rate_hz()
+        ready = None if hz is None else self._ready()
+        if hz is not None and ready is not None:
+            graph, topic, value = ready
+            before = [one.number for one in self._listed or () if one.topic == topic]
+            future = graph.start_publishing(topic, self.form.type_name, value, hz)
+            self.run_worker(self._confirm_rate(topic, hz, before, future), group="publish")
+
+    def stop_chosen(self) -> None:
+        """Publish the chosen one no more."""
+        number = self.query_one(Publications).chosen_number
+        graph = self.deck.feed.graph
+        if number is None or graph is None:
+            return
+        stopped = next((one.topic for one in self._listed or () if one.number == number), "")
+        graph.stop_publishing(number)
+        self.rate.tell(lambda: _("Stopped: {topic}").format(topic=stopped))
+
+    def take_message(self) -> None:
+        """Fill the form with the newest message."""
+        sample = self.newest
+        if sample is None:
+            return
+        text = filled(sample.type_name, sample.value, most=LONGEST_ARRAY)
+        self.target.type.set(sample.type_name)
+        self.form.load(sample.type_name, text)
+        if is_cut(sample.value, LONGEST_ARRAY):
+            self.rate.tell(lambda: _("Its long arrays were cut: see the remarks."))
+        else:
+            self.rate.tell(lambda: _("Filled in from the newest message."))
+
+    def leave(self) -> None:
+        """Close the list of types if it is open, else the dialog."""
+        if self.target.type.is_listing:
+            self.target.type.close()
+        else:
+            self.dismiss(None)
+
+    @on(PublishTarget.TopicChanged)
+    def _follow_topic(self) -> None:
+        """Take the type of a topic that is there."""
+        row = self._known(self.target.topic)
+        if row is not None and row.type_names and row.type_names[0] != self.form.type_name:
+            self.target.type.set(row.type_names[0])
+            self.form.load(row.type_names[0])
+        self.refresh_bindings()
+
+    @on(PublishTarget.TopicDone)
+    def _topic_done(self) -> None:
+        (self.form.editor if self.form.type_name else self.target.type.field).focus()
+
+    @on(PublishRate.Wanted)
+    def _rate_done(self) -> None:
+        self.publish_at_rate()
+
+    @on(TypeField.Chosen)
+    def _type_chosen(self, message: TypeField.Chosen) -> None:
+        if message.type_name != self.form.type_name:
+            self.form.load(message.type_name)
+        if self.target.type.field.has_focus:
+            self.form.editor.focus()
+
+    @on(Publications.Opened)
+    def _publication_opened(self) -> None:
+        self.stop_chosen()
+
+    @on(YamlForm.Checked)
+    def _checked(self) -> None:
+        if self.form.error is None and self.rate.says_bad:
+            self.rate.tell(lambda: "")
+
+    async def _confirm_once(self, topic: str, future: Future[int]) -> None:
+        heard = await self._outcome(future)
+        if heard is None:
+            return
+        if heard:
+            self.rate.tell(
+                lambda: ngettext(
+                    "Sent: {n} subscriber got it.", "Sent: {n} subscribers got it.", heard
+                ).format(n=heard),
+                "good",
+            )
+        else:
+            self.rate.tell(lambda: _("Sent, but nobody listens to {topic}.").format(topic=topic))
+
+    async def _confirm_rate(
+        self, topic: str, hz: float, before: list[int], future: Future[int]
+    ) -> None:
+        if await self._outcome(future) is None:
+            return
+        graph = self.deck.feed.graph
+        for number in before if graph is not None else ():
+            graph.stop_publishing(number)  # type: ignore[union-attr]
+        words = _("Publishing to {topic} at {hz} Hz.")
+        self.rate.tell(lambda: words.format(topic=topic, hz=decimal(f"{hz:g}")), "good")
+        self._look()
+
+    async def _outcome(self, future: Future[int]) -> int | None:
+        """Wait for what came of it; say why nothing did."""
+        try:
+            return await asyncio.wait_for(asyncio.wrap_future(future), DONE_WITHIN_S)
+        except asyncio.TimeoutError:
+            words = _("ROS did not accept it within {n} s").format(n=decimal(f"{DONE_WITHIN_S:g}"))
+            self.rate.tell(lambda: words, "bad")
+        except Exception as error:  # noqa: BLE001 - whatever it was, it is told
+            reason = reason_words(error)
+            self.rate.tell(lambda: _("Not sent: {reason}").format(reason=reason), "bad")
+        return None
+
+    def _ready(self) -> tuple[GraphLink, str, Mapping[str, Value]] | None:
+        """Return graph, topic and message, or say what is missing and go there."""
+        graph = self.deck.feed.graph
+        topic = self.target.topic
+        if graph is None:
+            self.rate.tell(lambda: _("Not sent: no lesson is running."), "bad")
+        elif not self.target.is_name:
+            self.rate.tell(lambda: _("Not a topic name: letters, digits and _ between /."), "bad")
+            self.target.field.focus()
+        elif not self.form.type_name or self.target.type.value != self.form.type_name:
+            self.rate.tell(lambda: _("Choose the type of {topic}.").format(topic=topic), "bad")
+            self.target.type.field.focus()
+        else:
+            value = self.form.value
+            if value is not None:
+                return graph, topic, value
+            self.rate.tell(lambda: _("Not sent: what is wrong stands below the form."), "bad")
+            self.form.go_to_problem()
+        return None
+
+    def _known(self, topic: str) -> TopicRow | None:
+        update = self.deck.feed.update
+        rows = () if update is None else update.topics
+        return next((row for row in rows if row.name == topic), None)
+
+    def _look(self) -> None:
+        """Show what is published now, and whether the robot is held."""
+        update = self.deck.feed.update
+        publications = () if update is None else update.publications
+        if publications != self._listed:
+            had = self.is_publishing
+            self._listed = publications
+            self.query_one(Publications).show_publications(publications)
+            if had != self.is_publishing:
+                self.refresh_bindings()
+        title.show(self.query_one(TitleBar), self.deck, "topics")

@@ -1,0 +1,279 @@
+"""Every topic with its rates, and the chosen one live."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Input, Static
+
+from graph.housekeeping import is_housekeeping
+from graph.messages.yaml_text import is_cut, to_yaml
+from text.i18n import N_, _, ngettext, said
+from tui.actions import bindings
+from tui.frame import title
+from tui.topics.actions import TOPICS_ACTIONS, Housekeeping
+from tui.topics.detail import TopicDetail
+from tui.topics.echo_filter import EchoFilter
+from tui.topics.echo_tree import EchoTree
+from tui.topics.pictures import TopicsPictures
+from tui.topics.plot.plot import TopicPlot
+from tui.topics.plotting import PlotPlace
+from tui.topics.publish_actions import OpenPublish
+from tui.topics.table import TopicsTable
+from tui.topics.words import size_text
+from tui.widgets.field import Field
+
+if TYPE_CHECKING:
+    from textual.app import ComposeResult
+    from textual.timer import Timer
+
+    from graph.data import Sample, TopicRow
+    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
+
+LONGEST_ARRAY = 2000
+"""Elements of an array that are copied: a clipboard of a terminal (OSC 52) takes little."""
+SETTLED_S = 0.12
+"""How long a choice must stand before its topic is subscribed: whoever walks down the list with
+the arrow keys asks for none of those passed by."""
+
+
+class TopicsScreen(TopicsPictures):
+    """A table of topics and, of the chosen one, the newest message as a tree or a picture."""
+
+    tab: ClassVar[str] = "topics"
+    about: ClassVar[str] = N_(
+        "Every topic of the robot with its type, who publishes and who listens, its rate and "
+        "bandwidth, and how old its newest message is. The chosen one is shown live below or "
+        "beside: as a tree that folds, an image as a picture. Where nothing comes, it says why."
+    )
+    measure_all = True
+    BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS, OpenPublish)
+    DEFAULT_CSS = """
+    TopicsScreen {
+        #topics-bar { height: 1; }
+        #topics-filter { width: 1fr; }
+        #topics-count { width: auto; padding: 0 1; color: $text-muted; }
+        #topics-body { height: 1fr; layout: vertical; }
+        TopicsTable { height: auto; min-height: 4; max-height: 50%; }
+        TopicDetail { border-top: solid $panel; }
+    }
+    TopicsScreen.-wide {
+        #topics-body { layout: horizontal; }
+        TopicsTable { width: 2fr; height: 1fr; max-height: 100%; }
+        TopicDetail { width: 1fr; border-top: none; border-left: solid $panel; }
+    }
+    TopicsScreen.-flat TopicDetail { border-top: none; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._settling: Timer | None = None
+        self._offered_with_message = False
+        """Whether the keys were offered beside a message."""
+        self._listed: tuple[TopicRow, ...] = ()
+        self._missed: Sample | None = None
+        """What would have been shown while another screen was in front."""
+
+    def compose_body(self) -> ComposeResult:
+        """The filter above table and message."""
+        with Horizontal(id="topics-bar"):
+            yield Field(id="topics-filter", compact=True, select_on_focus=False)
+            yield Static(id="topics-count", markup=False)
+        with Vertical(id="topics-body"):
+            yield TopicsTable()
+            yield TopicDetail()
+            yield TopicPlot()
+
+    @property
+    def filter(self) -> Input:
+        """Where the words of the filter are typed."""
+        return self.query_one("#topics-filter", Input)
+
+    def watch_topics(self) -> set[str]:
+        """The chosen one."""
+        chosen = self.table.chosen if self.is_mounted else None
+        return set() if chosen is None else {chosen}
+
+    def on_mount(self) -> None:
+        """Begin in the table."""
+        self.table.focus()
+        self._label()
+
+    def on_graph_changed(self, message: GraphChanged) -> None:
+        """Show rates, and the newest message of the chosen topic."""
+        update = message.update
+        self.plot.take(update)
+        samples = update.samples.get(self.table.chosen or "", ())
+        self._missed = self.detail.fitting(samples) or self._missed
+        if self.feed.front is not self:
+            return
+        if self.is_time_for_rates(update.time_s):
+            self._listed = tuple(row for row in update.topics if self._is_listed(row))
+            self.table.show(self._listed)
+            self.detail.show_topic(self.table.chosen_row)
+            self._count()
+        if not self.table.shown:
+            self.table.show_words(*self._why_none())
+        missed, self._missed = self._missed, None
+        if missed is not None and missed.topic == self.table.chosen:
+            self.show_message(missed)
+        if self._offered_with_message is not self.has_message:
+            self._offered_with_message = self.has_message
+            self.refresh_bindings()
+
+    def on_session_changed(self, message: SessionChanged) -> None:
+        """Forget the topics of a session that has ended."""
+        del message
+        if self.feed.link is None:
+            self._listed = ()
+            self.table.show(())
+            self.plot.clear()
+            self._label()
+
+    def on_language_changed(self, message: LanguageChanged) -> None:
+        """Say everything anew."""
+        del message
+        self._label()
+        self.detail.relabel()
+        self.plot.words_changed()
+
+    @on(TopicsTable.Chosen)
+    def _chosen(self) -> None:
+        self.detail.show_topic(self.table.chosen_row)
+        self.mark_plotted()
+        self.keep_pace()
+        self._offered_with_message = self.has_message
+        self.refresh_bindings()
+        if self._settling is not None:
+            self._settling.stop()
+        self._settling = self.set_timer(SETTLED_S, self.topics_changed)
+
+    @property
+    def has_message(self) -> bool:
+        """Whether a message of the chosen topic is shown, or held."""
+        return self.detail.echo.message is not None
+
+    def follow_topics(self) -> set[str]:
+        """Those that are plotted, and the chosen one while an expression looks at each message."""
+        followed = super().follow_topics()
+        if self.is_mounted and self.table.chosen and self.detail.filter.in_force:
+            return {*followed, self.table.chosen}
+        return followed
+
+    @on(EchoFilter.Changed)
+    def _expression_changed(self) -> None:
+        found = self.detail.filter_anew()
+        if found is not None:
+            self.show_message(found)
+        self.topics_changed()
+
+    @on(Input.Submitted, "#echo-filter")
+    def _expression_done(self) -> None:
+        self.detail.echo.focus()
+
+    @on(TopicsTable.Opened)
+    def _opened(self) -> None:
+        front = self.detail.front
+        (front if front.can_focus else self.detail.echo).focus()
+
+    @on(TopicsTable.Arranged)
+    def _arranged(self) -> None:
+        self._count()
+
+    @on(EchoTree.PauseChanged)
+    def _pause_changed(self) -> None:
+        self.detail.relabel()
+        self.keep_pace()
+        self.refresh_bindings()
+
+    @on(Input.Changed, "#topics-filter")
+    def _filter_changed(self, event: Input.Changed) -> None:
+        self.table.filter(event.value)
+
+    @on(Input.Submitted, "#topics-filter")
+    def _filter_done(self) -> None:
+        self.table.focus()
+
+    def key_escape(self) -> None:
+        """Leave the filter and show every topic again, or leave the message or the plot."""
+        if self.plot_place is PlotPlace.ALONE:
+            self.show_plot(PlotPlace.BESIDE)
+        if self.focused in (self.filter, self.table):
+            self.filter.value = ""
+        if self.focused is self.detail.filter.field:
+            self.detail.filter.close()
+        self.table.focus()
+
+    def focus_filter(self) -> None:
+        """Put the cursor into the filter."""
+        self.set_focus(self.filter)
+
+    def filter_messages(self) -> None:
+        """Put the cursor into the expression that messages are to fit."""
+        self.detail.show_as_endpoints(False)
+        self.detail.filter.open()
+
+    def toggle_housekeeping(self) -> None:
+        """Show or hide topics of ROS itself."""
+        order = self.table.order
+        self.table.reorder(replace(order, housekeeping=not order.housekeeping))
+
+    def toggle_endpoints(self) -> None:
+        """Show who is on the chosen topic and by which QoS, or its message."""
+        self.detail.show_as_endpoints(not self.detail.as_endpoints)
+        self.keep_pace()
+        self.refresh_bindings()
+
+    def copy_message(self) -> None:
+        """Copy the message that is shown as YAML."""
+        message = self.detail.echo.message
+        if message is None:
+            self.notify(_("There is no message to copy."), severity="warning", markup=False)
+            return
+        text = to_yaml(message, most=LONGEST_ARRAY)
+        self.app.copy_to_clipboard(text)
+        words = _("Copied as YAML: {size}.").format(size=size_text(len(text.encode())))
+        if is_cut(message, LONGEST_ARRAY):
+            words += " " + _("Long arrays were cut.")
+        self.notify(words, markup=False)
+
+    def _is_listed(self, row: TopicRow) -> bool:
+        """Leave out what only Deck has asked for; the chosen one stays when all have left it."""
+        return bool(row.publishers or row.subscribers) or row.name == self.table.chosen
+
+    def _label(self) -> None:
+        self.filter.placeholder = _("filter: words of a name or a type")
+        self.table.show_words(*self._why_none())
+        self._count()
+
+    def _why_none(self) -> tuple[str, str]:
+        """Return headline and detail for a table without topics."""
+        update = self.feed.update
+        if self.feed.link is None:
+            return _("no lesson is running"), ""
+        if update is not None and update.error:
+            return self.feed.blind, said(update.error)
+        if title.starting(self.deck):
+            return _("no topics yet"), _("Nodes are starting.")
+        listed = () if update is None else tuple(filter(self._is_listed, update.topics))
+        if update is None or not all(is_housekeeping(row.name) for row in listed):
+            return _("no topics yet"), ""
+        if not listed:
+            return _("no topics"), _("Nobody publishes anything, and nobody listens.")
+        key = self.deck.keys_of(Housekeeping)[0]
+        words = _("There are only those of ROS itself: {key} shows them.").format(key=key)
+        return _("no topics of the robot"), words
+
+    def _count(self) -> None:
+        everything = len(self._listed)
+        shown = len(self.table.shown)
+        words = ngettext("{n} topic", "{n} topics", everything)
+        if shown != everything:
+            words = ngettext("{shown} of {n} topic", "{shown} of {n} topics", everything)
+        words = words.format(shown=shown, n=everything)
+        count = self.query_one("#topics-count", Static)
+        if words != getattr(count, "content", None):
+            count.update(words)

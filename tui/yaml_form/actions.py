@@ -1,0 +1,41 @@
+"""What can be done in a form of YAML."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from text.i18n import N_
+from tui.actions.action import Action
+
+if TYPE_CHECKING:
+    from tui.yaml_form.form import YamlForm
+
+
+class SubmitForm(Action["YamlForm"]):
+    """The message as it is filled in."""
+
+    id = "form.submit"
+    key = "ctrl+s"
+    title = N_("Submit")
+    means = "submit"
+    tooltip = N_("Take the message as it is filled in, if nothing is wrong with it.")
+    footer = True
+    priority = True
+
+    @classmethod
+    def possible(cls, target: YamlForm) -> bool | None:
+        """Only where the form is what is submitted."""
+        return target.submits
+
+    @classmethod
+    def label(cls, target: YamlForm) -> str:
+        """By what becomes of it."""
+        return target.submit_title or cls.title
+
+    @classmethod
+    async def run(cls, target: YamlForm) -> None:
+        """Check and take it."""
+        target.submit()
+
+
+FORM_ACTIONS = (SubmitForm,)

@@ -1,0 +1,26 @@
+"""A text field for a message as YAML."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from graph.messages.yaml_scalars import escaped
+from tui.widgets.marked_editor import MarkedEditor
+from tui.yaml_form.tokens import tokens
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from tui.widgets.marked_editor import Token
+
+
+class YamlEditor(MarkedEditor):
+    """Edits YAML; Enter begins the next line below the beginning of this one."""
+
+    def escaped(self, character: str) -> str:
+        """Return the escape of YAML for a character."""
+        return escaped(character)
+
+    def tokens_of(self, line: str) -> Iterable[Token]:
+        """Return the tokens of YAML."""
+        return tokens(line)

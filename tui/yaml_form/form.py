@@ -1,0 +1,244 @@
+"""A message to be filled in as YAML, checked against its type as one types."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import on
+from textual.containers import Vertical
+from textual.message import Message
+from textual.widgets import Static, TextArea
+
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.messages.yaml_form import check, prefilled
+from graph.messages.yaml_text import YamlError
+from text.i18n import _
+from text.plain import plain
+from tui.actions import Acting, bindings
+from tui.widgets.working import Working
+from tui.yaml_form.actions import FORM_ACTIONS
+from tui.yaml_form.editor import YamlEditor
+from tui.yaml_form.words import place_of, wrong_words
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from textual.app import ComposeResult
+    from textual.events import Click
+    from textual.timer import Timer
+    from textual.worker import Worker
+
+    from graph.data import Value
+    from tui.yaml_form.words import Wrong
+
+CHECKED_AFTER_S = 0.15
+
+
+class YamlForm(Vertical, Acting, Working):
+    """An editor with a verdict below it that names line, field and what was expected."""
+
+    class Submitted(Message):
+        """The form was filled in and is right; Ctrl+S was pressed."""
+
+        def __init__(self, form: YamlForm, value: Mapping[str, Value]) -> None:
+            super().__init__()
+            self.form = form
+            self.value = value
+
+        @property
+        def control(self) -> YamlForm:
+            """The form."""
+            return self.form
+
+    class Checked(Message):
+        """The text was looked at: `form.error` says what is wrong, None if nothing is."""
+
+        def __init__(self, form: YamlForm) -> None:
+            super().__init__()
+            self.form = form
+
+        @property
+        def control(self) -> YamlForm:
+            """The form."""
+            return self.form
+
+    BINDINGS: ClassVar = bindings(*FORM_ACTIONS)
+    DEFAULT_CSS = """
+    YamlForm {
+        height: 1fr;
+        & > Static {
+            height: auto; max-height: 3; background: $panel; color: $success; padding: 0 1;
+        }
+        &.-wrong > Static { color: $text-error; text-style: bold; }
+        &.-waits > Static { color: $text-muted; }
+    }
+    """
+
+    def __init__(
+        self,
+        type_name: str = "",
+        *,
+        submit_title: str = "",
+        submits: bool = True,
+        type_is_given: bool = False,
+        id: str = "",
+    ) -> None:
+        """Begin with a type's form; `submit_title` (an `N_`) is what the footer calls Ctrl+S.
+
+        `submits=False` leaves Ctrl+S to the screen around it. `type_is_given`: nobody can choose
+        it, it comes by itself.
+        """
+        super().__init__(id=id or None)
+        self.type_name = type_name
+        self.submit_title = submit_title
+        self.submits = submits
+        self.type_is_given = type_is_given
+        self.error: Wrong | None = None
+        """What is wrong with the text as it was last checked."""
+        self._value: Mapping[str, Value] | None = None
+        self._checked: str | None = None
+        """The text that was checked."""
+        self._timer: Timer | None = None
+        self._loading = False
+
+    def compose(self) -> ComposeResult:
+        """The editor above the verdict."""
+        yield YamlEditor()
+        yield Static(markup=False)
+
+    def on_mount(self) -> None:
+        """Show the form of the type."""
+        if self.type_name:
+            self.load(self.type_name)
+        else:
+            self.relabel()
+
+    @property
+    def editor(self) -> YamlEditor:
+        """Where it is filled in."""
+        return self.query_one(YamlEditor)
+
+    @property
+    def text(self) -> str:
+        """What stands in the form."""
+        return self.editor.text
+
+    @property
+    def value(self) -> Mapping[str, Value] | None:
+        """The fields as they are filled in, None while something is wrong."""
+        self.check_now()
+        return None if self._loading else self._value
+
+    @property
+    def verdict(self) -> str:
+        """What is said below."""
+        return str(self.query_one(Static).content)
+
+    def load(self, type_name: str, text: str | None = None) -> Worker[None]:
+        """Show the form of another type, or `text` in it; wait for the worker to see it there."""
+        self.type_name = type_name
+        self._loading = True
+        self._forget()
+        return self.run_worker(self._load(type_name, text), group="load", exclusive=True)
+
+    def submit(self) -> None:
+        """Check, and tell that it was submitted; what is wrong is gone to instead."""
+        value = self.value
+        if value is None:
+            self.go_to_problem()
+            self.app.bell()
+        else:
+            self.post_message(self.Submitted(self, value))
+
+    def go_to_problem(self) -> None:
+        """Put the cursor where it is wrong."""
+        place = None if self.error is None else place_of(self.error)
+        if place is not None:
+            self.editor.go_to(place)
+
+    def check_now(self) -> None:
+        """Check what stands there, at once; the screen waits for it."""
+        if self.type_name and not self._loading and self.text != self._checked:
+            self._take(self.text, _checked(self.type_name, self.text))
+
+    def relabel(self) -> None:
+        """Say the verdict anew, after the language changed."""
+        words = "✓ " + _("fits {type}").format(type=plain(self.type_name, 100))
+        if self._loading or (self.type_is_given and not self.type_name):
+            words = _("the form is being loaded…")
+        elif not self.type_name:
+            words = _("choose a type first")
+        elif self._checked is None:
+            words = "…"
+        elif self.error is not None:
+            words = f"✗ {wrong_words(self.error)}"
+        self.set_class(self.error is not None, "-wrong")
+        self.set_class(self._checked is None, "-waits")
+        self.query_one(Static).update(words)
+
+    async def _load(self, type_name: str, text: str | None) -> None:
+        # The first look at a package imports it, which takes its time.
+        try:
+            form = await asyncio.to_thread(prefilled, type_name)
+        except UnknownTypeError as error:
+            self._loading = False
+            self.editor.replace_all(text or "")
+            self._take(self.text, error)
+            return
+        self._loading = False
+        self.editor.replace_all(form if text is None else text)
+        await self._check()
+
+    def on_click(self, event: Click) -> None:
+        """The verdict leads to what is wrong."""
+        if isinstance(event.widget, Static):
+            self.go_to_problem()
+
+    @on(TextArea.Changed)
+    def _text_changed(self, event: TextArea.Changed) -> None:
+        event.stop()
+        if self._timer is not None:
+            self._timer.stop()
+        self._timer = self.set_timer(CHECKED_AFTER_S, self._check_soon)
+
+    @on(YamlEditor.TooLong)
+    def _too_long(self, event: YamlEditor.TooLong) -> None:
+        event.stop()
+        words = _("Not pasted: {limit} bytes at most.").format(limit=YamlEditor.longest)
+        self.notify(words, severity="warning", markup=False)
+
+    def _check_soon(self) -> None:
+        if self.type_name and not self._loading and self.text != self._checked:
+            self.run_worker(self._check(), group="check", exclusive=True)
+
+    async def _check(self) -> None:
+        type_name, text = self.type_name, self.text
+        found = await asyncio.to_thread(_checked, type_name, text)
+        if (type_name, text) == (self.type_name, self.text):
+            self._take(text, found)
+
+    def _forget(self) -> None:
+        self._checked = self._value = self.error = None
+        self.editor.show_problems(())
+        self.relabel()
+
+    def _take(self, text: str, found: Mapping[str, Value] | Wrong) -> None:
+        """Show what came of checking this text."""
+        self._checked = text
+        if isinstance(found, (YamlError, FieldError, UnknownTypeError)):
+            self.error, self._value = found, None
+        else:
+            self.error, self._value = None, found
+        place = None if self.error is None else place_of(self.error)
+        self.editor.show_problems(() if place is None else (place,))
+        self.relabel()
+        self.post_message(self.Checked(self))
+
+
+def _checked(type_name: str, text: str) -> Mapping[str, Value] | Wrong:
+    try:
+        return check(type_name, text)
+    except (YamlError, FieldError, UnknownTypeError) as error:
+        return error

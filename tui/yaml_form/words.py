@@ -1,0 +1,40 @@
+"""What is wrong with a form of YAML, said in the language of the screen."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+from graph.messages.making import FieldError
+from graph.messages.types import UnknownTypeError
+from graph.messages.yaml_text import YamlError
+from text.i18n import _, said
+from text.plain import plain
+from tui.widgets.marked_editor import Place
+
+LONGEST = 300
+
+Wrong: TypeAlias = YamlError | FieldError | UnknownTypeError
+"""All that checking a form may raise."""
+
+
+def place_of(error: Wrong) -> Place | None:
+    """Return where it is wrong, None for a type that is not there."""
+    line = getattr(error, "line", None)
+    return None if line is None else Place(line, getattr(error, "column", None) or 1)
+
+
+def wrong_words(error: Wrong) -> str:
+    """The line, the field and the mend: `line 3: drive.speed: expected a number, got 'b'`."""
+    place = place_of(error)
+    line = "" if place is None else _("line {line}").format(line=place.line)
+    field = error.field if isinstance(error, FieldError) else ""
+    message = error.reason if isinstance(error, UnknownTypeError) else error.message
+    return plain(": ".join(part for part in (line, field, said(message)) if part), LONGEST)
+
+
+def reason_words(error: Exception) -> str:
+    """Why something was not sent, whatever was raised."""
+    if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
+        return wrong_words(error)
+    words = getattr(error, "words", None)
+    return plain(said(words) if words else str(error) or type(error).__name__, LONGEST)
