@@ -1,4 +1,4 @@
-"""The message catalogues as files: `python -m text.i18n compile|missing`.
+"""The message catalogues as files: `python -m text.catalogue compile|missing`.
 
 For those who write the screen; the screen itself reads only the compiled catalogue.
 """
@@ -85,5 +85,9 @@ def main(arguments: list[str]) -> int:
         gaps = missing("ru")
         print("\n".join(gaps))  # noqa: T201
         return 1 if gaps else 0
-    print("usage: python -m text.i18n compile|missing", file=sys.stderr)  # noqa: T201
+    print("usage: python -m text.catalogue compile|missing", file=sys.stderr)  # noqa: T201
     return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

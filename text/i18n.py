@@ -116,9 +116,3 @@ def _in_words(value: object) -> object:
 def pick(texts: Mapping[str, str]) -> str:
     """Return the text in the language spoken now out of {code: text}, else English, else any."""
     return plain(texts.get(_language) or texts.get("en") or next(iter(texts.values()), ""))
-
-
-if __name__ == "__main__":
-    from text.catalogue import main
-
-    sys.exit(main(sys.argv[1:]))
