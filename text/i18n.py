@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gettext as _gettext
 import os
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -93,7 +93,9 @@ def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
             said = tuple(compiled.ngettext(*entry.id, number) for number in (1, 2, 5))
             assert said == tuple(entry.string), "run: python -m text.catalogue compile"
         else:
-            assert compiled.gettext(entry.id) == entry.string, "run: python -m text.catalogue compile"
+            assert compiled.gettext(entry.id) == entry.string, (
+                "run: python -m text.catalogue compile"
+            )
 
 
 def test_compiling_the_same_catalogue_again_makes_the_same_file(

@@ -6,8 +6,9 @@ import os
 import subprocess
 import sys
 
-from launcher.status import SessionInfo
 from tui.launchpad import LivePad
+
+from launcher.status import SessionInfo
 
 OPENED = """
 import asyncio, sys
