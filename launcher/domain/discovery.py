@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from launcher.words import Words
 
-PROFILES = Path(__file__).resolve().parents[1] / "graph" / "fastdds.xml"
+PROFILES = Path(__file__).resolve().parents[2] / "graph" / "fastdds.xml"
 
 VARIABLES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
 """Today's name and the one before; whichever the user has set is left alone."""

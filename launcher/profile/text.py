@@ -13,7 +13,7 @@ from launcher.words import say
 if TYPE_CHECKING:
     from launcher.profile.tree import Problems
 
-SHIPPED = Path(__file__).resolve().parent.parent / "profiles"
+SHIPPED = Path(__file__).resolve().parents[2] / "profiles"
 """The profiles of the course."""
 MAX_BYTES = 256 * 1024
 
