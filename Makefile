@@ -20,7 +20,7 @@ ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 
-ROOMS := bench cli graph launcher nodes robot scripts tests text tui
+ROOMS := bench cli deck graph launcher nodes robot scripts tests text tui
 
 .PHONY: help setup run test lint lock clean
 .DEFAULT_GOAL := help

@@ -15,6 +15,8 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from launcher.node_program import INSTALLATION, is_ours
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import ModuleType
@@ -52,8 +54,12 @@ class SharedModules:
         """In a forked node: drop what is no longer as it was imported.
 
         The `__init__` of the package that `module`, the node's own, is in runs again: it may look
-        at the command line.
+        at the command line. A node that is not Deck's may mean another package than Deck's.
         """
+        if not is_ours(module):
+            for package in _packages_of_deck():
+                if _elsewhere(package):
+                    _forget(package)
         for package, stamps in self._packages.items():
             if package not in sys.modules:
                 continue
@@ -62,6 +68,20 @@ class SharedModules:
                     sys.modules.pop(name, None)
             elif module.startswith(f"{package}."):
                 importlib.reload(sys.modules[package])
+
+
+def _packages_of_deck() -> list[str]:
+    """Return those that have been imported here, for whatever reason."""
+    return [
+        name
+        for name in os.listdir(INSTALLATION)  # noqa: PTH208
+        if str(getattr(sys.modules.get(name), "__file__", "")).startswith(f"{INSTALLATION}/{name}/")
+    ]
+
+
+def _forget(package: str) -> None:
+    for name in [name for name in sys.modules if name.partition(".")[0] == package]:
+        del sys.modules[name]
 
 
 @contextlib.contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,12 +14,13 @@ from tests.unit.profile_files import written
 
 PLANTED = (
     *("nodes/__init__.py", "nodes/hello.py", "nodes/parts/life.py", "launcher/__init__.py"),
-    *("launcher/supervisor/main.py", "rclpy/__init__.py", "std_msgs/__init__.py", "cli.py"),
+    *("launcher/supervisor/main.py", "rclpy/__init__.py", "std_msgs/__init__.py", "tui/app.py"),
     *("graph/__init__.py", "numpy.py", "yaml.py", "json.py", "psutil.py", "sitecustomize.py"),
-    *("usercustomize.py", "text/__init__.py", "robot/__init__.py", "runpy.py", "cv2.py"),
+    *("usercustomize.py", "cli/main.py", "text/__init__.py", "robot/__init__.py", "runpy.py"),
+    "cv2.py",
 )
 SCRIPT = [str(Path(sys.executable).with_name("deck"))]
-MODULE = [sys.executable, "-m", "tui"]
+MODULES = [[sys.executable, "-m", "tui"], [sys.executable, "-m", "deck"]]
 
 
 @pytest.fixture
@@ -80,15 +82,14 @@ def test_the_empty_part_of_a_python_path_is_not_the_current_folder(folder: Path)
     assert "[hello]" in said
 
 
-@pytest.mark.parametrize("command", [SCRIPT, MODULE])
+@pytest.mark.parametrize("command", [SCRIPT, *MODULES])
 @pytest.mark.parametrize("words", [("check", "01-hello"), ("list",), ("doctor",), ("ps",)])
 def test_no_command_takes_what_lies_in_the_current_folder(
     folder: Path, command: list[str], words: tuple[str, ...]
 ) -> None:
-    if command is MODULE:
+    if command in MODULES:
         # Python itself looks for the package `tui` there, and is asked to.
-        (folder / "tui" / "cli.py").unlink()
-        (folder / "tui").rmdir()
+        shutil.rmtree(folder / "tui")
     deck(folder, command, *words)
     assert taken(folder) == ""
 
@@ -118,3 +119,30 @@ def test_a_node_of_ones_own_is_run_from_the_folder_of_its_profile(
     said = deck(start, SCRIPT, "run", "mine.yaml", "--for", "2")
     file = lesson / "parts" / "my_sonar.py"
     assert f"told beside a __main__ {start} {file}" in said
+
+
+@pytest.mark.usefixtures("domain")
+@pytest.mark.parametrize("warm", ["true", "false"])
+def test_a_node_of_ones_own_gets_what_others_have_installed_under_a_name_of_decks(
+    tmp_path: Path, warm: str
+) -> None:
+    names = ("graph", "text", "nodes", "launcher")
+    for name in names:
+        (tmp_path / "installed" / name).mkdir(parents=True)
+        (tmp_path / "installed" / name / "__init__.py").write_text("WHOSE = 'mine'\n")
+    (tmp_path / "my_node.py").write_text(
+        f"import {', '.join(names)}\n"
+        "import robot.kinematics\n"
+        f"print('told', {', '.join(f'{name}.WHOSE' for name in names)})\n"
+        "import rclpy\n"
+        "rclpy.init()\n"
+        "rclpy.spin_once(rclpy.create_node('anything'), timeout_sec=0.1)\n"
+        "__import__('time').sleep(60)\n"
+    )
+    text = f"{{a: {{run: ./my_node.py, warm: {warm}}}, hello: {{run: nodes.hello, warm: {warm}}}}}"
+    profile = written(tmp_path, f"nodes: {text}")
+    path = str(tmp_path / "installed")
+    said = deck(tmp_path, SCRIPT, "run", str(profile), "--for", "3", PYTHONPATH=path)
+    assert "told mine mine mine mine" in said
+    assert "[hello]" in said
+    assert "Error" not in said

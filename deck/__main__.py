@@ -1,0 +1,7 @@
+"""`python -m deck` is `deck`."""
+
+import sys
+
+from deck import main
+
+sys.exit(main())

@@ -1,0 +1,35 @@
+"""An installed wheel at work: a lesson, and one node alone, beside packages of the same names."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.installed_wheel import Installed
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
+    """The wheel, installed beside a `graph`, a `text` and the rest that are somebody else's."""
+    return Installed(tmp_path_factory.mktemp("installed"))
+
+
+@pytest.mark.parametrize("warm", ["true", "false"])
+@pytest.mark.usefixtures("ros_domain")
+def test_a_lesson_runs(installed: Installed, warm: str) -> None:
+    profile = installed.site.parent / "mine.yaml"
+    profile.write_text(
+        "extends: 02-sonar-safety\n"
+        f"nodes: {{sonar_front: {{warm: {warm}}}, safety_stop: {{warm: {warm}}}}}\n"
+    )
+    said = installed.deck("run", str(profile), "--for", "4", "--lang", "en")
+    assert "[sonar_front]" in said
+    assert "every node" in said
+    assert not installed.imported.exists()
+
+
+@pytest.mark.usefixtures("ros_domain")
+def test_a_node_runs_alone(installed: Installed) -> None:
+    words = ("--ros-args", "-p", "no_such_parameter:=1")
+    said = installed.python("-m", "deck.nodes.hello", *words, code=2)
+    assert "no_such_parameter" in said
+    assert not installed.imported.exists()
