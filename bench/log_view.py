@@ -15,9 +15,9 @@ import time
 from textual.app import App, ComposeResult
 
 from launcher.status import LogLine, Severity
-from tui.logs.filter import LogFilter
-from tui.logs.pane import LogPane
-from tui.logs.view import LogView
+from tui.log_view.filter import LogFilter
+from tui.log_view.pane import LogPane
+from tui.log_view.view import LogView
 
 LINES_PER_S = 10_000
 BATCHES_PER_S = 20

@@ -13,11 +13,11 @@ from rich.cells import cell_len
 from textual.app import App, ComposeResult
 
 from launcher.status import LogLine, Severity
-from tui.logs.bar import LogBar
-from tui.logs.filter import LogFilter
-from tui.logs.pane import LogPane
-from tui.logs.prompt import LogPrompt
-from tui.logs.view import LogView
+from tui.log_view.bar import LogBar
+from tui.log_view.filter import LogFilter
+from tui.log_view.pane import LogPane
+from tui.log_view.prompt import LogPrompt
+from tui.log_view.view import LogView
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot

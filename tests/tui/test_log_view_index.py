@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from launcher.status import LogLine, Severity
-from tui.logs.filter import LogFilter
-from tui.logs.index import LogIndex, folded, folded_rows
-from tui.logs.ring import Entry, LogRing
-from tui.logs.rows import text_of
+from tui.log_view.filter import LogFilter
+from tui.log_view.index import LogIndex, folded, folded_rows
+from tui.log_view.ring import Entry, LogRing
+from tui.log_view.rows import text_of
 
 TEXTS = (
     "",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from launcher.status import LogLine, Severity
-from tui.logs.ring import LONGEST_TEXT, LogRing
+from tui.log_view.ring import LONGEST_TEXT, LogRing
 
 
 def line(node: str, seq: int, text: str = "hello", severity: Severity = Severity.INFO) -> LogLine:

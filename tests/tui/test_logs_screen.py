@@ -16,7 +16,7 @@ from launcher.status import Severity
 from tests.tui.recorded import LINES, RecordedPad, RecordedSession, line
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
 from tui.frame.key_bar import KeyBar
-from tui.logs.bar import LogBar
+from tui.log_view.bar import LogBar
 from tui.logs.screen import LogsScreen
 
 HOME = Look((120, 40), "en")

@@ -13,7 +13,7 @@ from launcher.status import NodeState, NodeStatus, SessionInfo
 from tests.unit.bags import write_bag
 from text.fractions import with_comma
 from text.i18n import said, set_language
-from tui.logs.filter_nodes import short_count
+from tui.logs.node_list import short_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -20,7 +20,7 @@ from tui.deck.command_line import CommandLine
 from tui.deck.nodes_table import NodesTable
 from tui.deck.panels import ScreenWithPanels
 from tui.graph.pane import GraphHead
-from tui.logs.pane import LogPane
+from tui.log_view.pane import LogPane
 from tui.panels.panel import row_of
 from tui.session.messages import SessionChanged
 from tui.teleop.actions import OpenTeleop
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from textual.binding import BindingType
     from textual.events import Resize
 
-    from tui.logs.filter import LogFilter
+    from tui.log_view.filter import LogFilter
     from tui.session.messages import (
         GraphChanged,
         LanguageChanged,

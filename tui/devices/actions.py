@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 from text.i18n import N_
 from tui.actions.action import Action
 from tui.devices import trouble as device_trouble
-from tui.logs import line_actions as lines
+from tui.log_view import actions as lines
 
 if TYPE_CHECKING:
     from tui.devices.screen import DevicesScreen

@@ -10,9 +10,9 @@ from textual.strip import Strip
 
 from text.i18n import _
 from tui.devices.frame_rows import WAYS
-from tui.logs.pane import LogPane
-from tui.logs.rows import Columns
-from tui.logs.view import LogView
+from tui.log_view.pane import LogPane
+from tui.log_view.rows import Columns
+from tui.log_view.view import LogView
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

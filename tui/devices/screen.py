@@ -21,7 +21,7 @@ from tui.devices.frames_view import FramesPane, FramesView
 from tui.devices.reading import TOPIC, Device, DeviceBook, frames_topic
 from tui.devices.table import DevicesTable
 from tui.frame.screen import DeckScreen
-from tui.logs.tail import TailView
+from tui.log_view.tail import TailView
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

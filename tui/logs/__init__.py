@@ -1,1 +1,4 @@
-"""The tab of logs, and the log view that other tabs have too."""
+"""The tab of logs: what all nodes say, and the list of those nodes.
+
+The app makes its `screen.LogsScreen`; nothing else here is for others.
+"""

@@ -14,15 +14,15 @@ from launcher.status import Severity
 from text.i18n import N_
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
+from tui.log_view.pane import LogPane
+from tui.log_view.view import LogView
 from tui.logs.actions import LOGS_ACTIONS
-from tui.logs.filter_nodes import LogNodes
-from tui.logs.pane import LogPane
-from tui.logs.view import LogView
+from tui.logs.node_list import LogNodes
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from tui.logs.filter import LogFilter
+    from tui.log_view.filter import LogFilter
     from tui.session.messages import LanguageChanged, LogArrived, SessionChanged, StatusChanged
 
 COUNTS_EVERY_S = 0.5

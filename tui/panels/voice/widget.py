@@ -12,8 +12,8 @@ from typing import Literal
 from rich.cells import cell_len
 
 from text.i18n import _
-from tui.logs.index import folded
-from tui.logs.rows import clock
+from tui.log_view.index import folded
+from tui.log_view.rows import clock
 from tui.panels.voice.level import level_line
 from tui.panels.voice.reading import Heard, heard
 from tui.widgets.drawing import Drawing, Ink, Line, fit

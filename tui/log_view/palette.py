@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rich.style import Style
 from textual.color import Color
 
-from tui.logs.rows import WORDS
+from tui.log_view.rows import WORDS
 
 if TYPE_CHECKING:
     from textual.widget import Widget

@@ -17,10 +17,10 @@ from textual.selection import Selection
 from textual.strip import Strip
 
 from launcher.status import Severity
-from tui.logs.index import folded
-from tui.logs.palette import Palette
-from tui.logs.ring import Entry
-from tui.logs.rows import Columns, gutter_texts
+from tui.log_view.index import folded
+from tui.log_view.palette import Palette
+from tui.log_view.ring import Entry
+from tui.log_view.rows import Columns, gutter_texts
 
 Span = tuple[int, int, Style]
 CHOSEN, MORE = "▌", "›"

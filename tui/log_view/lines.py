@@ -16,14 +16,14 @@ from textual.strip import Strip
 from launcher.status import LogLine
 from text.i18n import _
 from text.plain import plain
-from tui.logs.choice import Choice
-from tui.logs.filter import LogFilter
-from tui.logs.index import LogIndex
-from tui.logs.paint import RowPainter
-from tui.logs.palette import PALETTE_CLASSES, PALETTE_CSS, palette_of
-from tui.logs.ring import Entry, LogRing
-from tui.logs.rows import Columns, columns_for, gutter_texts, text_of
-from tui.logs.tail import TailView
+from tui.log_view.choice import Choice
+from tui.log_view.filter import LogFilter
+from tui.log_view.index import LogIndex
+from tui.log_view.paint import RowPainter
+from tui.log_view.palette import PALETTE_CLASSES, PALETTE_CSS, palette_of
+from tui.log_view.ring import Entry, LogRing
+from tui.log_view.rows import Columns, columns_for, gutter_texts, text_of
+from tui.log_view.tail import TailView
 
 if TYPE_CHECKING:
     from textual.events import Resize

@@ -14,8 +14,8 @@ from operator import attrgetter
 
 from rich.cells import cell_len, chop_cells
 
-from tui.logs.filter import LogFilter
-from tui.logs.ring import Entry
+from tui.log_view.filter import LogFilter
+from tui.log_view.ring import Entry
 
 _id_of = attrgetter("id")
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from datetime import datetime
 
 from text.plain import plain
-from tui.logs.ring import Entry
-from tui.logs.rows import WORD_CELLS, WORDS
+from tui.log_view.ring import Entry
+from tui.log_view.rows import WORD_CELLS, WORDS
 
 
 class Choice:

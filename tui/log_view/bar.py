@@ -13,7 +13,7 @@ from text.i18n import _, ngettext
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from tui.logs.view import LogView
+    from tui.log_view.view import LogView
 
 LONGEST_NAME = 24
 

@@ -15,7 +15,7 @@ from rich.cells import cell_len, set_cell_size
 from launcher.status import Severity
 from text.i18n import ngettext
 from text.plain import plain
-from tui.logs.ring import Entry
+from tui.log_view.ring import Entry
 
 WORDS = tuple(severity.name for severity in Severity)
 WORD_CELLS = max(map(len, WORDS))

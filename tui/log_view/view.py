@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import Binding, BindingType
 
-from tui.logs.choice import exported
-from tui.logs.lines import LogLines
+from tui.log_view.choice import exported
+from tui.log_view.lines import LogLines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from textual.events import Click
     from textual.selection import Selection
 
-    from tui.logs.ring import Entry
+    from tui.log_view.ring import Entry
 
 
 class LogView(LogLines):

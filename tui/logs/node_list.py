@@ -11,7 +11,7 @@ from text.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
-    from tui.logs.filter import LogFilter
+    from tui.log_view.filter import LogFilter
 
 HEARD, MUTE, ALONE = "●", "○", "★"
 

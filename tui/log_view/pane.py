@@ -17,10 +17,10 @@ from textual.containers import Vertical
 from text.i18n import _, ngettext
 from text.plain import plain
 from tui import clock
-from tui.logs.bar import LogBar, grouped
-from tui.logs.prompt import LogPrompt
-from tui.logs.save import default_path, home_path, reason, save_lines
-from tui.logs.view import LogView
+from tui.log_view.bar import LogBar, grouped
+from tui.log_view.prompt import LogPrompt
+from tui.log_view.save import default_path, home_path, reason, save_lines
+from tui.log_view.view import LogView
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
