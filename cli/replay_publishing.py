@@ -15,7 +15,8 @@ from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.words import say
-from robot.safety.moving_topics import EMERGENCY_STOP, STOPPED_BY_ZEROS, moves
+from robot.safety.moving_topics import STOPPED_BY_ZEROS, moves
+from robot.topics import EMERGENCY_STOP
 from text.i18n import _, ngettext, said
 from text.output import keep_stdout_to_ourselves, say_error, write
 from text.plain import plain
@@ -91,6 +92,7 @@ def _publish(
 
 def _refusal(topic: TopicInBag, *, motion: bool) -> str | None:
     if topic.name == EMERGENCY_STOP:
+        # Its false would release a stop that somebody has given.
         return say("an emergency stop is given and released by people alone")
     if not motion and moves(topic.name, topic.kind.name):
         return say("it moves the robot; --motion publishes it too")

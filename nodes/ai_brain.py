@@ -19,13 +19,14 @@ from nodes.parts.head_client import HeadAnswer, HeadClient
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number
+from nodes.parts.qos import DEPTH
 from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message, to_message
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import AI_COMMAND, CAMERA, DEPTH, MICROPHONE, SONAR_FRONT, SPEAKER
 from robot.commands.brain import Decision, decide, spoken
 from robot.safety.distance import Reading, look
 from robot.sound import text_in
+from robot.topics import AI_COMMAND, CAMERA, MICROPHONE, SONAR_FRONT, SPEAKER
 from robot.words import WORDS, parse_word
 
 LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0

@@ -14,8 +14,9 @@ from std_msgs.msg import String
 from nodes.driving.repeat import REPEAT_FOR_S, DriveVoice
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import AI_COMMAND, DEPTH
+from robot.topics import AI_COMMAND
 from robot.words import WORDS, parse_word
 
 _STARTED = Phrase("Translating words into motion: {words}", "Перевожу слова в движение: {words}")

@@ -22,10 +22,11 @@ from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number, Text, Whole
+from nodes.parts.qos import DEPTH
 from nodes.parts.sound import from_message, to_message
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, text_in
+from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 
 _STARTED = Phrase(
     "Sound goes to {microphone} and comes from {speaker}",

@@ -26,8 +26,9 @@ from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Choice, Number, Switch, Text, Whole
 from nodes.parts.pictures import CHANNELS, fit
+from nodes.parts.qos import NEWEST
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import CAMERA, NEWEST
+from robot.topics import CAMERA
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

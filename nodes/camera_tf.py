@@ -16,9 +16,10 @@ from tf2_msgs.msg import TFMessage
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number, Text, Value
+from nodes.parts.qos import LATCHED
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import LATCHED, TF_STATIC
 from robot.motion.geometry import quaternion_from_rpy
+from robot.topics import TF_STATIC
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

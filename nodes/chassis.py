@@ -23,7 +23,7 @@ from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
-from nodes.drivers.chassis_messages import JOINTS, DeadReckoning, battery
+from nodes.drivers.chassis_messages import DeadReckoning, battery
 from nodes.drivers.chassis_words import (
     COMMAND_OLD,
     EMERGENCY,
@@ -40,18 +40,19 @@ from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.pace import Pace
 from nodes.parts.parameters import Number, Text, Whole
+from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import MAX_WHEEL_SPEED, Refusals
 from nodes.parts.stall_detector import Nap
-from nodes.parts.topics import DEPTH, EMERGENCY_STOP, ODOMETRY, TF, WHEEL_COMMANDS
+from robot.joints import DRIVE_JOINTS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 from robot.limits import STEERING, wheel_limits
+from robot.topics import BATTERY, EMERGENCY_STOP, JOINT_STATES, ODOMETRY, TF, WHEEL_COMMANDS
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
 
     from robot.wire.pico import Telemetry
 
-JOINT_STATES, BATTERY = "/joint_states", "/battery"
 _STILL = (0.0, 0.0, 0.0)
 _REARMS = frozenset("ELRUHA")
 """Flags of the Pico after which only a new command counts."""
@@ -148,8 +149,8 @@ class Chassis(LessonNode):
         """What it asks for as far as these motors can, a stop if that is refused."""
         velocity = dict(zip(message.name, message.velocity, strict=False))
         position = dict(zip(message.name, message.position, strict=False))
-        left, right = (velocity.get(joint, math.nan) for joint in JOINTS[:2])
-        steering = position.get(JOINTS[2], math.nan)
+        left, right = (velocity.get(joint, math.nan) for joint in DRIVE_JOINTS[:2])
+        steering = position.get(DRIVE_JOINTS[2], math.nan)
         refused = self._refusals.beyond(
             WHEEL_COMMANDS,
             (left, self._wheel_limits),

@@ -35,12 +35,13 @@ from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.odometry import OdometryListener
 from nodes.parts.parameters import Choice, Number, Text
-from nodes.parts.topics import DEPTH, DRIVE, DRIVE_TO_POINT, ODOMETRY
+from nodes.parts.qos import DEPTH
 from nodes.simulated.base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
 from robot.kinematics import WHEELBASE_M
 from robot.limits import SPEED, STEERING
 from robot.motion.approach import Approach, Chassis
 from robot.motion.odometry import Point, Pose
+from robot.topics import DRIVE, DRIVE_TO_POINT, ODOMETRY
 from robot.words import STOP
 
 if TYPE_CHECKING:

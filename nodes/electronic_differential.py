@@ -24,11 +24,12 @@ from nodes.parts.emergency import EmergencyStop
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text
+from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import MAX_WHEEL_SPEED, Refusals
 from nodes.parts.sole_publisher import SolePublisher
 from nodes.parts.speech import Phrase
 from nodes.parts.stall_detector import Nap
-from nodes.parts.topics import DEPTH, DRIVE, WHEEL_COMMANDS
+from robot.joints import DRIVE_JOINTS
 from robot.kinematics import (
     STRAIGHT_BELOW_RAD,
     TRACK_M,
@@ -38,9 +39,9 @@ from robot.kinematics import (
     wheel_speeds,
 )
 from robot.limits import RIM_M_S, SPEED, STEERING, Limits
+from robot.topics import DRIVE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
 
-JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach everybody."""
 
@@ -250,7 +251,7 @@ class ElectronicDifferential(LessonNode):
         message = JointState()
         message.header.stamp = self.get_clock().now().to_msg()
         message.header.frame_id = FRAME
-        message.name = list(JOINTS)
+        message.name = list(DRIVE_JOINTS)
         message.position = [math.nan, math.nan, self._command.steering_rad]
         radius_m = self.number("wheel_radius")
         message.velocity = [wheels.left_m_s / radius_m, wheels.right_m_s / radius_m, math.nan]

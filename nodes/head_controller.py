@@ -31,8 +31,10 @@ from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Whole
-from nodes.parts.topics import DEPTH, HEAD_SERVICE, HEAD_STATE
+from nodes.parts.qos import DEPTH
+from robot.joints import HEAD_JOINTS
 from robot.motion.head import turn_ms
+from robot.topics import HEAD_SERVICE, HEAD_STATE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,7 +42,6 @@ if TYPE_CHECKING:
     from nodes.parts.parameters import Value
     from nodes.parts.speech import Phrase
 
-JOINTS = ("pan_joint", "tilt_joint")
 _SETTLE_S = 0.1
 """A command is 14 ms on the wire, and a servo lags behind what it is told."""
 
@@ -232,7 +233,7 @@ class HeadController(LessonNode):
     def _publish(self) -> None:
         message = JointState()
         message.header.stamp = self.get_clock().now().to_msg()
-        message.name = list(JOINTS)
+        message.name = list(HEAD_JOINTS)
         if self._pose is not None:
             message.position = [math.radians(self._pose.pan), math.radians(self._pose.tilt)]
         self._publisher.publish(message)

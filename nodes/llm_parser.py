@@ -24,8 +24,8 @@ from nodes.parts.head_client import HeadAnswer, HeadClient
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import DEPTH, LLM_RAW_JSON, LLM_RESULT
 from robot.commands.schema import (
     MAX_COMMANDS,
     CommandError,
@@ -35,6 +35,7 @@ from robot.commands.schema import (
     Problem,
     parse_llm,
 )
+from robot.topics import LLM_RAW_JSON, LLM_RESULT
 from robot.words import DriveSetpoint
 
 if TYPE_CHECKING:

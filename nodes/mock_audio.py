@@ -17,10 +17,11 @@ from std_msgs.msg import ByteMultiArray, Float32
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text
+from nodes.parts.qos import DEPTH
 from nodes.parts.sound import from_message, to_message
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import AUDIO_LEVEL, DEPTH, MICROPHONE, SPEAKER
 from robot.sound import LEVEL_S, mock_level_dbfs
+from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 
 _STARTED = Phrase("Microphone and loudspeaker are on", "Микрофон и динамик включены")
 _SAID = Phrase(

@@ -18,10 +18,11 @@ from sensor_msgs.msg import Image
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Choice, Number, Text, Whole
+from nodes.parts.qos import NEWEST
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import CAMERA, NEWEST
 from nodes.simulated.room_scene import RoomScene
 from nodes.simulated.scene import Scene
+from robot.topics import CAMERA
 
 FILM, ROOM = "film", "room"
 

@@ -22,13 +22,14 @@ from nav_msgs.msg import OccupancyGrid
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, UsageError
 from nodes.parts.parameters import Choice, Number, Setting, Text, Whole
+from nodes.parts.qos import DEPTH, LATCHED
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import DEPTH, LATCHED, MAP, MOCK_POSE
 from nodes.simulated.device_fault import FAULTS, FINE, FaultyLine
 from nodes.simulated.map_message import occupancy_grid
 from nodes.simulated.motors import MockMotors
 from nodes.simulated.pseudo_terminal import PseudoSerial
 from robot.motion.geometry import quaternion_from_rpy
+from robot.topics import MAP, MOCK_POSE
 from robot.wire.tfluna import TofFrame, encode
 from robot.world.grid import grid_of
 from robot.world.pico import SimulatedPico

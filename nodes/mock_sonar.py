@@ -18,8 +18,9 @@ from std_msgs.msg import Float32
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Choice, Number, Text, Value
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import DEPTH, SONAR_FRONT
+from robot.topics import SONAR_FRONT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

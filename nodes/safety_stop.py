@@ -31,13 +31,14 @@ from nodes.parts.emergency import EmergencyStop
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Switch, Text
+from nodes.parts.qos import DEPTH
 from nodes.parts.sensor import SensorListener
-from nodes.parts.topics import DEPTH, SAFETY_STATE, SONAR_FRONT, SOURCES
 from nodes.safety.eyes import Eyes, shares
 from nodes.safety.gate import Gate
 from nodes.safety.moment import Moment
 from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
 from robot.safety.distance import Sight, Verdict, Zone, allowed, where
+from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -73,7 +74,7 @@ class SafetyStop(LessonNode):
             unit="s",
         ),
         Switch("gate", False, "Whether to relay commands to /drive_safe", fixed=True),
-        Text("sources", " ".join(SOURCES), "Their topics, highest rank first", fixed=True),
+        Text("sources", " ".join(COMMAND_SOURCES), "Their topics, highest rank first", fixed=True),
         Number("max_age_s", 0.5, "An older command becomes a stop; 0: never", high=60.0, unit="s"),
         Number("settle_s", 1.0, "After its start the gate stays shut so long", high=10.0, unit="s"),
         Number(

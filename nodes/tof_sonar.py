@@ -23,9 +23,10 @@ from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.pace import Pace
 from nodes.parts.parameters import Choice, Number, Text, Whole
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import DEPTH, SONAR_FRONT
 from robot.frames.tof import TofReader
+from robot.topics import SONAR_FRONT
 from robot.wire.tfluna import BAUD, Model, TofDecoder
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.pictures import BadPictureError, bgr
 from nodes.parts.sensor import SensorListener
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import CAMERA
+from robot.topics import CAMERA
 
 _STARTED = Phrase("Waiting for pictures on {topic}", "Жду кадры в {topic}")
 _NONE = Phrase("No picture yet on {topic}", "Кадров в {topic} пока нет")

@@ -14,11 +14,11 @@ from pydantic_core import PydanticCustomError
 
 from launcher.domain.domain import LAST_DOMAIN
 from launcher.profile.files import is_file
+from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
 from launcher.words import Words, say
 
 Restart = Literal["never", "on-failure", "always"]
-Panel = Literal["sonar", "wheels", "map", "camera", "head", "voice", "composer"]
 
 NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 LONGEST_NODE_NAME = 255

@@ -12,6 +12,7 @@ from std_msgs.msg import Header
 
 from nodes.parts.drive import FRAME
 from nodes.parts.odometry import ODOM
+from robot.joints import DRIVE_JOINTS
 from robot.kinematics import turning_radius
 from robot.motion.geometry import quaternion_from_rpy
 from robot.motion.odometry import Pose, advance
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
     from robot.wire.pico import Telemetry
 
-JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
 _LONGEST_GAP_S = 1.0
 """Over a longer silence nobody knows where the robot went."""
 _SHARPEST_RAD = 1.4
@@ -53,8 +53,8 @@ class DeadReckoning:
         self._uptime_ms = None
 
     def joints(self, telemetry: Telemetry, stamp: Time) -> JointState:
-        """For /joint_states: positions and speeds in the order of `JOINTS`."""
-        message = JointState(name=list(JOINTS))
+        """For /joint_states: positions and speeds in the order of `DRIVE_JOINTS`."""
+        message = JointState(name=list(DRIVE_JOINTS))
         message.header.stamp = stamp
         message.position = [*self._angles, telemetry.steering_rad]
         message.velocity = [telemetry.left_rad_s, telemetry.right_rad_s, math.nan]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import PoseStamped
 
 from nodes.parts.odometry import ODOM
-from nodes.parts.topics import GOAL_POSE, LATCHED
+from nodes.parts.qos import LATCHED
+from robot.topics import GOAL_POSE
 
 if TYPE_CHECKING:
     from nodes.parts.node import LessonNode

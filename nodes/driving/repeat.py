@@ -15,8 +15,9 @@ from rclpy.duration import Duration
 from nodes.parts.drive import to_message
 from nodes.parts.emergency import EmergencyStop
 from nodes.parts.parameters import Number
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import DEPTH, DRIVE
+from robot.topics import DRIVE
 from robot.words import STOP
 
 if TYPE_CHECKING:

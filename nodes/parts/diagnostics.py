@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticArray
 
+from robot.topics import DIAGNOSTICS
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -13,7 +15,6 @@ if TYPE_CHECKING:
 
     from nodes.parts.node import LessonNode
 
-DIAGNOSTICS = "/diagnostics"
 _EVERY_S = 1.0
 
 

@@ -13,9 +13,10 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.event_handler import PublisherEventCallbacks
 from std_msgs.msg import Bool
 
+from nodes.parts.qos import DEPTH, LATCHED
 from nodes.parts.speech import Phrase
 from nodes.parts.stop_memory import Stop, StopMemory
-from nodes.parts.topics import DEPTH, EMERGENCY_STATE, EMERGENCY_STOP, LATCHED
+from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
 
 if TYPE_CHECKING:
     from collections.abc import Callable

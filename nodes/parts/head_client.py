@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from example_interfaces.srv import AddTwoInts
 
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import HEAD_SERVICE
+from robot.topics import HEAD_SERVICE
 
 if TYPE_CHECKING:
     from collections.abc import Callable

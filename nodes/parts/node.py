@@ -16,8 +16,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from nodes.parts.parameters import BadValueError, Setting, Value
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase, Speech, language
-from nodes.parts.topics import DEPTH
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from nav_msgs.msg import Odometry
 
+from nodes.parts.qos import NEWEST_OF_ANY
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import NEWEST_OF_ANY, ODOMETRY
 from robot.motion.odometry import Pose, yaw_from_quaternion
+from robot.topics import ODOMETRY
 
 if TYPE_CHECKING:
     from nodes.parts.node import LessonNode

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 
-from nodes.parts.topics import DEPTH
+from nodes.parts.qos import DEPTH
 
 if TYPE_CHECKING:
     from collections.abc import Callable

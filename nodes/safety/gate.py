@@ -16,15 +16,16 @@ from rclpy.duration import Duration
 
 from nodes.parts.arrivals import Arrivals
 from nodes.parts.drive import from_message, to_message
+from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import Refusals
 from nodes.parts.sole_publisher import SolePublisher
 from nodes.parts.stall_detector import Nap
-from nodes.parts.topics import DEPTH, DRIVE_SAFE, DRIVE_TELEOP
 from nodes.safety import words
 from nodes.safety.moment import Moment
 from robot.limits import SPEED, STEERING
 from robot.safety.distance import Shares, Verdict, allowed, gate
 from robot.safety.sources import Sources
+from robot.topics import DRIVE_SAFE, DRIVE_TELEOP
 from robot.words import STOP, DriveSetpoint
 
 if TYPE_CHECKING:

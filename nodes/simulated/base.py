@@ -17,12 +17,13 @@ from tf2_msgs.msg import TFMessage
 
 from nodes.parts.drive import FRAME, from_message
 from nodes.parts.odometry import ODOM
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import DEPTH, ODOMETRY, TF
 from robot.kinematics import turning_radius
 from robot.limits import SPEED, STEERING, first_excess
 from robot.motion.geometry import quaternion_from_rpy
 from robot.motion.odometry import Pose, advance
+from robot.topics import ODOMETRY, TF
 from robot.words import STOP
 
 if TYPE_CHECKING:

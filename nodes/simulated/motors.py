@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from sensor_msgs.msg import JointState
 
-from nodes.parts.topics import DEPTH
+from nodes.parts.qos import DEPTH
+from robot.joints import DRIVE_JOINTS
+from robot.topics import MOCK_MOTORS
 from robot.world.world import STEP_S
 
 if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
     from robot.world.world import World
 
-MOTORS = "/mock/motors"
-JOINTS = ("rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint")
 _EVERY = 2
 
 
@@ -32,7 +32,7 @@ class MockMotors:
         self._turned = [0.0, 0.0]
         self._driven = [0.0, 0.0]
         self._steps = 0
-        self._publisher = node.create_publisher(JointState, MOTORS, DEPTH)
+        self._publisher = node.create_publisher(JointState, MOCK_MOTORS, DEPTH)
 
     def step(self) -> None:
         """Take in what `STEP_S` has brought."""
@@ -49,7 +49,7 @@ class MockMotors:
 
     def _publish(self) -> None:
         wheels = self._world.wheels
-        message = JointState(name=list(JOINTS))
+        message = JointState(name=list(DRIVE_JOINTS))
         message.header.stamp = self._node.get_clock().now().to_msg()
         message.position = [*self._turned, wheels.steering_rad]
         message.velocity = [wheels.left_rad_s, wheels.right_rad_s, 0.0]

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 
+from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
-from nodes.parts.topics import DEPTH, HEAD_STATE, MOCK_POSE
+from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.motion.odometry import Pose, yaw_from_quaternion
+from robot.topics import HEAD_STATE, MOCK_POSE
 from robot.world.room import LIVING_ROOM
 from robot.world.view import Eye, RoomView
 
@@ -60,6 +62,6 @@ class RoomScene:
     def _take_head(self, message: JointState) -> None:
         angles = dict(zip(message.name, message.position, strict=False))
         # A head of which nobody knows where it looks counts as one that looks straight ahead.
-        looks = angles.get("pan_joint", 0.0), angles.get("tilt_joint", 0.0)
+        looks = angles.get(HEAD_PAN, 0.0), angles.get(HEAD_TILT, 0.0)
         if all(map(math.isfinite, looks)):
             self._pan_rad, self._tilt_rad = looks

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
-EMERGENCY_STOP = "/emergency_stop"
-"""Never out of a recording: its false would release a stop that somebody has given."""
+from robot.topics import (
+    AI_COMMAND,
+    GOAL_POSE,
+    LLM_RAW_JSON,
+    MICROPHONE,
+    WHEEL_COMMANDS,
+)
+
 STOPPED_BY_ZEROS = frozenset(
     {
         "ackermann_msgs/msg/AckermannDrive",
@@ -19,12 +25,12 @@ MOVING_TYPES = STOPPED_BY_ZEROS | {
 }
 MOVING_NAMES = frozenset(
     {
-        "/wheel_commands",
-        "/ai_command",
-        "/llm_raw_json",
+        WHEEL_COMMANDS,
+        AI_COMMAND,
+        LLM_RAW_JSON,
         # The brain obeys a voice.
-        "/audio/mic_raw",
-        "/goal_pose",
+        MICROPHONE,
+        GOAL_POSE,
     }
 )
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from graph.data import NodeRow, Trouble
 from launcher.status import NodeState
+from robot.topics import LLM_RAW_JSON
 from tests.tui.recorded import (
     NODES,
     NOW_S,
@@ -19,7 +20,6 @@ from tests.tui.recorded import (
     line,
     sample,
 )
-from tui.composer.outcome_story import SENT_TO
 
 HELLO = replace(SESSION, name="01-hello", lesson="1", title={"en": "The first node"}, panels=())
 
@@ -54,7 +54,9 @@ def llm() -> RecordedPad:
     )
     just_now = {
         topic: tuple(
-            replace(one, received_s=NOW_S + 16.0 + (0.004 * (n + 1) if topic != SENT_TO else 0.0))
+            replace(
+                one, received_s=NOW_S + 16.0 + (0.004 * (n + 1) if topic != LLM_RAW_JSON else 0.0)
+            )
             for n, one in enumerate(each)
         )
         for topic, each in samples.items()

@@ -5,24 +5,24 @@ from __future__ import annotations
 from typing import Any
 
 from graph.data import GraphUpdate, NodeRow, Sample
+from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from tests.tui.recorded import lesson_update, sample
-from tui.emergency.nodes import STATE_TOPIC
-from tui.emergency.state import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
+from tui.emergency.state import TOPIC_TYPE
 
 GATE, CHASSIS = "/safety_stop", "/chassis"
 
 
 def said(engaged: bool, at_s: float) -> GraphUpdate:
     """The graph with one message on the topic of the stop."""
-    one = Sample(TOPIC, TOPIC_TYPE, at_s, 0.0, 4, {"data": engaged})
-    return lesson_update(samples={TOPIC: (one,)})
+    one = Sample(EMERGENCY_STOP, TOPIC_TYPE, at_s, 0.0, 4, {"data": engaged})
+    return lesson_update(samples={EMERGENCY_STOP: (one,)})
 
 
 def held(level: bytes, words: str) -> GraphUpdate:
     """The graph with one word of the safety node."""
     status = [{"level": level, "name": "safety_stop", "message": words, "values": []}]
-    one = sample(SAFETY_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
-    return lesson_update(samples={SAFETY_TOPIC: (one,)})
+    one = sample(SAFETY_STATE, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+    return lesson_update(samples={SAFETY_STATE: (one,)})
 
 
 def gate_says(verdict: str, at_s: float) -> GraphUpdate:
@@ -30,8 +30,8 @@ def gate_says(verdict: str, at_s: float) -> GraphUpdate:
     values = [{"key": "verdict", "value": verdict}]
     status = [{"level": b"\x02", "name": "safety_stop", "message": "held", "values": values}]
     kind = "diagnostic_msgs/msg/DiagnosticArray"
-    one = Sample(SAFETY_TOPIC, kind, at_s, 0.0, 120, {"status": status})
-    return lesson_update(samples={SAFETY_TOPIC: (one,)})
+    one = Sample(SAFETY_STATE, kind, at_s, 0.0, 120, {"status": status})
+    return lesson_update(samples={SAFETY_STATE: (one,)})
 
 
 def word(
@@ -43,12 +43,12 @@ def word(
     pairs = [{"key": key, "value": value} for key, value in values.items()]
     status = [{"level": b"\x02" if engaged else b"\x00", "name": node, "values": pairs}]
     return Sample(
-        STATE_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", at_s, 0.0, 120, {"status": status}
+        EMERGENCY_STATE, "diagnostic_msgs/msg/DiagnosticArray", at_s, 0.0, 120, {"status": status}
     )
 
 
 def obeyed(*words: Sample, at_s: float, **more: Any) -> GraphUpdate:
     """The graph with what nodes say."""
     nodes = (NodeRow(GATE), NodeRow(CHASSIS))
-    samples = {STATE_TOPIC: words, **more.pop("samples", {})}
+    samples = {EMERGENCY_STATE: words, **more.pop("samples", {})}
     return lesson_update(samples=samples, nodes=nodes, time_s=at_s, **more)

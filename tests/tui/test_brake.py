@@ -7,6 +7,7 @@ from textual.color import Color
 from textual.widgets import Input
 
 from launcher.status import NodeState
+from robot.topics import EMERGENCY_STOP, SAFETY_STATE
 from tests.tui.app_runs import opened
 from tests.tui.recorded import (
     NOW_S,
@@ -20,13 +21,13 @@ from tests.tui.recorded import (
 from tests.tui.recorded_emergency import GATE, gate_says, held, obeyed, said, word
 from tests.tui.snapshots import settle
 from tui.deck.command_line import CommandLine
-from tui.emergency.state import SAFETY_TOPIC, TOPIC, TOPIC_TYPE
+from tui.emergency.state import TOPIC_TYPE
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 
-STOP = (TOPIC, TOPIC_TYPE, {"data": True}, True)
-GO = (TOPIC, TOPIC_TYPE, {"data": False}, True)
+STOP = (EMERGENCY_STOP, TOPIC_TYPE, {"data": True}, True)
+GO = (EMERGENCY_STOP, TOPIC_TYPE, {"data": False}, True)
 
 
 @pytest.mark.parametrize("screen", ["deck", "topics", "logs"])
@@ -43,7 +44,7 @@ async def test_space_stops_at_once_on_every_screen(screen: str) -> None:
 async def test_the_publisher_is_made_before_it_is_needed() -> None:
     pad = RecordedPad()
     async with opened(pad):
-        assert pad.graph.prepared == [(TOPIC, TOPIC_TYPE, True)]
+        assert pad.graph.prepared == [(EMERGENCY_STOP, TOPIC_TYPE, True)]
 
 
 async def test_the_stop_stays_until_it_is_released() -> None:
@@ -86,7 +87,7 @@ async def test_a_dialog_does_not_come_before_the_stop(key: str) -> None:
 
 
 async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
-    deaf = tuple(row for row in TOPICS if row.name != TOPIC)
+    deaf = tuple(row for row in TOPICS if row.name != EMERGENCY_STOP)
     pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=deaf)))
     async with opened(pad) as (app, pilot):
         await pilot.press("space")
@@ -98,7 +99,7 @@ async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
 
 
 async def test_the_release_starts_again_what_the_stop_has_ended_and_nothing_else() -> None:
-    deaf = tuple(row for row in TOPICS if row.name != TOPIC)
+    deaf = tuple(row for row in TOPICS if row.name != EMERGENCY_STOP)
     pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=deaf)))
     link = pad.link
     assert isinstance(link, RecordedSession)
@@ -219,10 +220,10 @@ async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
 ) -> None:
     values = [{"key": "verdict", "value": "free"}, {"key": "refused", "value": refused}]
     status = [{"level": b"\x01", "name": "safety_stop", "message": "-", "values": values}]
-    one = sample(SAFETY_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
+    one = sample(SAFETY_STATE, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
     pad = RecordedPad()
     async with opened(pad) as (app, pilot):
-        pad.graph.show(lesson_update(samples={SAFETY_TOPIC: (one,)}))
+        pad.graph.show(lesson_update(samples={SAFETY_STATE: (one,)}))
         await settle(pilot)
         assert words in app.screen.query_one(TitleBar).text
 

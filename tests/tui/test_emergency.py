@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from graph.data import GraphUpdate, Sample
+from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from tests.tui.recorded import NOW_S, lesson_update
 from tests.tui.recorded_emergency import CHASSIS, GATE, gate_says, held, obeyed, said, word
-from tui.emergency.nodes import STATE_TOPIC
-from tui.emergency.state import TOPIC, TOPIC_TYPE, Emergency, listeners
+from tui.emergency.state import TOPIC_TYPE, Emergency, listeners
 from tui.emergency.words import stop_words
 
 STATES = "diagnostic_msgs/msg/DiagnosticArray"
@@ -144,9 +144,9 @@ def test_the_stop_stays_while_all_that_hold_it_are_away() -> None:
 
 
 def test_an_old_latched_stop_that_the_nodes_have_released_since_is_none() -> None:
-    old = Sample(TOPIC, TOPIC_TYPE, NOW_S, 0.0, 4, {"data": True}, sent_s=NOW_S - 60)
+    old = Sample(EMERGENCY_STOP, TOPIC_TYPE, NOW_S, 0.0, 4, {"data": True}, sent_s=NOW_S - 60)
     free = word(GATE, False, NOW_S, since_s=NOW_S - 30)
-    assert not after(obeyed(free, at_s=NOW_S, samples={TOPIC: (old,)})).engaged
+    assert not after(obeyed(free, at_s=NOW_S, samples={EMERGENCY_STOP: (old,)})).engaged
 
 
 @pytest.mark.parametrize(
@@ -161,16 +161,18 @@ def test_an_old_latched_stop_that_the_nodes_have_released_since_is_none() -> Non
 )
 def test_words_of_a_node_that_make_no_sense_are_none(status: Any) -> None:
     one = Sample(
-        STATE_TOPIC, "diagnostic_msgs/msg/DiagnosticArray", NOW_S, 0.0, 9, {"status": status}
+        EMERGENCY_STATE, "diagnostic_msgs/msg/DiagnosticArray", NOW_S, 0.0, 9, {"status": status}
     )
-    assert not Emergency().seen(lesson_update(samples={STATE_TOPIC: (one,)})).nodes
+    assert not Emergency().seen(lesson_update(samples={EMERGENCY_STATE: (one,)})).nodes
 
 
 @pytest.mark.parametrize("since", ["nan", "inf", "-1e300", "1e300", "x", ""])
 def test_a_time_that_makes_no_sense_is_not_told(since: str) -> None:
     pairs = [{"key": "engaged", "value": "true"}, {"key": "since", "value": since}]
-    held = Sample(STATE_TOPIC, STATES, NOW_S, 0.0, 9, {"status": [{"name": GATE, "values": pairs}]})
-    state = Emergency().seen(lesson_update(samples={STATE_TOPIC: (held,)}))
+    held = Sample(
+        EMERGENCY_STATE, STATES, NOW_S, 0.0, 9, {"status": [{"name": GATE, "values": pairs}]}
+    )
+    state = Emergency().seen(lesson_update(samples={EMERGENCY_STATE: (held,)}))
     assert stop_words(state, "^r")[0] == "■ EMERGENCY STOP (from before) · ^r releases"
 
 

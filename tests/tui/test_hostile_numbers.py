@@ -27,6 +27,7 @@ from tui.panels.head.reading import Pose, head_in
 from tui.panels.head.widget import HeadPanel
 from tui.panels.map.reading import goal_in, ground_in, pose_in
 from tui.panels.map.widget import RoomMap
+from tui.panels.registry import PANELS
 from tui.panels.sonar.widget import Sonar
 from tui.panels.voice.widget import VoicePanel
 from tui.panels.wheels.panel import would_be
@@ -42,7 +43,7 @@ from tui.widgets.trouble import no_data_words
 
 Said = tuple[GraphUpdate, tuple[NodeStatus, ...], tuple[LogLine, ...]]
 SIZES = ((1, 1), (12, 2), (34, 5), (44, 14), (120, 40))
-ALL_PANELS = ("sonar", "wheels", "map", "camera", "head", "voice", "composer")
+ALL_PANELS = tuple(PANELS)
 SCREENS = ("deck", "topics", "composer", "logs", "graph", "flow", "devices")
 LOOKS = 16
 LONGEST = 24

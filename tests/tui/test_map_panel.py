@@ -26,7 +26,7 @@ from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
 from tui.panels.map.panel import MapFeed
 from tui.panels.map.widget import RoomMap
 from tui.panels.panel import Panel
-from tui.session.panel_needs import panels_for
+from tui.panels.registry import panels_for
 
 
 class Alone(App[None]):

@@ -12,9 +12,10 @@ import pytest
 from graph.data import Publication, Sample
 from graph.messages.yaml_form import check
 from graph.publishing.outbox import PublishError
+from robot.topics import EMERGENCY_STOP
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
-from tui.emergency.state import TOPIC, TOPIC_TYPE
+from tui.emergency.state import TOPIC_TYPE
 from tui.frame.title_bar import TitleBar
 from tui.help.screen import HelpScreen
 from tui.topics.publications import Publications
@@ -286,13 +287,13 @@ async def test_the_emergency_stop_of_another_ends_it_too(desk: Desk) -> None:
     await desk.open("/ai_command")
     await desk.pilot.press("ctrl+g")
     await desk.until(lambda: desk.dialog.is_publishing)
-    stop = Sample(TOPIC, TOPIC_TYPE, NOW_S + 1, 0.0, 4, {"data": True})
+    stop = Sample(EMERGENCY_STOP, TOPIC_TYPE, NOW_S + 1, 0.0, 4, {"data": True})
     assert desk.graph.update is not None
-    desk.graph.show(replace(desk.graph.update, samples={TOPIC: (stop,)}))
+    desk.graph.show(replace(desk.graph.update, samples={EMERGENCY_STOP: (stop,)}))
     await desk.until(lambda: desk.graph.stopped_all == 1)
     await desk.until(lambda: not desk.dialog.is_publishing)
     # It is told once, however long the stop is there.
-    desk.graph.show(replace(desk.graph.update, samples={TOPIC: (stop,)}))
+    desk.graph.show(replace(desk.graph.update, samples={EMERGENCY_STOP: (stop,)}))
     await desk.pilot.pause()
     assert desk.graph.stopped_all == 1
 
@@ -306,7 +307,7 @@ async def test_what_is_published_in_spite_of_a_stop_ends_with_its_release(desk: 
     before = desk.graph.stopped_all
     await desk.pilot.press("ctrl+r")
     await desk.until(lambda: desk.graph.stopped_all == before + 1)
-    assert desk.graph.published[-1][:3] == (TOPIC, TOPIC_TYPE, {"data": False})
+    assert desk.graph.published[-1][:3] == (EMERGENCY_STOP, TOPIC_TYPE, {"data": False})
     await desk.until(lambda: not desk.dialog.is_publishing)
 
 

@@ -14,6 +14,7 @@ from textual.pilot import Pilot
 
 from graph.data import GraphUpdate
 from launcher.events import ClosedEvent
+from robot.topics import DRIVE, DRIVE_TELEOP, SAFETY_STATE
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
     TOPICS,
@@ -29,18 +30,17 @@ from tests.tui.snapshots import Look, SnapCompare, every_look
 from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
-from tui.emergency.state import SAFETY_TOPIC
 from tui.teleop.actions import OpenTeleop
 from tui.teleop.gate import gate_in, gate_words
 from tui.teleop.keys import FIRST_HOLD_S, Move
-from tui.teleop.route import DRIVE, DRIVE_TYPE, TELEOP
+from tui.teleop.route import DRIVE_TYPE
 from tui.teleop.widget import TeleopPanel
 from tui.terminal.stall_detector import DRAIN_S
 
 STARTED_S = 1.0
 """Long before any key is pressed: a key that is stamped later counts as pressed now."""
 SAFETY_TYPE = "diagnostic_msgs/msg/DiagnosticArray"
-GATED = (*TOPICS, topic(TELEOP, DRIVE_TYPE, None, publishers=0))
+GATED = (*TOPICS, topic(DRIVE_TELEOP, DRIVE_TYPE, None, publishers=0))
 
 
 @pytest.fixture(autouse=True)
@@ -54,7 +54,7 @@ def safety(verdict: str = "free", **values: str) -> Any:
     told = {"verdict": verdict, "front": "free", "front_m": "1.840", **values}
     pairs = [{"key": key, "value": value} for key, value in told.items()]
     status = {"level": b"\x00", "name": "safety_stop", "message": "in its words", "values": pairs}
-    return sample(SAFETY_TOPIC, SAFETY_TYPE, {"status": [status]})
+    return sample(SAFETY_STATE, SAFETY_TYPE, {"status": [status]})
 
 
 def drive(speed: float, steering: float) -> Any:
@@ -66,7 +66,7 @@ def gated(said: Any = None, **more: Any) -> GraphUpdate:
     """Lesson 9 with a gate that listens to the keys."""
     samples = lesson_samples()
     samples["/drive_safe"] = (drive(0.08, 0.3),)
-    samples[SAFETY_TOPIC] = (said or safety(),)
+    samples[SAFETY_STATE] = (said or safety(),)
     return lesson_update(topics=GATED, samples=samples, **more)
 
 
@@ -108,7 +108,7 @@ async def test_opening_it_makes_a_publisher_and_publishes_nothing() -> None:
         assert [each[0] for each in pad.graph.prepared] == ["/emergency_stop"]
         await pilot.press("t")
         await pilot.pause()
-        assert pad.graph.prepared[1:] == [(TELEOP, DRIVE_TYPE, False)]
+        assert pad.graph.prepared[1:] == [(DRIVE_TELEOP, DRIVE_TYPE, False)]
         assert not pad.graph.held
         assert not pad.graph.published
         assert not pad.graph.repeated
@@ -127,7 +127,7 @@ async def test_each_key_holds_a_command_for_a_while_within_limits_that_keys_chan
             for name in names:
                 panel.release()
                 await pilot.press(name)
-                assert held(pad)[-1] == (TELEOP, *asked), name
+                assert held(pad)[-1] == (DRIVE_TELEOP, *asked), name
         assert len(pad.graph.held) == sum(map(len, keys.values()))
         word = pad.graph.held[0][2]
         assert word.until_s == STARTED_S + FIRST_HOLD_S
@@ -137,7 +137,7 @@ async def test_each_key_holds_a_command_for_a_while_within_limits_that_keys_chan
         assert app.is_running
         assert pad.link.asked == []
         await pilot.press("plus", "plus", "minus", "right_square_bracket", "up", "a")
-        assert held(pad)[-1] == (TELEOP, 0.25, 0.35)
+        assert held(pad)[-1] == (DRIVE_TELEOP, 0.25, 0.35)
         assert "0.25 m/s" in text_of(panel)
         assert "0.35 rad" in text_of(panel)
 
@@ -161,7 +161,7 @@ async def test_it_drives_by_the_lessons_topic_until_a_gate_comes() -> None:
         await pilot.pause()
         assert pad.graph.let_go_of == [DRIVE]
         await pilot.press("up")
-        assert [name for name, *_asked in held(pad)] == [DRIVE, TELEOP]
+        assert [name for name, *_asked in held(pad)] == [DRIVE, DRIVE_TELEOP]
 
 
 async def test_whatever_takes_the_keys_away_stops() -> None:
@@ -183,7 +183,7 @@ async def test_whatever_takes_the_keys_away_stops() -> None:
             before = len(pad.graph.let_go_of)
             await pilot.press(leave)
             await pilot.pause()
-            assert set(pad.graph.let_go_of[before:]) == {TELEOP}, leave
+            assert set(pad.graph.let_go_of[before:]) == {DRIVE_TELEOP}, leave
             assert panel.asked.speed_m_s == 0, leave
             if leave == "tab":
                 assert "the keys go elsewhere now; t, or a click" in text_of(panel)
@@ -198,7 +198,7 @@ async def test_a_terminal_that_loses_the_focus_stops() -> None:
         await pilot.press("up")
         app.post_message(events.AppBlur())
         await pilot.pause()
-        assert pad.graph.let_go_of == [TELEOP]
+        assert pad.graph.let_go_of == [DRIVE_TELEOP]
         assert panel.asked.speed_m_s == 0
         app.post_message(events.AppFocus())
         await pilot.pause()
@@ -324,7 +324,7 @@ def test_the_gate_is_told_in_the_screens_words(values: dict[str, str], words: st
     [{}, {"status": None}, {"status": [None]}, {"status": [{"name": "other"}]}],
 )
 def test_what_is_no_word_of_the_gate_is_passed_over(value: dict[str, Any]) -> None:
-    assert gate_in(sample(SAFETY_TOPIC, SAFETY_TYPE, value)) is None
+    assert gate_in(sample(SAFETY_STATE, SAFETY_TYPE, value)) is None
 
 
 SLOWED = safety(front_m="0.700", allowed="0.40", source="/drive_teleop")

@@ -6,6 +6,16 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from robot.joints import HEAD_PAN, HEAD_TILT
+from robot.topics import (
+    DRIVE,
+    DRIVE_SAFE,
+    HEAD_STATE,
+    LLM_RAW_JSON,
+    LLM_RESULT,
+    SAFETY_STATE,
+    WHEEL_COMMANDS,
+)
 from text.i18n import _, ngettext
 from text.plain import plain
 from tui.composer import outcome_words as words
@@ -18,11 +28,8 @@ if TYPE_CHECKING:
     from graph.data import Sample
     from robot.commands.schema import LlmResponse
 
-SENT_TO, RESULT = "/llm_raw_json", "/llm_result"
-DRIVE, DRIVE_SAFE, WHEELS = "/drive", "/drive_safe", "/wheel_commands"
-HEAD, SAFETY = "/head_state", "/safety_state"
 SERVICE = "set_head_position"
-FOLLOWED = frozenset({RESULT, DRIVE, DRIVE_SAFE, WHEELS, HEAD, SAFETY})
+FOLLOWED = frozenset({LLM_RESULT, DRIVE, DRIVE_SAFE, WHEEL_COMMANDS, HEAD_STATE, SAFETY_STATE})
 
 ANSWER_WITHIN_S = 3.0
 OVER_AFTER_S = 12.0
@@ -82,12 +89,12 @@ class Story:
         """Take in what has come."""
         # What comes of a setpoint can be told only after the setpoint itself.
         for topic, read in (
-            (RESULT, self._see_result),
+            (LLM_RESULT, self._see_result),
             (DRIVE, self._see_drive),
-            (SAFETY, self._see_safety),
+            (SAFETY_STATE, self._see_safety),
             (DRIVE_SAFE, self._see_drive_safe),
-            (WHEELS, self._see_wheels),
-            (HEAD, self._see_head),
+            (WHEEL_COMMANDS, self._see_wheels),
+            (HEAD_STATE, self._see_head),
         ):
             for sample in samples.get(topic, ()):
                 delay_s = sample.received_s - sample.age_s - self.sent_s
@@ -108,21 +115,25 @@ class Story:
     def _awaited(self, now_s: float) -> Iterable[Entry]:
         late = now_s - self.sent_s >= ANSWER_WITHIN_S
         if self.failure:
-            yield Entry("✗", SENT_TO, _("not sent: {reason}").format(reason=plain(self.failure)))
-        elif RESULT in self._came:
+            yield Entry(
+                "✗", LLM_RAW_JSON, _("not sent: {reason}").format(reason=plain(self.failure))
+            )
+        elif LLM_RESULT in self._came:
             return
         elif DRIVE in self._came:
             if late:
-                yield Entry("·", RESULT, _("no reply: this parser does not report"))
+                yield Entry("·", LLM_RESULT, _("no reply: this parser does not report"))
         elif not self.listeners:
             silence = _("nobody listens to {topic}: is llm_parser running?")
-            yield Entry("✗", RESULT, silence.format(topic=SENT_TO))
+            yield Entry("✗", LLM_RESULT, silence.format(topic=LLM_RAW_JSON))
         elif late:
             silence = _("no answer within {seconds} s: is llm_parser running? Listening: {nodes}")
             nodes = plain(", ".join(self.listeners))
-            yield Entry("✗", RESULT, silence.format(seconds=f"{ANSWER_WITHIN_S:g}", nodes=nodes))
+            yield Entry(
+                "✗", LLM_RESULT, silence.format(seconds=f"{ANSWER_WITHIN_S:g}", nodes=nodes)
+            )
         else:
-            yield Entry("·", RESULT, _("waiting for an answer"))
+            yield Entry("·", LLM_RESULT, _("waiting for an answer"))
 
     def _see_result(self, sample: Sample, delay_s: float) -> None:
         event = words.event_of(sample.value)
@@ -133,13 +144,13 @@ class Story:
             commands = ngettext("{n} command", "{n} commands", whole).format(n=whole)
             thought = plain(str(event.get("thought", "")), words.LONGEST)
             text = _("accepted: {commands} “{thought}”").format(commands=commands, thought=thought)
-            self._add("✓", RESULT, text, delay_s)
+            self._add("✓", LLM_RESULT, text, delay_s)
         elif kind == "refused":
-            self._add("✗", RESULT, _("refused: nothing of it is executed"), delay_s)
+            self._add("✗", LLM_RESULT, _("refused: nothing of it is executed"), delay_s)
             problems = event.get("problems")
             for problem in problems if isinstance(problems, list) else ():
                 if isinstance(problem, dict):
-                    self._add("✗", RESULT, reported_words(problem), delay_s)
+                    self._add("✗", LLM_RESULT, reported_words(problem), delay_s)
         elif kind == "head":
             done, text = words.service_words(event)
             self._add("✓" if done else "✗", SERVICE, text, delay_s)
@@ -151,8 +162,8 @@ class Story:
 
     def _see_safety(self, sample: Sample, delay_s: float) -> None:
         reason = blocked_reason(sample)
-        if reason and SAFETY not in self._came:
-            self._add("!", SAFETY, plain(reason, words.LONGEST), delay_s)
+        if reason and SAFETY_STATE not in self._came:
+            self._add("!", SAFETY_STATE, plain(reason, words.LONGEST), delay_s)
 
     def _see_drive_safe(self, sample: Sample, delay_s: float) -> None:
         if self._drive is None or not self._is_news(DRIVE_SAFE, sample, delay_s):
@@ -168,8 +179,8 @@ class Story:
             self._add("!", DRIVE_SAFE, held, delay_s)
 
     def _see_wheels(self, sample: Sample, delay_s: float) -> None:
-        if self._is_news(WHEELS, sample, delay_s):
-            self._add("→", WHEELS, words.wheel_words(sample.value), delay_s)
+        if self._is_news(WHEEL_COMMANDS, sample, delay_s):
+            self._add("→", WHEEL_COMMANDS, words.wheel_words(sample.value), delay_s)
 
     def _is_news(self, topic: str, sample: Sample, delay_s: float) -> bool:
         """Whether this is the topic's first word after the setpoint, and not the old one again."""
@@ -181,18 +192,18 @@ class Story:
         return _without_header(before) != _without_header(sample)
 
     def _see_head(self, sample: Sample, delay_s: float) -> None:
-        had = self._came.get(HEAD, [])
+        had = self._came.get(HEAD_STATE, [])
         if self._target is None or (had and had[0].mark == "✓"):
             return
-        looks = words.joint(sample.value, "pan_joint"), words.joint(sample.value, "tilt_joint")
+        looks = words.joint(sample.value, HEAD_PAN), words.joint(sample.value, HEAD_TILT)
         if any(map(math.isnan, looks)):
             # Nobody knows yet where servos look that were not moved.
             return
         there = all(abs(a - b) < NEAR_RAD for a, b in zip(looks, self._target, strict=True))
         entry = Entry(
-            "✓" if there else "·", HEAD, words.head_words(*looks), delay_s if there else None
+            "✓" if there else "·", HEAD_STATE, words.head_words(*looks), delay_s if there else None
         )
-        self._came[HEAD] = [entry]
+        self._came[HEAD_STATE] = [entry]
 
 
 def _without_header(sample: Sample) -> str:

@@ -6,6 +6,7 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
+from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
 from text.figures import figure, whole
 from text.i18n import _
 from text.plain import plain
@@ -38,8 +39,8 @@ def drive_words(speed_m_s: float, steering_rad: float) -> str:
 def wheel_words(value: Mapping[str, Value]) -> str:
     """The speeds of the rear wheels of a JointState."""
     return _("left {left}, right {right} rad/s").format(
-        left=figure(joint(value, "rear_left_wheel_joint", "velocity")),
-        right=figure(joint(value, "rear_right_wheel_joint", "velocity")),
+        left=figure(joint(value, REAR_LEFT_WHEEL, "velocity")),
+        right=figure(joint(value, REAR_RIGHT_WHEEL, "velocity")),
     )
 
 

@@ -10,6 +10,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Static, TextArea
 
 from robot.commands.schema import MAX_BYTES, CommandError, parse_llm
+from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _, decimal
 from text.plain import plain
 from tui import clock
@@ -17,7 +18,7 @@ from tui.actions import bindings
 from tui.composer.actions import COMPOSER_ACTIONS, Send, SendAnyway
 from tui.composer.json_editor import JsonEditor, Place
 from tui.composer.outcome import Outcome
-from tui.composer.outcome_story import FOLLOWED, SENT_TO, Story
+from tui.composer.outcome_story import FOLLOWED, Story
 from tui.composer.sent import Sent, sent_path
 from tui.composer.templates import TEMPLATES
 from tui.composer.templates_dialog import TemplatesDialog
@@ -127,7 +128,7 @@ class ComposerScreen(DeckScreen):
     def on_screen_resume(self) -> None:
         """Let the first message go out at once when its time comes."""
         if self.feed.graph is not None:
-            self.feed.graph.prepare_publisher(SENT_TO, TYPE)
+            self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget what belongs to another session."""
@@ -135,13 +136,13 @@ class ComposerScreen(DeckScreen):
         self._story, self._listener = None, None
         self._newest.clear()
         if self.is_current and self.feed.graph is not None:
-            self.feed.graph.prepare_publisher(SENT_TO, TYPE)
+            self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
         self._say()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
         """Follow what comes of the message."""
         update = message.update
-        self._listener = next((row for row in update.topics if row.name == SENT_TO), None)
+        self._listener = next((row for row in update.topics if row.name == LLM_RAW_JSON), None)
         if self._story is not None and not self._story.over(clock.now()):
             self._story.see(update.samples)
         for topic in FOLLOWED & update.samples.keys():
@@ -201,7 +202,7 @@ class ComposerScreen(DeckScreen):
         self._sent.add(text)
         self._story = Story(clock.now(), self._listeners(), self._response, self._newest)
         self.topics_changed()
-        future = graph.publish(SENT_TO, TYPE, {"data": text})
+        future = graph.publish(LLM_RAW_JSON, TYPE, {"data": text})
         # Not awaited here: keys wait for the end of what a key does.
         self.run_worker(self._confirm(self._story, future), group="send")
         self._say()
@@ -255,7 +256,7 @@ class ComposerScreen(DeckScreen):
         if not self.is_mounted:
             return
         listening = ", ".join(self._listeners()) or _("nobody listens")
-        self._title("#composer-to", f"{SENT_TO} → {listening}")
+        self._title("#composer-to", f"{LLM_RAW_JSON} → {listening}")
         self._title("#composer-came", _("What happened"))
         story, now_s = self._story, clock.now()
         if story is None:

@@ -9,8 +9,7 @@ from textual.widgets import Static
 from text.i18n import _
 from tui.deck.watched import watched_words
 from tui.frame.screen import DeckScreen
-from tui.panels.registry import PANELS, make_panel
-from tui.session.panel_needs import panels_for
+from tui.panels.registry import PANELS, make_panel, panels_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

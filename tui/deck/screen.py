@@ -12,6 +12,7 @@ from textual.widgets import Static
 
 from launcher.errors import LauncherError
 from launcher.status import NodeState, Severity
+from robot.topics import AI_COMMAND
 from text.i18n import N_, said
 from text.plain import plain
 from tui.actions import bindings
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
     from tui.widgets.rows import Rows
 
 DRIVER = "nodes.ai_driver"
-COMMANDS, COMMANDS_TYPE = "/ai_command", "std_msgs/msg/String"
+COMMANDS_TYPE = "std_msgs/msg/String"
 
 
 class LessonDeck(ScreenWithPanels, DrivenScreen):
@@ -159,7 +160,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
     def driven(self) -> bool:
         """Whether there is a node that takes commands in words."""
         if self.feed.watching:
-            row = None if self.feed.update is None else row_of(self.feed.update, COMMANDS)
+            row = None if self.feed.update is None else row_of(self.feed.update, AI_COMMAND)
             return row is not None and row.subscribers > 0
         if self.feed.link is None:
             return False
@@ -173,7 +174,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         """Say it to the driver."""
         if self.feed.graph is None:
             return
-        sent = self.feed.graph.publish(COMMANDS, COMMANDS_TYPE, {"data": message.text})
+        sent = self.feed.graph.publish(AI_COMMAND, COMMANDS_TYPE, {"data": message.text})
         sent.add_done_callback(lambda done: self.app.call_later(self._tell_if_lost, done))
 
     def _tell_if_lost(self, sent: Future[int]) -> None:
@@ -249,7 +250,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
             self._show_nodes()
             self._lay_out(self.size.height)
             self.refresh_bindings()
-        row = row_of(message.update, COMMANDS)
+        row = row_of(message.update, AI_COMMAND)
         self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
 
     def on_language_changed(self, message: LanguageChanged) -> None:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from graph.data import Sample, TopicRow
 
-TOPIC = "/diagnostics"
 STALE_S = 3.0
 """A driver that says nothing for so long is no longer believed: each says so once a second."""
 MOST = 200

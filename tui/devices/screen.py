@@ -10,6 +10,7 @@ from textual.widgets import Static
 
 from launcher.status import Severity
 from robot.frames.lines import decode
+from robot.topics import DIAGNOSTICS
 from text.i18n import N_, _
 from tui import clock
 from tui.actions import bindings
@@ -18,7 +19,7 @@ from tui.devices import words
 from tui.devices.actions import DEVICES_ACTIONS
 from tui.devices.frame_rows import KEPT, WAYS, FrameRows
 from tui.devices.frames_view import FramesPane, FramesView
-from tui.devices.reading import TOPIC, Device, DeviceBook, frames_topic
+from tui.devices.reading import Device, DeviceBook, frames_topic
 from tui.devices.table import DevicesTable
 from tui.frame.screen import DeckScreen
 from tui.log_view.tail import TailView
@@ -97,7 +98,7 @@ class DevicesScreen(DeckScreen):
         """What every driver says, and the frames of the chosen one; nothing behind another."""
         if self.feed.front is not self:
             return set()
-        return {TOPIC} if self._topic is None else {TOPIC, self._topic}
+        return {DIAGNOSTICS} if self._topic is None else {DIAGNOSTICS, self._topic}
 
     def on_mount(self) -> None:
         """Begin in the table."""
@@ -128,7 +129,7 @@ class DevicesScreen(DeckScreen):
         """Take what drivers say, and the frames."""
         self._update = message.update
         samples = message.update.samples
-        self._book.take(samples.get(TOPIC, ()))
+        self._book.take(samples.get(DIAGNOSTICS, ()))
         self._look()
         if self._topic is not None:
             self._take_frames(samples.get(self._topic, ()))

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
+from robot.topics import DIAGNOSTICS
 from text.figures import elapsed
 from text.i18n import _, said
 from text.plain import plain
-from tui.devices.reading import STALE_S, TOPIC, Device
+from tui.devices.reading import STALE_S, Device
 from tui.devices.table import grouped, state
 
 if TYPE_CHECKING:
@@ -83,19 +84,19 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
         return [_("no lesson is running")]
     if update is not None and update.error:
         return [feed.blind, plain(said(update.error))]
-    row = next((row for row in update.topics if row.name == TOPIC), None) if update else None
+    row = next((row for row in update.topics if row.name == DIAGNOSTICS), None) if update else None
     if row is not None and row.publishers:
         said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
         return [
             _("{topic} is published by {nodes}; waiting for the first message.").format(
-                topic=TOPIC, nodes=said_by or "?"
+                topic=DIAGNOSTICS, nodes=said_by or "?"
             )
         ]
     drivers = [name for name, node in feed.nodes.items() if node.command in DRIVERS]
     if drivers:
         words = _("{nodes} have not said anything on {topic} yet: see Deck (1) and Logs (4).")
-        return [words.format(nodes=", ".join(map(plain, drivers)), topic=TOPIC)]
-    lines = [_("No driver says anything on {topic}.").format(topic=TOPIC)]
+        return [words.format(nodes=", ".join(map(plain, drivers)), topic=DIAGNOSTICS)]
+    lines = [_("No driver says anything on {topic}.").format(topic=DIAGNOSTICS)]
     if feed.replay is not None:
         return [*lines, _("This recording has none of its messages.")]
     if not feed.watching:

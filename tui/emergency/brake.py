@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING
 
+from robot.topics import EMERGENCY_STOP
 from text.i18n import _
 from text.plain import plain
 from tui import clock
@@ -89,7 +90,7 @@ class Brake:
         """Have the publisher made, so that the first word goes out at once."""
         graph = self._app.feed.graph
         if graph is not None:
-            prepared = graph.prepare_publisher(emergency.TOPIC, emergency.TOPIC_TYPE, latched=True)
+            prepared = graph.prepare_publisher(EMERGENCY_STOP, emergency.TOPIC_TYPE, latched=True)
             # If it cannot be made, publishing will say so.
             prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
 
@@ -127,7 +128,7 @@ class Brake:
         if graph is None:
             return None
         message = {"data": engaged}
-        return graph.publish(emergency.TOPIC, emergency.TOPIC_TYPE, message, latched=True)
+        return graph.publish(EMERGENCY_STOP, emergency.TOPIC_TYPE, message, latched=True)
 
     def _end_publications(self) -> None:
         """Publish nothing at a rate any more: it would drive as soon as the stop is released.

@@ -7,10 +7,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from robot.topics import EMERGENCY_STATE
+
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
 
-STATE_TOPIC = "/emergency_stop_state"
 GONE_S = 3.5
 """A node says it once a second; who has been silent for longer and is not in the graph is gone."""
 MOST = 64
@@ -42,7 +43,7 @@ class NodeStop:
 def told(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[str, NodeStop]:
     """Return `nodes` with what they have said since."""
     known = dict(nodes)
-    for sample in update.samples.get(STATE_TOPIC, ()):
+    for sample in update.samples.get(EMERGENCY_STATE, ()):
         for name, values in _statuses(sample):
             if name in known or len(known) < MOST:
                 known[name] = _read(values, sample, known.get(name))

@@ -12,18 +12,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.i18n import N_
 from text.plain import plain
-from tui.emergency.nodes import STATE_TOPIC, NodeStop, present, told
+from tui.emergency.nodes import NodeStop, present, told
 from tui.teleop.gate import STOPPED, Gate, gate_in, held_words, refused_words
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
 
-TOPIC = "/emergency_stop"
 TOPIC_TYPE = "std_msgs/msg/Bool"
-SAFETY_TOPIC = "/safety_state"
-FOLLOWED = frozenset({TOPIC, STATE_TOPIC, SAFETY_TOPIC})
+FOLLOWED = frozenset({EMERGENCY_STOP, EMERGENCY_STATE, SAFETY_STATE})
 SETTLED_S = 2.0
 """So long after a word on the topic the gate may still be saying what was true before it."""
 
@@ -123,11 +122,11 @@ class Emergency:
         """Take in what others said on the topics."""
         state = self
         # Of a word and its opposite that have come together the later one counts.
-        for sample in update.samples.get(TOPIC, ())[-1:]:
+        for sample in update.samples.get(EMERGENCY_STOP, ())[-1:]:
             said_s = min(sample.received_s, sample.sent_s or sample.received_s)
             state = state.heard(bool(sample.value.get("data")), sample.received_s, said_s)
         state = state.obeyed(told(state.nodes, update), update)
-        for sample in update.samples.get(SAFETY_TOPIC, ()):
+        for sample in update.samples.get(SAFETY_STATE, ()):
             gate = gate_in(sample)
             settled = sample.received_s - state.heard_s > SETTLED_S
             if gate is not None and settled and not state.nodes:
@@ -200,7 +199,7 @@ def held_reason(state: Emergency) -> str:
 def listeners(update: GraphUpdate | None) -> int:
     """Return how many subscriptions to the stop there are, Deck's own not counted."""
     rows = () if update is None else update.topics
-    return next((row.subscribers for row in rows if row.name == TOPIC), 0)
+    return next((row.subscribers for row in rows if row.name == EMERGENCY_STOP), 0)
 
 
 def blocked_reason(sample: Sample) -> str:

@@ -5,6 +5,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from robot.joints import HEAD_PAN, HEAD_TILT, REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
+from robot.topics import (
+    AI_COMMAND,
+    DRIVE,
+    DRIVE_SAFE,
+    HEAD_STATE,
+    LLM_RAW_JSON,
+    MICROPHONE,
+    SPEAKER,
+    WHEEL_COMMANDS,
+)
 from text.plain import plain
 from tui.composer import outcome_words
 from tui.flow.chains import Kind, Lane, Step
@@ -16,10 +27,16 @@ if TYPE_CHECKING:
     from graph.data import Sample, Value
     from launcher.status import LogLine
 
-MIC, SPEAKER = "/audio/mic_raw", "/audio/speaker_raw"
-COMMAND, JSON = "/ai_command", "/llm_raw_json"
-DRIVE, DRIVE_SAFE, WHEELS, HEAD = "/drive", "/drive_safe", "/wheel_commands", "/head_state"
-TOPICS = (MIC, JSON, COMMAND, DRIVE, DRIVE_SAFE, WHEELS, HEAD, SPEAKER)
+TOPICS = (
+    MICROPHONE,
+    LLM_RAW_JSON,
+    AI_COMMAND,
+    DRIVE,
+    DRIVE_SAFE,
+    WHEEL_COMMANDS,
+    HEAD_STATE,
+    SPEAKER,
+)
 """Causes before what follows from them, which decides among messages of one moment."""
 
 SPOKEN_LEVEL = 3
@@ -62,16 +79,16 @@ class FlowReader:
 
     def _read(self, sample: Sample, said_by: str) -> Iterator[Step]:
         topic, value, time_s = sample.topic, sample.value, _sent_s(sample)
-        if topic in {MIC, SPEAKER}:
+        if topic in {MICROPHONE, SPEAKER}:
             text = _sound(value)
             if text is not None:
-                lane = Lane.MIC if topic == MIC else Lane.SPEAKER
+                lane = Lane.MIC if topic == MICROPHONE else Lane.SPEAKER
                 yield Step(time_s, lane, topic, said_by, text=text, begins=lane is Lane.MIC)
-        elif topic in {COMMAND, JSON}:
-            lane = Lane.COMMAND if topic == COMMAND else Lane.BRAIN
+        elif topic in {AI_COMMAND, LLM_RAW_JSON}:
+            lane = Lane.COMMAND if topic == AI_COMMAND else Lane.BRAIN
             text = plain(" ".join(str(value.get("data", ""))[:LONGEST].split()))
             yield Step(time_s, lane, topic, said_by, text=text, begins=True)
-        elif topic == HEAD:
+        elif topic == HEAD_STATE:
             yield from self._read_head(value, time_s, said_by)
         else:
             yield from self._read_motion(topic, value, time_s, said_by)
@@ -79,7 +96,7 @@ class FlowReader:
     def _read_motion(
         self, topic: str, value: Mapping[str, Value], time_s: float, said_by: str
     ) -> Iterator[Step]:
-        wheels = topic == WHEELS
+        wheels = topic == WHEEL_COMMANDS
         figures = _wheels(value) if wheels else outcome_words.setpoint(value)
         # Thirty-two bits of a message and a repetition of them may differ by a hair.
         figures = tuple(round(figure, 4) for figure in figures)
@@ -101,7 +118,7 @@ class FlowReader:
 
     def _read_head(self, value: Mapping[str, Value], time_s: float, said_by: str) -> Iterator[Step]:
         """Two steps of a movement: where it begins, and where it has come to rest."""
-        looks = outcome_words.joint(value, "pan_joint"), outcome_words.joint(value, "tilt_joint")
+        looks = outcome_words.joint(value, HEAD_PAN), outcome_words.joint(value, HEAD_TILT)
         before, self._looked = self._looked, looks
         if before is None:
             return
@@ -112,7 +129,7 @@ class FlowReader:
             self._head_moves = not still
             kind = Kind.HEAD_THERE if still else Kind.HEAD_MOVES
             # It has been there since the last message that was news.
-            yield Step(self._head_s, Lane.HEAD, HEAD, said_by, kind, figures=looks)
+            yield Step(self._head_s, Lane.HEAD, HEAD_STATE, said_by, kind, figures=looks)
 
 
 def _is_still(now_rad: float, before_rad: float) -> bool:
@@ -156,6 +173,6 @@ def _sound(value: Mapping[str, Value]) -> str | None:
 
 def _wheels(value: Mapping[str, Any]) -> tuple[float, ...]:
     return (
-        outcome_words.joint(value, "rear_left_wheel_joint", "velocity"),
-        outcome_words.joint(value, "rear_right_wheel_joint", "velocity"),
+        outcome_words.joint(value, REAR_LEFT_WHEEL, "velocity"),
+        outcome_words.joint(value, REAR_RIGHT_WHEEL, "velocity"),
     )

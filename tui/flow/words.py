@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from robot.topics import AI_COMMAND, LLM_RAW_JSON, MICROPHONE
 from text.figures import figure
 from text.i18n import N_, _, ngettext
 from tui.composer import outcome_words
 from tui.flow.chains import Kind, Lane
-from tui.flow.reading import COMMAND, JSON, MIC
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -83,14 +83,14 @@ def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) ->
     if recorded:
         return [_("Nobody has spoken so far in this recording: play it on, or jump.")]
     said = [_("Nobody has spoken since this screen was opened.")]
-    if MIC in topics:
+    if MICROPHONE in topics:
         said.append(_("The microphone is there: speak, or wait for what is said next."))
-    if COMMAND in topics:
+    if AI_COMMAND in topics:
         key = _("On the Deck screen, {key} writes a word to {topic}: forward, stop.")
-        said.append(key.format(key=command_key, topic=COMMAND))
-    if JSON in topics:
-        said.append(_("The Composer sends JSON to {topic}.").format(topic=JSON))
-    if not {MIC, COMMAND, JSON} & set(topics):
+        said.append(key.format(key=command_key, topic=AI_COMMAND))
+    if LLM_RAW_JSON in topics:
+        said.append(_("The Composer sends JSON to {topic}.").format(topic=LLM_RAW_JSON))
+    if not {MICROPHONE, AI_COMMAND, LLM_RAW_JSON} & set(topics):
         none = _("None of {topics} is here: lesson 9 has a voice, lesson 4 takes words.")
-        said.append(none.format(topics=f"{MIC}, {COMMAND}, {JSON}"))
+        said.append(none.format(topics=f"{MICROPHONE}, {AI_COMMAND}, {LLM_RAW_JSON}"))
     return said

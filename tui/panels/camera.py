@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from graph.pictures.images import to_rgb
 from graph.pictures.pixels import ImageError
+from robot.topics import CAMERA
 from text.figures import whole
 from text.i18n import N_, _, said
 from tui.panels.other_type import other_type
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate
 
-TOPIC = "/camera/color/image_raw"
 TYPE = "sensor_msgs/msg/Image"
 PERIOD_S = 0.3
 """Three pictures a second: a terminal is no cinema, and SSH no cable."""
@@ -44,20 +44,20 @@ class CameraFeed(Panel):
 
     def watched(self) -> set[str]:
         """The picture."""
-        return {TOPIC}
+        return {CAMERA}
 
     def show(self, update: GraphUpdate) -> None:
         """Show the newest picture, not more often than is good for the line."""
         view = self.query_one(ImageView)
-        sample = newest(update, TOPIC)
-        trouble, detail, age_s = trouble_of(update, TOPIC)
+        sample = newest(update, CAMERA)
+        trouble, detail, age_s = trouble_of(update, CAMERA)
         if trouble is not None:
             self._refused = False
             view.show_words(trouble_words(trouble, age_s), detail)
             return
         if sample is None:
             if not view.has_picture and not self._refused:
-                view.show_words(_("waiting for the first picture"), TOPIC)
+                view.show_words(_("waiting for the first picture"), CAMERA)
             return
         if (wrong := other_type(sample, TYPE)) is not None:
             self._refuse(view, *wrong)
@@ -72,7 +72,7 @@ class CameraFeed(Panel):
             self._refuse(view, _("this picture cannot be shown"), said(error.words))
             return
         self._refused = False
-        row = row_of(update, TOPIC)
+        row = row_of(update, CAMERA)
         hz = "" if row is None or row.hz is None else whole(row.hz)
         view.show(picture, f"{picture.shape[1]}×{picture.shape[0]}", hz=hz)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
 from tui import clock
 from tui.actions.app import ShowComposer
 from tui.composer.outcome import Outcome
-from tui.composer.outcome_story import FOLLOWED, SENT_TO, Story
+from tui.composer.outcome_story import FOLLOWED, Story
 from tui.panels.panel import Panel, row_of
 
 if TYPE_CHECKING:
@@ -42,12 +43,12 @@ class LlmFeed(Panel):
 
     def followed(self) -> set[str]:
         """The messages, and everything that may come of them."""
-        return {SENT_TO, *FOLLOWED}
+        return {LLM_RAW_JSON, *FOLLOWED}
 
     def show(self, update: GraphUpdate) -> None:
         """Begin a trail with each message, and follow it."""
-        for sample in update.samples.get(SENT_TO, ()):
-            row = row_of(update, SENT_TO)
+        for sample in update.samples.get(LLM_RAW_JSON, ()):
+            row = row_of(update, LLM_RAW_JSON)
             listeners = [str(row.subscribers)] if row is not None and row.subscribers else []
             expected = _read(str(sample.value.get("data", "")))
             self._story = Story(sample.received_s, listeners, expected, self._newest)

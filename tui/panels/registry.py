@@ -3,25 +3,70 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+
+from robot.topics import (
+    CAMERA,
+    HEAD_STATE,
+    JOINT_STATES,
+    MAP,
+    MICROPHONE,
+    ODOMETRY,
+    SONAR_FRONT,
+    SONAR_REAR,
+    SPEAKER,
+    WHEEL_COMMANDS,
+)
+from text.i18n import N_
 
 if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
+    from launcher.profile.panels import Panel as PanelName
     from tui.panels.panel import Panel
 
-PANELS = {
-    "sonar": ("tui.panels.sonar.panel", "SonarFeed"),
-    "wheels": ("tui.panels.wheels.panel", "WheelsFeed"),
-    "map": ("tui.panels.map.panel", "MapFeed"),
-    "camera": ("tui.panels.camera", "CameraFeed"),
-    "head": ("tui.panels.head.panel", "HeadFeed"),
-    "voice": ("tui.panels.voice.panel", "VoiceFeed"),
-    "composer": ("tui.panels.llm", "LlmFeed"),
+
+class PanelEntry(NamedTuple):
+    """Where a panel is, and what it is for."""
+
+    title: str
+    """As the picker says it, to be translated."""
+    module: str
+    class_name: str
+    needs: tuple[str, ...] = ()
+    """Topics: with one of them, it has something to show of what others have started."""
+
+
+PANELS: dict[PanelName, PanelEntry] = {
+    "sonar": PanelEntry(
+        N_("sonar"), "tui.panels.sonar.panel", "SonarFeed", (SONAR_FRONT, SONAR_REAR)
+    ),
+    "wheels": PanelEntry(
+        N_("wheels"), "tui.panels.wheels.panel", "WheelsFeed", (WHEEL_COMMANDS, JOINT_STATES)
+    ),
+    "map": PanelEntry(N_("map"), "tui.panels.map.panel", "MapFeed", (ODOMETRY, MAP)),
+    "camera": PanelEntry(N_("camera"), "tui.panels.camera", "CameraFeed", (CAMERA,)),
+    "head": PanelEntry(N_("head"), "tui.panels.head.panel", "HeadFeed", (HEAD_STATE,)),
+    "voice": PanelEntry(N_("voice"), "tui.panels.voice.panel", "VoiceFeed", (MICROPHONE, SPEAKER)),
+    "composer": PanelEntry(N_("composer"), "tui.panels.llm", "LlmFeed"),
 }
-"""What a profile's `panels` may name."""
+"""What a profile's `panels` may name, in the order in which panels stand."""
+
+
+def entry_of(name: str) -> PanelEntry | None:
+    """Return what is known of a panel, None for a name that this deck does not know."""
+    return PANELS.get(name)  # type: ignore[call-overload, no-any-return]
 
 
 def make_panel(name: str) -> Panel:
     """Make one of `PANELS`."""
-    module, made = PANELS[name]
-    panel: Panel = getattr(import_module(module), made)()
+    entry = entry_of(name)
+    if entry is None:
+        raise KeyError(name)
+    panel: Panel = getattr(import_module(entry.module), entry.class_name)()
     return panel
+
+
+def panels_for(topics: AbstractSet[str]) -> tuple[str, ...]:
+    """Return the panels that these topics can fill."""
+    return tuple(name for name, entry in PANELS.items() if topics & set(entry.needs))

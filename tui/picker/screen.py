@@ -19,6 +19,7 @@ from tui.dialogs.end_session import started
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import BREAKPOINTS, HEIGHTS
 from tui.frame.title_bar import TitleBar
+from tui.panels.registry import entry_of
 from tui.session.hardware_words import hardware_words
 from tui.session.orders import WatchOrder
 from tui.widgets.rows import Cell, Column, Row, Rows
@@ -36,16 +37,6 @@ if TYPE_CHECKING:
 RUNNING = "running:"
 WATCHED = "watch:"
 """The row for what others have started."""
-
-PANELS = {
-    "sonar": N_("sonar"),
-    "wheels": N_("wheels"),
-    "map": N_("map"),
-    "camera": N_("camera"),
-    "head": N_("head"),
-    "voice": N_("voice"),
-    "composer": N_("composer"),
-}
 
 
 class StartLesson(Action["PickerScreen"]):
@@ -303,7 +294,8 @@ def _about_lesson(lesson: Lesson) -> Content:
     count = len(lesson.nodes)
     starts = ngettext("Starts {n} node", "Starts {n} nodes", count).format(n=count)
     lines.append(_field(starts, plain(", ".join(lesson.nodes))))
-    shows = [_(PANELS[panel]) if panel in PANELS else plain(panel) for panel in lesson.panels]
+    known = ((panel, entry_of(panel)) for panel in lesson.panels)
+    shows = [_(entry.title) if entry else plain(panel) for panel, entry in known]
     lines.append(_field(_("Shows"), ", ".join([*shows, _("log")])))
     lines.append(_field(_("File"), plain(str(lesson.path))))
     return Content("\n").join(lines)

@@ -71,7 +71,7 @@ class LivePad:
         with contextlib.suppress(ImportError):
             await _imported(*OF_ROS)
         # Once a lesson is chosen the processors are for its nodes.
-        await _imported(*OF_SCREEN, *(module for module, _made in PANELS.values()))
+        await _imported(*OF_SCREEN, *(entry.module for entry in PANELS.values()))
 
     async def _start_ahead(self) -> None:
         async with self._starting:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tui.session.panel_needs import panels_for
+from tui.panels.registry import panels_for
 from tui.session.watching import WatchLink
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robot.topics import DRIVE_SAFE, WHEEL_COMMANDS
 from text.i18n import _
 from text.plain import plain
 
@@ -44,13 +45,13 @@ class Keeper:
 KEEPERS = (
     Keeper(
         "nodes.safety_stop",
-        "/drive_safe",
+        DRIVE_SAFE,
         "ackermann_msgs/msg/AckermannDriveStamped",
         frozenset({"/safety_node", "/safety_stop"}),
     ),
     Keeper(
         "nodes.electronic_differential",
-        "/wheel_commands",
+        WHEEL_COMMANDS,
         "sensor_msgs/msg/JointState",
         frozenset({"/electronic_differential"}),
     ),

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from robot.topics import DRIVE_TELEOP
 from text.figures import figure
 from text.i18n import N_, _
 from text.plain import plain
@@ -52,7 +53,7 @@ REFUSED = {
 }
 BEYOND = re.compile(r"(?P<value>\S+) (?P<unit>\S+), limit (?P<limit>\S+) (?P=unit)")
 STAMP = re.compile(r"stamp (?P<age>\S+) s old")
-SOURCES = {"/drive_teleop": N_("the keys")}
+SOURCES = {DRIVE_TELEOP: N_("the keys")}
 """Those that are known by a better name than their topic."""
 
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
+from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP
 from text.i18n import _
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Value
     from robot.words import DriveSetpoint
 
-TELEOP, DRIVE = "/drive_teleop", "/drive"
 DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
-DRIVE_SAFE, WHEELS = "/drive_safe", "/wheel_commands"
 RATE_HZ = 20.0
 """Of the commands while a key is held."""
 FRAME = "base_link"
@@ -33,10 +32,10 @@ def route(update: GraphUpdate | None) -> Route:
     rows = {row.name: row for row in update.topics} if update is not None else {}
     safe = rows.get(DRIVE_SAFE)
     gated = safe is not None and safe.publishers > 0
-    for topic in (TELEOP, DRIVE):
+    for topic in (DRIVE_TELEOP, DRIVE):
         row = rows.get(topic)
         if row is not None and row.subscribers:
-            return Route(topic, gated or topic == TELEOP)
+            return Route(topic, gated or topic == DRIVE_TELEOP)
     return Route("", gated)
 
 
@@ -44,7 +43,7 @@ def nowhere_words() -> str:
     """Say that nothing will move, why, and what to do."""
     words = _("Nobody listens to {gate} or {drive}: nothing will move. Start {nodes}.")
     nodes = "safety_stop, electronic_differential"
-    return words.format(gate=TELEOP, drive=DRIVE, nodes=nodes)
+    return words.format(gate=DRIVE_TELEOP, drive=DRIVE, nodes=nodes)
 
 
 def command(setpoint: DriveSetpoint) -> Mapping[str, Value]:

@@ -12,23 +12,21 @@ from textual.content import Content
 from textual.message import Message
 
 from graph.publishing.dead_man_switch import Holding
+from robot.topics import DRIVE_SAFE, SAFETY_STATE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
 from text.i18n import N_, _
 from text.plain import plain
 from tui import clock
 from tui.actions import REGISTRY, Acting, bindings
 from tui.actions.app import EmergencyRelease
-from tui.emergency.state import SAFETY_TOPIC
 from tui.panels.panel import newest, row_of
 from tui.panels.wheels.reading import Wheels, wheels_in
 from tui.teleop.actions import TELEOP_ACTIONS, MoveAction, OpenTeleop
 from tui.teleop.gate import Gate, gate_in, gate_words
 from tui.teleop.keys import NOTHING, Move, TeleopLimits
 from tui.teleop.route import (
-    DRIVE_SAFE,
     DRIVE_TYPE,
     RATE_HZ,
-    WHEELS,
     Route,
     command,
     nowhere_words,
@@ -67,7 +65,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         &:focus { border-top: heavy $accent; }
     }
     """
-    topics: ClassVar = frozenset({DRIVE_SAFE, WHEELS, SAFETY_TOPIC})
+    topics: ClassVar = frozenset({DRIVE_SAFE, WHEEL_COMMANDS, SAFETY_STATE})
     """What it shows."""
 
     def __init__(self) -> None:
@@ -203,12 +201,12 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
     def show(self, update: GraphUpdate) -> None:
         """Show the newest of the topics."""
         self._follow(route(update))
-        for sample in update.samples.get(SAFETY_TOPIC, ()):
+        for sample in update.samples.get(SAFETY_STATE, ()):
             self._gate = gate_in(sample) or self._gate
         self._allowed = _drive(newest(update, DRIVE_SAFE)) or self._allowed
-        turned = newest(update, WHEELS)
+        turned = newest(update, WHEEL_COMMANDS)
         self._wheels = (None if turned is None else wheels_in(turned.value)) or self._wheels
-        for topic in (DRIVE_SAFE, WHEELS):
+        for topic in (DRIVE_SAFE, WHEEL_COMMANDS):
             row = row_of(update, topic)
             if row is None or not row.publishers:
                 self._forget(topic)

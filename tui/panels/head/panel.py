@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from robot.joints import HEAD_PAN, HEAD_TILT
+from robot.topics import HEAD_STATE, LLM_RESULT
 from text.i18n import N_, _
-from tui.panels.head.reading import PAN, TILT, Pose, head_in
+from tui.panels.head.reading import Pose, head_in
 from tui.panels.head.widget import HeadPanel
 from tui.panels.joints import Joints
 from tui.panels.panel import Panel, trouble_of
@@ -15,8 +17,6 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-
-STATE, RESULT = "/head_state", "/llm_result"
 
 
 class HeadFeed(Panel):
@@ -28,7 +28,7 @@ class HeadFeed(Panel):
 
     def __init__(self) -> None:
         super().__init__()
-        self._joints = Joints(STATE, (PAN, TILT))
+        self._joints = Joints(HEAD_STATE, (HEAD_PAN, HEAD_TILT))
 
     def compose(self) -> ComposeResult:
         """The drawing."""
@@ -36,24 +36,24 @@ class HeadFeed(Panel):
 
     def watched(self) -> set[str]:
         """The pose."""
-        return {STATE}
+        return {HEAD_STATE}
 
     def followed(self) -> set[str]:
         """What came of the LLM's commands."""
-        return {RESULT}
+        return {LLM_RESULT}
 
     def show(self, update: GraphUpdate) -> None:
         """Show the newest pose and the newest command."""
         drawing = self.query_one(HeadPanel)
-        for sample in update.samples.get(STATE, ()):
+        for sample in update.samples.get(HEAD_STATE, ()):
             pose = head_in(sample.value)
             if pose is not None:
                 drawing.show(pose)
             self._joints.hear(sample, read=pose is not None)
         drawing.show_instead(self._joints.instead)
-        for sample in update.samples.get(RESULT, ()):
+        for sample in update.samples.get(LLM_RESULT, ()):
             self._hear(str(sample.value.get("data", "")))
-        drawing.show_trouble(*trouble_of(update, STATE))
+        drawing.show_trouble(*trouble_of(update, HEAD_STATE))
 
     def _hear(self, text: str) -> None:
         try:

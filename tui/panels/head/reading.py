@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from robot.joints import HEAD_PAN, HEAD_TILT
 from text.figures import whole
 from text.i18n import _
 
-PAN, TILT = "pan_joint", "tilt_joint"
 LIMIT_DEG = 90.0
 SAME_WITHIN_DEG = 0.5
 
@@ -57,7 +57,7 @@ def head_in(value: Mapping[str, Any]) -> Pose | None:
     A joint that is missing counts as not a number.
     """
     names = [str(name) for name in value.get("name", ())]
-    if PAN not in names and TILT not in names:
+    if HEAD_PAN not in names and HEAD_TILT not in names:
         return None
     positions = value.get("position", ())
 
@@ -65,4 +65,4 @@ def head_in(value: Mapping[str, Any]) -> Pose | None:
         at = names.index(joint) if joint in names else len(positions)
         return math.degrees(float(positions[at])) if at < len(positions) else math.nan
 
-    return Pose(degrees(PAN), degrees(TILT))
+    return Pose(degrees(HEAD_PAN), degrees(HEAD_TILT))

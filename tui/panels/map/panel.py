@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from graph.data import Trouble
+from robot.topics import GOAL_POSE, MAP, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.i18n import N_, _
-from tui.emergency.state import SAFETY_TOPIC
 from tui.panels.map.reading import goal_in, ground_in, pose_in
 from tui.panels.map.scene import FRONT, REAR
 from tui.panels.map.widget import RoomMap
@@ -22,9 +22,8 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
     from tui.widgets.drawing import Instead
 
-ODOMETRY, TRUTH, GROUND, GOAL = "/odom", "/mock/pose", "/map", "/goal_pose"
-TYPES = {ODOMETRY: "nav_msgs/msg/Odometry", TRUTH: "geometry_msgs/msg/PoseStamped"}
-SONARS = {FRONT: "/sensor/sonar_front", REAR: "/sensor/sonar_rear"}
+TYPES = {ODOMETRY: "nav_msgs/msg/Odometry", MOCK_POSE: "geometry_msgs/msg/PoseStamped"}
+SONARS = {FRONT: SONAR_FRONT, REAR: SONAR_REAR}
 
 
 class MapFeed(Panel):
@@ -49,11 +48,11 @@ class MapFeed(Panel):
 
     def watched(self) -> set[str]:
         """The newest of everything; the path is what of it was seen."""
-        return {ODOMETRY, TRUTH, GROUND, GOAL, SAFETY_TOPIC, *SONARS.values()}
+        return {ODOMETRY, MOCK_POSE, MAP, GOAL_POSE, SAFETY_STATE, *SONARS.values()}
 
     def kept(self) -> set[str]:
         """Where the robot is: the path goes on."""
-        return {ODOMETRY, TRUTH}
+        return {ODOMETRY, MOCK_POSE}
 
     def keep(self, update: GraphUpdate) -> None:
         """Go on with the path, and draw nothing."""
@@ -65,7 +64,7 @@ class MapFeed(Panel):
         """Show what has come."""
         drawing = self.query_one(RoomMap)
         self._choose_pose(update, drawing)
-        room = newest(update, GROUND)
+        room = newest(update, MAP)
         ground = None if room is None else ground_in(room.value)
         if ground is not None:
             drawing.show_ground(ground)
@@ -82,7 +81,7 @@ class MapFeed(Panel):
 
     def _choose_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
         """Odometry, once there is one; until then the truth of a simulated robot, if it is told."""
-        topic = next((one for one in (ODOMETRY, TRUTH) if _is_published(update, one)), "")
+        topic = next((one for one in (ODOMETRY, MOCK_POSE) if _is_published(update, one)), "")
         if not topic or self._pose_topic in {topic, ODOMETRY}:
             return
         if self._pose_topic:
@@ -105,17 +104,17 @@ class MapFeed(Panel):
             drawing.show_pose(*found)
 
     def _show_truth(self, update: GraphUpdate, drawing: RoomMap) -> None:
-        if self._pose_topic != ODOMETRY or not _is_published(update, TRUTH):
+        if self._pose_topic != ODOMETRY or not _is_published(update, MOCK_POSE):
             drawing.show_truth(None)
             return
-        sample = newest(update, TRUTH)
+        sample = newest(update, MOCK_POSE)
         found = None if sample is None else pose_in(sample.value)
         if found is not None:
             drawing.show_truth(found[0])
 
     def _show_goal(self, update: GraphUpdate, drawing: RoomMap) -> None:
-        sample = newest(update, GOAL)
-        if not _is_published(update, GOAL):
+        sample = newest(update, GOAL_POSE)
+        if not _is_published(update, GOAL_POSE):
             drawing.show_goal(None)
         elif sample is not None:
             drawing.show_goal(goal_in(sample.value))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from tui.emergency.state import SAFETY_TOPIC
+from robot.topics import SAFETY_STATE
 from tui.panels.panel import newest, row_of
 from tui.panels.sonar.words import COURSE, FREE_FROM_M, Bounds
 from tui.teleop.gate import Gate, gate_in
@@ -19,10 +19,10 @@ def bounds_of(update: GraphUpdate, before: Bounds) -> Bounds:
 
     Those of the course where nobody tells any: a node of one's own, or none.
     """
-    row = row_of(update, SAFETY_TOPIC)
+    row = row_of(update, SAFETY_STATE)
     if row is None or not row.publishers:
         return COURSE
-    sample = newest(update, SAFETY_TOPIC)
+    sample = newest(update, SAFETY_STATE)
     gate = None if sample is None else gate_in(sample)
     return before if gate is None else _told(gate)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robot.topics import SAFETY_STATE, SONAR_FRONT, SONAR_REAR
 from text.i18n import N_
-from tui.emergency.state import SAFETY_TOPIC
 from tui.panels.other_type import other_type
 from tui.panels.panel import ALWAYS, Panel, newest, row_of, trouble_of
 from tui.panels.sonar.bounds import bounds_of
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
 
 TYPE = "std_msgs/msg/Float32"
-TOPICS = {"front": "/sensor/sonar_front", "rear": "/sensor/sonar_rear"}
+TOPICS = {"front": SONAR_FRONT, "rear": SONAR_REAR}
 
 
 class SonarFeed(Panel):
@@ -39,7 +39,7 @@ class SonarFeed(Panel):
 
     def watched(self) -> set[str]:
         """Both sonars, and what counts as near."""
-        return {*TOPICS.values(), SAFETY_TOPIC}
+        return {*TOPICS.values(), SAFETY_STATE}
 
     def kept(self) -> set[str]:
         """Both sonars: the trend has no gap."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 from text.i18n import N_
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
@@ -17,9 +18,7 @@ if TYPE_CHECKING:
     from tui.widgets.drawing import Instead
 
 TYPE = "std_msgs/msg/ByteMultiArray"
-TOPICS: dict[str, Speaker] = {"/audio/mic_raw": "human", "/audio/speaker_raw": "robot"}
-HEARD_FIRST = "/audio/mic_raw"
-LEVEL = "/audio/level"
+TOPICS: dict[str, Speaker] = {MICROPHONE: "human", SPEAKER: "robot"}
 SILENT_S = 2.0
 """A driver that tells no level for so long has no microphone."""
 
@@ -46,7 +45,7 @@ class VoiceFeed(Panel):
 
     def watched(self) -> set[str]:
         """How loud it is now."""
-        return {LEVEL}
+        return {AUDIO_LEVEL}
 
     def show(self, update: GraphUpdate) -> None:
         """Add what was said, in the order in which it came."""
@@ -59,7 +58,7 @@ class VoiceFeed(Panel):
         self._show_level(talk, update)
         instead = self._of_another_type(update)
         talk.show_instead(instead)
-        talk.show_trouble(*((None,) if instead else trouble_of(update, HEARD_FIRST)))
+        talk.show_trouble(*((None,) if instead else trouble_of(update, MICROPHONE)))
 
     def _of_another_type(self, update: GraphUpdate) -> Instead | None:
         """Return what to say of the first topic that carries another type."""
@@ -72,12 +71,12 @@ class VoiceFeed(Panel):
         return None
 
     def _show_level(self, talk: VoicePanel, update: GraphUpdate) -> None:
-        sample = newest(update, LEVEL)
+        sample = newest(update, AUDIO_LEVEL)
         dbfs = sample.value.get("data") if sample is not None else None
         if isinstance(dbfs, (int, float)) and math.isfinite(dbfs):
             talk.show_level(float(dbfs))
             return
-        teller, microphone = row_of(update, LEVEL), row_of(update, HEARD_FIRST)
+        teller, microphone = row_of(update, AUDIO_LEVEL), row_of(update, MICROPHONE)
         if teller is not None and teller.publishers:
             if teller.trouble is not None or (teller.age_s or 0.0) > SILENT_S:
                 talk.show_level(None, missing=True)

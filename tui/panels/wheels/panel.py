@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL
 from robot.kinematics import wheel_speeds
+from robot.topics import DRIVE, WHEEL_COMMANDS
 from text.i18n import N_
 from tui.panels.joints import Joints
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, first_published, newest, trouble_of
-from tui.panels.wheels.reading import LEFT, RIGHT, Wheels, wheels_in
+from tui.panels.wheels.reading import Wheels, wheels_in
 from tui.panels.wheels.widget import WheelsPanel
 
 if TYPE_CHECKING:
@@ -21,7 +23,6 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
     from tui.widgets.drawing import Instead
 
-WHEELS, DRIVE = "/wheel_commands", "/drive"
 DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
 
 
@@ -35,7 +36,7 @@ class WheelsFeed(Panel):
 
     def __init__(self) -> None:
         super().__init__()
-        self._joints = Joints(WHEELS, (LEFT, RIGHT))
+        self._joints = Joints(WHEEL_COMMANDS, (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL))
         self._instead: Instead | None = None
         """Of the drive commands."""
 
@@ -45,23 +46,23 @@ class WheelsFeed(Panel):
 
     def watched(self) -> set[str]:
         """What the wheels are told, and what the chassis is told."""
-        return {WHEELS, DRIVE}
+        return {WHEEL_COMMANDS, DRIVE}
 
     def show(self, update: GraphUpdate) -> None:
         """Show the newest speeds."""
-        topic = first_published(update, (WHEELS, DRIVE))
-        self.name_source("" if topic == WHEELS else topic)
+        topic = first_published(update, (WHEEL_COMMANDS, DRIVE))
+        self.name_source("" if topic == WHEEL_COMMANDS else topic)
         drawing = self.query_one(WheelsPanel)
         sample = newest(update, topic)
         if sample is not None:
-            wheels = wheels_in(sample.value) if topic == WHEELS else would_be(sample.value)
+            wheels = wheels_in(sample.value) if topic == WHEEL_COMMANDS else would_be(sample.value)
             if wheels is not None:
                 drawing.show(wheels)
-            if topic == WHEELS:
+            if topic == WHEEL_COMMANDS:
                 self._joints.hear(sample, read=wheels is not None)
             else:
                 self._instead = other_type(sample, DRIVE_TYPE)
-        drawing.show_instead(self._joints.instead if topic == WHEELS else self._instead)
+        drawing.show_instead(self._joints.instead if topic == WHEEL_COMMANDS else self._instead)
         drawing.show_trouble(*trouble_of(update, topic))
 
     def words_changed(self) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL, STEERING
 from robot.kinematics import WHEEL_RADIUS_M, turning_radius
 from text.i18n import _
 
@@ -14,7 +15,6 @@ STANDING_BELOW_M_S = 0.005
 EVEN_WITHIN_M_S = 0.003
 FARTHEST_RAD = math.pi
 """A wheel that is said to be turned farther is not: a half turn is the most that an angle tells."""
-LEFT, RIGHT, STEERING = "rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def wheels_in(value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M) 
     A joint that is missing counts as not a number.
     """
     names = [str(name) for name in value.get("name", ())]
-    if LEFT not in names and RIGHT not in names:
+    if REAR_LEFT_WHEEL not in names and REAR_RIGHT_WHEEL not in names:
         return None
 
     def read(array: str, joint: str) -> float:
@@ -69,7 +69,7 @@ def wheels_in(value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M) 
         return float(numbers[at]) if at < len(numbers) else math.nan
 
     return Wheels(
-        read("velocity", LEFT) * wheel_radius_m,
-        read("velocity", RIGHT) * wheel_radius_m,
+        read("velocity", REAR_LEFT_WHEEL) * wheel_radius_m,
+        read("velocity", REAR_RIGHT_WHEEL) * wheel_radius_m,
         read("position", STEERING),
     )
