@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 
-from tui.launchpad import LivePad
+from tui.session.launchpad import LivePad
 
 from launcher.status import SessionInfo
 
