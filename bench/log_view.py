@@ -33,7 +33,7 @@ class FloodApp(App[None]):
 
     def compose(self) -> ComposeResult:
         """The log fills the screen."""
-        yield LogPane()
+        yield LogPane(LogView())
 
 
 async def longest_gap(stop: asyncio.Event) -> float:

@@ -38,9 +38,9 @@ HOSTILE = (
 class LogApp(App[None]):
     """A bare app with nothing but the log."""
 
-    def __init__(self) -> None:
+    def __init__(self, period_s: float = 0.0) -> None:
         super().__init__()
-        self.pane = LogPane(period_s=0.0, file_of=lambda node: f"/logs/{node}.log")
+        self.pane = LogPane(LogView(period_s=period_s, file_of=lambda node: f"/logs/{node}.log"))
 
     def compose(self) -> ComposeResult:
         """The log fills the screen."""
@@ -198,7 +198,7 @@ async def test_search_finds_while_typing_marks_and_goes_round() -> None:
         await pilot.press(*"путь")
         assert len(view.index.found) == 1
         await pilot.press("enter")
-        assert view.found_number == 1
+        assert view.choice.found_number == 1
         assert any("Путь свободен" in row for row in rows(view))
         assert "“путь” 1/1" in app.query_one(LogBar).words
         app.pane.search()
@@ -215,7 +215,7 @@ async def test_next_and_previous_walk_over_the_found_lines() -> None:
         numbers = []
         for step in (-1, -1, 1, 1, 1):
             assert view.find(step)
-            numbers.append(view.found_number)
+            numbers.append(view.choice.found_number)
         assert numbers == [19, 18, 19, 1, 2]
         assert not view.following
         view.log_filter = LogFilter(search="nowhere")
@@ -228,7 +228,7 @@ async def test_chosen_lines_are_copied_with_date_severity_and_node() -> None:
         app = pilot.app
         assert isinstance(app, LogApp)
         await pilot.press("up", "up", "shift+up", "shift+up")
-        assert view.chosen_count == 3
+        assert len(view.choice.entries) == 3
         app.pane.copy()
         copied = app.clipboard.splitlines()
         assert [text.split(" ", 2)[2] for text in copied] == [
@@ -243,10 +243,10 @@ async def test_a_click_chooses_a_line_and_shift_click_all_up_to_it() -> None:
     async with LogApp().run_test(size=(80, 12)) as pilot:
         view = await shown(pilot, lines(1, 5))
         await pilot.click(LogView, offset=(5, 1))
-        assert [entry.text for entry in view._chosen()] == ["line 2"]
+        assert [entry.text for entry in view.choice.entries] == ["line 2"]
         assert not view.following
         await pilot.click(LogView, offset=(5, 3), shift=True)
-        assert [entry.text for entry in view._chosen()] == ["line 2", "line 3", "line 4"]
+        assert [entry.text for entry in view.choice.entries] == ["line 2", "line 3", "line 4"]
         assert rows(view)[1].startswith("▌")
 
 
@@ -270,11 +270,11 @@ async def test_long_lines_are_folded_or_shifted() -> None:
     async with LogApp().run_test(size=(60, 12)) as pilot:
         words = " ".join(f"word{number}" for number in range(30))
         view = await shown(pilot, [line(1, words)])
-        assert view.total_rows > 3
-        assert "word29" in rows(view)[view.total_rows - 1]
+        assert view.index.rows > 3
+        assert "word29" in rows(view)[view.index.rows - 1]
         view.set_fold(False)
         await pilot.pause()
-        assert view.total_rows == 1
+        assert view.index.rows == 1
         assert rows(view)[0].endswith("›")
         await pilot.press(*["right"] * 30)
         assert rows(view)[0].endswith("word29")
@@ -315,10 +315,10 @@ async def test_resizing_keeps_the_line_that_was_at_the_top() -> None:
         words = " ".join(["word"] * 20)
         view = await shown(pilot, [line(seq, f"{seq}: {words}") for seq in range(1, 60)])
         await pilot.press("pageup", "pageup")
-        top = view._top_id()
+        top = view.top_id
         await pilot.resize_terminal(100, 14)
         await pilot.pause()
-        assert view._top_id() == top
+        assert view.top_id == top
 
 
 async def answer(pilot: Pilot[None], path: Path) -> None:
@@ -391,13 +391,11 @@ async def test_a_flood_measures_and_draws_next_to_nothing() -> None:
 
 
 async def test_batches_that_come_close_together_are_drawn_once() -> None:
-    app = LogApp()
-    app.pane.view._period_s = 0.05
-    async with app.run_test(size=(80, 24)) as pilot:
+    async with LogApp(period_s=0.05).run_test(size=(80, 24)) as pilot:
         view = await shown(pilot, lines(1, 10))
         drawn = []
-        redraw = view.redraw
-        view.redraw = lambda **how: (drawn.append(1), redraw(**how))[1]  # type: ignore[method-assign]
+        redraw = view._tail.redraw
+        view._tail.redraw = lambda **how: (drawn.append(1), redraw(**how))[1]  # type: ignore[method-assign]
         for batch in range(20):
             view.append(lines(11 + batch * 10, 10))
         for _wait in range(200):

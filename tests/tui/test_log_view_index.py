@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from launcher.status import LogLine, Severity
 from tui.log_view.filter import LogFilter
 from tui.log_view.index import LogIndex, folded, folded_rows
-from tui.log_view.ring import Entry, LogRing
+from tui.log_view.ring import LineRing, LogEntry
 from tui.log_view.rows import text_of
 
 TEXTS = (
@@ -24,14 +24,14 @@ TEXTS = (
 )
 
 
-def entries(count: int = 60) -> list[Entry]:
+def entries(count: int = 60) -> list[LogEntry]:
     lines = [
         LogLine(
             f"node{n % 3}", 1 + n // 3, 0.0, list(Severity)[n % 5], f"{TEXTS[n % 5]} {n}".strip()
         )
         for n in range(count)
     ]
-    return LogRing().append(lines, {"node1": 4})
+    return LineRing().append(lines, {"node1": 4})
 
 
 FILTERS = [
@@ -96,7 +96,7 @@ def test_dropped_lines_leave_the_rest_on_the_rows_of_a_new_index() -> None:
 
 @pytest.mark.parametrize("chosen", FILTERS)
 def test_marks_for_dropped_lines_stand_where_a_new_index_has_them(chosen: LogFilter) -> None:
-    ring, index, fresh = LogRing(max_lines=40), LogIndex(text_of), LogIndex(text_of)
+    ring, index, fresh = LineRing(max_lines=40), LogIndex(text_of), LogIndex(text_of)
     for each in (index, fresh):
         each.filter = chosen
         each.fold(9)

@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections import Counter
 
 from launcher.status import LogLine, Severity
-from tui.log_view.ring import LONGEST_TEXT, LogRing
+from tui.log_view.ring import LONGEST_TEXT, LineRing
 
 
 def line(node: str, seq: int, text: str = "hello", severity: Severity = Severity.INFO) -> LogLine:
     return LogLine(node, seq, 1_700_000_000.0 + seq, severity, text)
 
 
-def fill(ring: LogRing, node: str, first: int, count: int, text: str = "hello") -> None:
+def fill(ring: LineRing, node: str, first: int, count: int, text: str = "hello") -> None:
     ring.append([line(node, seq, text) for seq in range(first, first + count)], {})
     if ring.full:
         ring.trim()
 
 
 def test_a_flood_of_one_node_leaves_the_lines_of_the_others() -> None:
-    ring = LogRing(max_lines=1000)
+    ring = LineRing(max_lines=1000)
     fill(ring, "quiet", 1, 50)
     for batch in range(40):
         fill(ring, "noisy", 1 + batch * 500, 500)
@@ -30,7 +30,7 @@ def test_a_flood_of_one_node_leaves_the_lines_of_the_others() -> None:
 
 
 def test_lines_stay_in_order_and_the_oldest_go_first() -> None:
-    ring = LogRing(max_lines=100)
+    ring = LineRing(max_lines=100)
     for batch in range(20):
         fill(ring, "noisy", 1 + batch * 30, 30)
     ids = [entry.id for entry in ring.entries]
@@ -40,7 +40,7 @@ def test_lines_stay_in_order_and_the_oldest_go_first() -> None:
 
 
 def test_memory_is_bounded_in_bytes_too() -> None:
-    ring = LogRing(max_lines=20_000, max_bytes=1_000_000)
+    ring = LineRing(max_lines=20_000, max_bytes=1_000_000)
     for batch in range(30):
         fill(ring, "noisy", 1 + batch * 20, 20, "x" * 10_000)
         assert sum(entry.size for entry in ring.entries) <= 1_250_000 + 20 * 10_300
@@ -48,34 +48,34 @@ def test_memory_is_bounded_in_bytes_too() -> None:
 
 
 def test_a_line_of_a_megabyte_is_cut_and_says_so() -> None:
-    ring = LogRing()
+    ring = LineRing()
     (entry,) = ring.append([line("noisy", 1, "x" * 1_000_000)], {})
     assert len(entry.text) < LONGEST_TEXT + 30
     assert entry.text.endswith(f"(+{1_000_000 - LONGEST_TEXT})")
 
 
 def test_a_gap_in_the_numbers_is_marked_where_it_is() -> None:
-    ring = LogRing()
+    ring = LineRing()
     ring.append([line("a", 1), line("b", 7)], {})
     entries = ring.append([line("b", 8), line("a", 12)], {"a": 10})
     assert [(entry.node, entry.skipped) for entry in entries] == [("b", 0), ("a", 10), ("a", 0)]
 
 
 def test_lines_reported_as_skipped_are_marked_once() -> None:
-    ring = LogRing()
+    ring = LineRing()
     ring.append([line("a", 1)], {})
     assert [entry.skipped for entry in ring.append([], {"a": 5})] == [5]
     assert [entry.skipped for entry in ring.append([line("a", 7)], {})] == [0]
 
 
 def test_the_first_line_of_a_node_is_no_gap_whatever_its_number() -> None:
-    ring = LogRing()
+    ring = LineRing()
     assert [entry.skipped for entry in ring.append([line("a", 500)], {})] == [0]
     assert [entry.skipped for entry in ring.append([line("a", 1)], {})] == [0]
 
 
 def test_what_somebody_reads_is_not_dropped_and_the_gap_behind_it_is_marked() -> None:
-    ring = LogRing(max_lines=100)
+    ring = LineRing(max_lines=100)
     fill(ring, "noisy", 1, 100)
     read = list(ring.entries)
     ring.hold()
@@ -92,13 +92,13 @@ def test_what_somebody_reads_is_not_dropped_and_the_gap_behind_it_is_marked() ->
 
 
 def test_control_characters_become_their_pictures() -> None:
-    ring = LogRing()
+    ring = LineRing()
     (entry,) = ring.append([line("a", 1, "\x1b]52;c;AAAA\x07 \x00 \ud800 [red]x[/red]")], {})
     assert entry.text == "␛]52;c;AAAA␇ ␀ � [red]x[/red]"
 
 
 def test_lines_are_counted_by_node_and_severity() -> None:
-    ring = LogRing(max_lines=4)
+    ring = LineRing(max_lines=4)
     for seq in range(10):
         fill(ring, "a", seq, 1)
     ring.append([line("a", 10, severity=Severity.WARN), line("b", 1, severity=Severity.FATAL)], {})

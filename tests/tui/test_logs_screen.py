@@ -155,7 +155,7 @@ async def test_in_the_search_field_letters_and_space_are_text() -> None:
         await pilot.press("enter", "f")
         assert len(screen.pane.view.index.shown) == 2
         await pilot.press("f", "N")
-        assert screen.pane.view.found_number == 1
+        assert screen.pane.view.choice.found_number == 1
 
 
 async def test_on_a_narrow_screen_the_list_comes_and_goes() -> None:

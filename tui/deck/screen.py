@@ -22,6 +22,7 @@ from tui.deck.nodes_table import NodesTable
 from tui.deck.panels import ScreenWithPanels
 from tui.graph.pane import GraphHead
 from tui.log_view.pane import LogPane
+from tui.log_view.view import LogView
 from tui.panels.panel import row_of
 from tui.session.messages import SessionChanged
 from tui.teleop.actions import OpenTeleop
@@ -103,7 +104,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
                 yield NodesTable()
                 yield GraphHead()
             with Vertical(id="talk"):
-                yield LogPane(file_of=self.feed.log_file)
+                yield LogPane(LogView(file_of=self.feed.log_file))
                 yield CommandLine(id="command")
 
     # What the actions do

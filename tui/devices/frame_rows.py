@@ -1,4 +1,4 @@
-"""Frames of a serial port as lines of a log: the way is its node, bad ones are its errors."""
+"""Frames of a serial port as lines of a log: the way is the node, bad ones are errors."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from launcher.status import LogLine, Severity
 from robot.frames.lines import MOST_OCTETS, FrameLine
 from robot.frames.protocols import Kind
 from text.i18n import N_, _
+from tui.log_view.rows import LogColumns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +28,7 @@ _READABLE = 4
 """Fewer bytes are no text, even if each of them is a letter."""
 _WIDEST = 64
 """Cells of the words up to which the bytes stand in a column."""
+_WAY_CELLS = 6
 
 
 class FrameRows:
@@ -76,3 +78,9 @@ def octets_text(octets: bytes, *, as_hex: bool = False) -> str:
     if not as_hex and len(line) >= _READABLE and all(0x20 <= octet < 0x7F for octet in line):
         return line.decode("ascii") + more
     return octets.hex(" ").upper() + more
+
+
+def frame_columns(width: int, longest_node: int) -> LogColumns:
+    """Time, to a millisecond where there is room, and way; no severity: the text has its mark."""
+    del longest_node
+    return LogColumns(12 if width >= 60 else 8, 0, _WAY_CELLS)

@@ -17,12 +17,12 @@ from tui.actions import bindings
 from tui.devices import trouble as device_trouble
 from tui.devices import words
 from tui.devices.actions import DEVICES_ACTIONS
-from tui.devices.frame_rows import KEPT, WAYS, FrameRows
-from tui.devices.frames_view import FramesPane, FramesView
+from tui.devices.frame_rows import KEPT, WAYS, FrameRows, frame_columns
 from tui.devices.reading import Device, DeviceBook, frames_topic
 from tui.devices.table import DevicesTable
 from tui.frame.screen import DeckScreen
-from tui.log_view.tail import TailView
+from tui.log_view.pane import LogPane
+from tui.log_view.view import LogView
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -72,7 +72,7 @@ class DevicesScreen(DeckScreen):
         yield Static(id="devices-empty", markup=False)
         yield DevicesTable()
         yield Static(id="devices-chosen", markup=False)
-        yield FramesPane(max_lines=KEPT)
+        yield LogPane(LogView(max_lines=KEPT, fold=False, columns_for=frame_columns))
 
     @property
     def table(self) -> DevicesTable:
@@ -80,9 +80,9 @@ class DevicesScreen(DeckScreen):
         return self.query_one(DevicesTable)
 
     @property
-    def pane(self) -> FramesPane:
+    def pane(self) -> LogPane:
         """The frames."""
-        return self.query_one(FramesPane)
+        return self.query_one(LogPane)
 
     @property
     def chosen(self) -> Device | None:
@@ -102,6 +102,7 @@ class DevicesScreen(DeckScreen):
 
     def on_mount(self) -> None:
         """Begin in the table."""
+        self._name_lines()
         self.set_interval(_LOOK_EVERY_S, self._look)
         self._look()
 
@@ -139,7 +140,7 @@ class DevicesScreen(DeckScreen):
         del message
         self._show_way(None)
         self._lay_frames()
-        self.pane.words_changed()
+        self._name_lines()
         self._look()
 
     def on_resize(self) -> None:
@@ -155,7 +156,7 @@ class DevicesScreen(DeckScreen):
     def _go_to_frames(self) -> None:
         self.pane.view.focus()
 
-    @on(TailView.Changed)
+    @on(LogView.StateChanged)
     def _keys_changed(self) -> None:
         self.refresh_bindings()
 
@@ -219,9 +220,13 @@ class DevicesScreen(DeckScreen):
             self.pane.view.append(self.frames.lines(fresh))
 
     def _lay_frames(self) -> None:
-        view = self.pane.view
-        if isinstance(view, FramesView):
-            view.replace_lines(self.frames.lines())
+        self.pane.view.replace_lines(self.frames.lines())
+
+    def _name_lines(self) -> None:
+        """Say what the lines are in the language spoken now."""
+        self.pane.view.minimum_words = _("only noise and bad frames")
+        self.pane.view.know_nodes(_(way) for way in WAYS.values())
+        self.pane.words_changed()
 
     def _look(self) -> None:
         """Show things as they are now."""

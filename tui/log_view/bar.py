@@ -83,7 +83,7 @@ def _tail_parts(view: LogView) -> list[tuple[str, str]]:
 
 def _node_parts(view: LogView) -> list[tuple[str, str]]:
     """The node of the line pointed at, where its column has no room for the name."""
-    node = view.chosen_node
+    node = view.choice.node
     return [(plain(node), "chosen")] if node is not None and view.cuts(node) else []
 
 
@@ -95,7 +95,7 @@ def _search_parts(view: LogView) -> list[tuple[str, str]]:
     text = plain(chosen.search, LONGEST_NAME)
     if not found:
         return [(_("“{text}” not found").format(text=text), "chosen")]
-    number = view.found_number
+    number = view.choice.found_number
     count = f"{grouped(number)}/{grouped(found)}" if number else grouped(found)
     words = _("“{text}” {count}") if not chosen.only_found else _("only “{text}” {count}")
     return [(words.format(text=text, count=count), "chosen")]
@@ -119,7 +119,7 @@ def _filter_parts(view: LogView) -> list[tuple[str, str]]:
 
 def _count_parts(view: LogView) -> list[tuple[str, str]]:
     parts: list[tuple[str, str]] = []
-    lines = view.chosen_count
+    lines = len(view.choice.entries)
     if lines > 1:
         words = ngettext("{count} line chosen", "{count} lines chosen", lines)
         parts.append((words.format(count=grouped(lines)), "chosen"))

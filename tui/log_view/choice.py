@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from datetime import datetime
+from typing import TYPE_CHECKING
 
 from text.plain import plain
-from tui.log_view.ring import Entry
 from tui.log_view.rows import WORD_CELLS, WORDS
 
+if TYPE_CHECKING:
+    from tui.log_view.index import LogIndex
+    from tui.log_view.ring import LogEntry
 
-class Choice:
-    """A range of lines by their ids; empty until a line is pointed at."""
 
-    def __init__(self) -> None:
+class LineChoice:
+    """A range of the lines that an index shows, by their ids; empty until one is pointed at."""
+
+    def __init__(self, index: LogIndex) -> None:
         self.cursor: int | None = None
         self._anchor: int | None = None
+        self._index = index
 
     def move(self, entry_id: int, *, extend: bool) -> None:
         """Point at a line; with `extend` choose all from where the choice began to it."""
@@ -26,20 +32,43 @@ class Choice:
         """Choose nothing."""
         self.cursor = self._anchor = None
 
+    def __contains__(self, entry_id: int) -> bool:
+        span = self._span
+        return span is not None and span[0] <= entry_id <= span[1]
+
     @property
-    def span(self) -> tuple[int, int] | None:
+    def entries(self) -> Sequence[LogEntry]:
+        """Those of the lines shown that are chosen."""
+        span = self._span
+        if span is None:
+            return ()
+        first, end = self._index.place_of(span[0]), self._index.place_of(span[1] + 1)
+        return self._index.shown[first:end]
+
+    @property
+    def node(self) -> str | None:
+        """Node of the line pointed at, None if none is."""
+        return next((entry.node for entry in self.entries if entry.id == self.cursor), None)
+
+    @property
+    def found_number(self) -> int:
+        """Which of the found lines is pointed at, from 1; 0 if none is."""
+        return self._index.found_number(self.cursor)
+
+    @property
+    def _span(self) -> tuple[int, int] | None:
         """Lowest and highest id chosen, None if nothing is."""
         if self.cursor is None or self._anchor is None:
             return None
         return min(self.cursor, self._anchor), max(self.cursor, self._anchor)
 
-    def __contains__(self, entry_id: int) -> bool:
-        span = self.span
-        return span is not None and span[0] <= entry_id <= span[1]
+
+def exported(entries: Iterable[LogEntry], index: LogIndex) -> list[str]:
+    """Lines for the clipboard or a file: local date and time, severity, node, text."""
+    return [_exported(entry, index.text_of(entry)) for entry in entries]
 
 
-def exported(entry: Entry, text: str) -> str:
-    """A line for the clipboard or a file: local date and time, severity, node, text."""
+def _exported(entry: LogEntry, text: str) -> str:
     try:
         stamp = datetime.fromtimestamp(entry.time_s).astimezone().isoformat(" ", "milliseconds")
     except (OverflowError, ValueError, OSError):

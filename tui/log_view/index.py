@@ -15,7 +15,7 @@ from operator import attrgetter
 from rich.cells import cell_len, chop_cells
 
 from tui.log_view.filter import LogFilter
-from tui.log_view.ring import Entry
+from tui.log_view.ring import LogEntry
 
 _id_of = attrgetter("id")
 
@@ -58,17 +58,17 @@ def folded_rows(text: str, width: int) -> int:
 class LogIndex:
     """The shown lines in order, the rows that they take, and those that a search found."""
 
-    def __init__(self, text_of: Callable[[Entry], str]) -> None:
+    def __init__(self, text_of: Callable[[LogEntry], str]) -> None:
         """`text_of` gives the text that is drawn for an entry."""
+        self.text_of = text_of
         self.filter = LogFilter()
         self.fold_width: int | None = None
         """Cells of text in a row; None when lines are not folded."""
-        self.shown: list[Entry] = []
+        self.shown: list[LogEntry] = []
         self.found: list[int] = []
         """Ids of the shown lines that hold the text searched for."""
         self.longest = 0
         """Cells of the longest text shown, or a little more."""
-        self._text_of = text_of
         self._ends: list[int] = []
 
     @property
@@ -78,7 +78,7 @@ class LogIndex:
             return len(self.shown)
         return self._ends[-1] if self._ends else 0
 
-    def extend(self, entries: Sequence[Entry]) -> int:
+    def extend(self, entries: Sequence[LogEntry]) -> int:
         """Take in entries that are newer than all before; return how many of them are shown."""
         chosen, pattern = self.filter, self.filter.pattern
         find = pattern.search if pattern else None
@@ -96,8 +96,8 @@ class LogIndex:
         self._measure(self.shown[before:])
         return len(self.shown) - before
 
-    def _measure(self, entries: Sequence[Entry]) -> None:
-        width, text_of = self.fold_width, self._text_of
+    def _measure(self, entries: Sequence[LogEntry]) -> None:
+        width, text_of = self.fold_width, self.text_of
         if width is None:
             for entry in entries:
                 if len(entry.text) > self.longest or not entry.text.isascii():
@@ -108,12 +108,12 @@ class LogIndex:
             end += folded_rows(text_of(entry), width)
             ends.append(end)
 
-    def rebuild(self, entries: Sequence[Entry]) -> None:
+    def rebuild(self, entries: Sequence[LogEntry]) -> None:
         """Begin anew with all entries there are: the filter or the ring has changed."""
         self.shown, self.found, self._ends, self.longest = [], [], [], 0
         self.extend(entries)
 
-    def prune(self, marks: Sequence[Entry] = ()) -> None:
+    def prune(self, marks: Sequence[LogEntry] = ()) -> None:
         """Leave out the entries that the ring has dropped, put in the marks it made for them."""
         shown = [entry for entry in self.shown if not entry.dropped]
         heights = [end - start for start, end in pairwise(chain((0,), self._ends))]
@@ -129,7 +129,7 @@ class LogIndex:
                 place = self.place_of(mark.id)
                 shown.insert(place, mark)
                 if self.fold_width is not None:
-                    kept.insert(place, folded_rows(self._text_of(mark), self.fold_width))
+                    kept.insert(place, folded_rows(self.text_of(mark), self.fold_width))
         self._ends = list(accumulate(kept))
 
     def fold(self, width: int | None) -> None:

@@ -19,8 +19,8 @@ from textual.strip import Strip
 from launcher.status import Severity
 from tui.log_view.index import folded
 from tui.log_view.palette import Palette
-from tui.log_view.ring import Entry
-from tui.log_view.rows import Columns, gutter_texts
+from tui.log_view.ring import LogEntry
+from tui.log_view.rows import LogColumns, gutter_texts
 
 Span = tuple[int, int, Style]
 CHOSEN, MORE = "▌", "›"
@@ -35,7 +35,7 @@ class RowPainter:
     """
 
     palette: Palette
-    columns: Columns
+    columns: LogColumns
     width: int
     """Cells of the text."""
     shift: int
@@ -45,7 +45,7 @@ class RowPainter:
 
     def row(
         self,
-        entry: Entry,
+        entry: LogEntry,
         part: int,
         text: str,
         node_style: Style,
@@ -84,7 +84,7 @@ class RowPainter:
         width = self.columns.gutter + self.width
         return Strip.join(strips).extend_cell_length(width, self.palette.base + under)
 
-    def _gutter(self, entry: Entry, node_style: Style, under: Style) -> list[Segment]:
+    def _gutter(self, entry: LogEntry, node_style: Style, under: Style) -> list[Segment]:
         when, word, node = gutter_texts(entry, self.columns)
         muted, node_style = self.palette.muted + under, node_style + under
         if entry.skipped or entry.rank <= Severity.INFO.rank:
@@ -95,7 +95,7 @@ class RowPainter:
             segments += [Segment(word[-1:], muted), Segment(node, node_style)]
         return [segment for segment in segments if segment.text]
 
-    def _text_style(self, entry: Entry) -> Style:
+    def _text_style(self, entry: LogEntry) -> Style:
         if entry.skipped:
             return self.palette.marker
         if entry.rank == Severity.DEBUG.rank:

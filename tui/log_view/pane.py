@@ -6,10 +6,10 @@ It knows nothing of keys: a screen's actions call `search`, `find`, `copy`, `sav
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from textual import on
 from textual.containers import Vertical
@@ -34,19 +34,11 @@ class LogPane(Vertical, Working):
     """A `LogView` with all that can be done to it."""
 
     DEFAULT_CSS = "LogPane { height: 1fr; width: 1fr; }"
-    view_type: ClassVar[type[LogView]] = LogView
 
-    def __init__(
-        self,
-        *,
-        max_lines: int = 20_000,
-        period_s: float = 0.1,
-        file_of: Callable[[str], str] = lambda _node: "",
-        id: str | None = None,
-    ) -> None:
-        """As for `LogView`."""
+    def __init__(self, view: LogView, *, id: str | None = None) -> None:
+        """Put the state of `view` below it, and between them what is asked about its lines."""
         super().__init__(id=id)
-        self.view = self.view_type(max_lines=max_lines, period_s=period_s, file_of=file_of)
+        self.view = view
         self.save_folder = ""
         """Where files are written unless somebody names another place."""
         self._lines: Sequence[str] = ()
@@ -63,8 +55,8 @@ class LogPane(Vertical, Working):
         """Where questions are asked."""
         return self.query_one(LogPrompt)
 
-    @on(LogView.Changed)
-    def _show_state(self, _event: LogView.Changed) -> None:
+    @on(LogView.StateChanged)
+    def _show_state(self, _event: LogView.StateChanged) -> None:
         self.query_one(LogBar).show(self.view)
 
     def words_changed(self) -> None:
@@ -130,8 +122,8 @@ class LogPane(Vertical, Working):
             else:
                 self.prompt.remark(_("Name a file."))
 
-    @on(LogPrompt.GivenUp)
-    def _given_up(self, event: LogPrompt.GivenUp) -> None:
+    @on(LogPrompt.Cancelled)
+    def _given_up(self, event: LogPrompt.Cancelled) -> None:
         if event.kind == "search":
             self._search_for("")
         self._close_prompt()

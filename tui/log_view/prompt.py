@@ -54,7 +54,7 @@ class LogPrompt(Horizontal):
     class Answered(Said):
         """Enter was pressed."""
 
-    class GivenUp(Said):
+    class Cancelled(Said):
         """Escape was pressed."""
 
     def __init__(self, id: str | None = None) -> None:
@@ -102,4 +102,4 @@ class LogPrompt(Horizontal):
 
     def action_give_up(self) -> None:
         """Leave it."""
-        self.post_message(self.GivenUp(self, self.query_one(Input).value))
+        self.post_message(self.Cancelled(self, self.query_one(Input).value))

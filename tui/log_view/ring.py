@@ -24,7 +24,7 @@ _OBJECT_BYTES = 160
 
 
 @dataclass(slots=True)
-class Entry:
+class LogEntry:
     """A line, or a mark that lines are missing here."""
 
     id: int
@@ -42,13 +42,13 @@ class Entry:
     dropped: bool = False
 
 
-class LogRing:
+class LineRing:
     """Lines in the order of their arrival."""
 
     def __init__(self, max_lines: int = 20_000, max_bytes: int = 16 * 2**20) -> None:
         """Keep at most so many lines and bytes, and a quarter more for a while."""
         self.max_lines, self.max_bytes = max_lines, max_bytes
-        self.entries: list[Entry] = []
+        self.entries: list[LogEntry] = []
         self.counts: dict[str, list[int]] = {}
         """Lines that ever came, by node and rank of the severity; missing ones do not count."""
         self._next_id = 0
@@ -56,7 +56,7 @@ class LogRing:
         self._bytes = 0
         self._last_seq: dict[str, int] = {}
 
-    def append(self, lines: Sequence[LogLine], skipped: Mapping[str, int]) -> list[Entry]:
+    def append(self, lines: Sequence[LogLine], skipped: Mapping[str, int]) -> list[LogEntry]:
         """Take lines in; return them with marks where `seq` or `skipped` tells of missing ones."""
         start = len(self.entries)
         seen: Counter[str] = Counter()
@@ -89,7 +89,7 @@ class LogRing:
             text = f"{text[:LONGEST_TEXT]} … (+{len(text) - LONGEST_TEXT})"
         text = plain(text)
         size = sys.getsizeof(text) + _OBJECT_BYTES
-        self.entries.append(Entry(self._next_id, node, rank, time_s, text, skipped, size))
+        self.entries.append(LogEntry(self._next_id, node, rank, time_s, text, skipped, size))
         self._next_id += 1
         self._bytes += size
 
@@ -116,7 +116,7 @@ class LogRing:
         loose = len(self.entries) - self._held
         return loose > self.max_lines * SLACK or self._bytes > self.max_bytes * SLACK
 
-    def trim(self) -> list[Entry]:
+    def trim(self) -> list[LogEntry]:
         """Drop lines of those who wrote most, until the bounds hold; return new marks for them."""
         loose = self.entries[self._held :]
         lines = Counter(entry.node for entry in loose)
@@ -126,8 +126,8 @@ class LogRing:
             sizes[entry.node] += entry.size
         over_bytes = _surplus(sizes, self.max_bytes)
         gaps: Counter[str] = Counter()
-        kept: list[Entry] = []
-        marks: list[Entry] = []
+        kept: list[LogEntry] = []
+        marks: list[LogEntry] = []
         for entry in loose:
             node = entry.node
             if over_lines[node] <= 0 and over_bytes[node] <= 0:
@@ -138,7 +138,7 @@ class LogRing:
             entry.dropped = True
             gaps[node] += entry.skipped or 1
             if self._held and over_lines[node] <= 0 and over_bytes[node] <= 0:
-                marks.append(Entry(entry.id, node, 0, entry.time_s, "", gaps[node]))
+                marks.append(LogEntry(entry.id, node, 0, entry.time_s, "", gaps[node]))
                 kept.append(marks[-1])
         self.entries[self._held :] = kept
         self._bytes = sum(entry.size for entry in kept)

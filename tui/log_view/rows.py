@@ -15,14 +15,14 @@ from rich.cells import cell_len, set_cell_size
 from launcher.status import Severity
 from text.i18n import ngettext
 from text.plain import plain
-from tui.log_view.ring import Entry
+from tui.log_view.ring import LogEntry
 
 WORDS = tuple(severity.name for severity in Severity)
 WORD_CELLS = max(map(len, WORDS))
 
 
 @dataclass(frozen=True)
-class Columns:
+class LogColumns:
     """Cells that the columns take; 0 leaves one out."""
 
     time: int
@@ -35,18 +35,18 @@ class Columns:
         return 1 + sum(cells + 1 for cells in (self.time, self.word, self.node) if cells)
 
 
-def columns_for(width: int, longest_node: int) -> Columns:
+def columns_for(width: int, longest_node: int) -> LogColumns:
     """The columns that leave at least half of the width to the text."""
     if width < 40:
-        return Columns(0, 1, min(longest_node, 6))
+        return LogColumns(0, 1, min(longest_node, 6))
     if width < 70:
-        return Columns(8, 1, min(longest_node, 10))
+        return LogColumns(8, 1, min(longest_node, 10))
     if width < 140:
-        return Columns(8, WORD_CELLS, min(longest_node, 20))
-    return Columns(12, WORD_CELLS, min(longest_node, 32))
+        return LogColumns(8, WORD_CELLS, min(longest_node, 20))
+    return LogColumns(12, WORD_CELLS, min(longest_node, 32))
 
 
-def text_of(entry: Entry, where: str = "") -> str:
+def text_of(entry: LogEntry, where: str = "") -> str:
     """What is drawn as the text of an entry; `where` is the place of the file with all lines."""
     if not entry.skipped:
         return entry.text
@@ -77,7 +77,7 @@ def clock(time_s: float, cells: int) -> str:
     return words[:cells].ljust(cells)
 
 
-def gutter_texts(entry: Entry, columns: Columns) -> tuple[str, str, str]:
+def gutter_texts(entry: LogEntry, columns: LogColumns) -> tuple[str, str, str]:
     """Time, severity and node of an entry, each with the blank after it, "" when left out.
 
     The time has the cell in front of it in which the mark of a chosen line stands.

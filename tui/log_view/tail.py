@@ -1,4 +1,4 @@
-"""A view of rows that grow at their end: it follows the newest until somebody looks back.
+"""How a view of rows that grow at their end stays at the newest until somebody looks back.
 
 Growing costs no layout: the scrollbar is always there, and it is drawn again only when its thumb
 would look different.
@@ -6,155 +6,97 @@ would look different.
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from textual.binding import Binding, BindingType
 from textual.geometry import Size
-from textual.message import Message
-from textual.scroll_view import ScrollView
 from textual.widget import Widget
 
-from tui.widgets.one_style import OneStyle
+if TYPE_CHECKING:
+    from textual.scroll_view import ScrollView
 
 
-class TailView(OneStyle, ScrollView, can_focus=True):
-    """Base of views with `total_rows` rows; draws rows that come after `period_s`."""
+class Tail:
+    """Moves and draws a scroll view whose number of rows `total_rows` tells.
 
-    DEFAULT_CSS = """
-    TailView {
-        height: 1fr;
-        width: 1fr;
-        overflow-x: hidden;
-        overflow-y: scroll;
-        scrollbar-size-vertical: 1;
-    }
+    `on_drawn` is called whenever rows have come or are placed anew.
     """
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("home", "scroll_home", show=False),
-        Binding("end", "scroll_end", show=False),
-    ]
 
-    class Changed(Message):
-        """Rows have come, or what is shown, followed, found or chosen is not what it was."""
-
-        def __init__(self, view: TailView) -> None:
-            """Name the view."""
-            super().__init__()
-            self.view = view
-
-        @property
-        def control(self) -> Widget:
-            """The view."""
-            return self.view
-
-        def can_replace(self, message: Message) -> bool:
-            """Of many, the newest is enough."""
-            return isinstance(message, TailView.Changed) and message.view is self.view
-
-    def __init__(self, period_s: float, id: str | None = None, classes: str | None = None) -> None:
-        """Begin at the end, following it."""
-        super().__init__(id=id, classes=classes)
+    def __init__(
+        self,
+        view: ScrollView,
+        total_rows: Callable[[], int],
+        on_drawn: Callable[[], object],
+        period_s: float,
+    ) -> None:
+        """Begin at the end, following it; draw rows that come after `period_s`."""
         self.following = True
+        """Whether the newest row is kept in sight."""
+        self.steering = False
+        """Whether it is the tail that scrolls now, and not a person."""
+        self._view = view
+        self._total_rows = total_rows
+        self._on_drawn = on_drawn
         self._period_s = period_s
         self._waiting = False
-        self._steering = False
         self._thumb = (-1, -1)
-
-    @property
-    def total_rows(self) -> int:
-        """How many rows there are."""
-        raise NotImplementedError
 
     @property
     def page_rows(self) -> int:
         """How many rows are on screen."""
-        return self.container_size.height
-
-    def follow(self) -> None:
-        """Keep the newest row in sight from now on."""
-        self.following = True
-        self.redraw()
-
-    def pause(self) -> None:
-        """Stand still while rows come."""
-        if self.following:
-            self.following = False
-            self.post_message(self.Changed(self))
-
-    def toggle_following(self) -> None:
-        """Pause, or follow again."""
-        if self.following:
-            self.pause()
-        else:
-            self.follow()
+        return self._view.container_size.height
 
     def rows_came(self) -> None:
         """Draw soon, together with what comes until then; the first rows of all at once."""
         if self._waiting:
             return
-        if self._period_s and self.is_running and self.virtual_size.height:
+        if self._period_s and self._view.is_running and self._view.virtual_size.height:
             self._waiting = True
-            self.set_timer(self._period_s, self._rows_came)
+            self._view.set_timer(self._period_s, self._draw_those_that_came)
         else:
-            self._rows_came()
+            self._draw_those_that_came()
 
-    def _rows_came(self) -> None:
+    def _draw_those_that_came(self) -> None:
         self._waiting = False
-        had = self.virtual_size.height
-        self.redraw(only_end=not self.following and self.total_rows >= had)
+        had = self._view.virtual_size.height
+        self.redraw(only_end=not self.following and self._total_rows() >= had)
 
     def redraw(self, *, only_end: bool = False) -> None:
         """Draw; with `only_end` nothing but rows that came into sight below the others."""
-        had = self.virtual_size.height
+        view = self._view
+        had = view.virtual_size.height
         # Assigned past the reactive: its watcher would lay out the whole screen for each batch.
-        self.set_reactive(Widget.virtual_size, Size(self.container_size.width, self.total_rows))
-        self.steer(self.max_scroll_y if self.following else int(self.scroll_y))
-        if not only_end or had < self.scroll_y + self.page_rows:
-            self.refresh()
+        size = Size(view.container_size.width, self._total_rows())
+        view.set_reactive(Widget.virtual_size, size)
+        self.steer(view.max_scroll_y if self.following else int(view.scroll_y))
+        if not only_end or had < view.scroll_y + self.page_rows:
+            view.refresh()
         self.sync_scrollbar()
-        self.post_message(self.Changed(self))
+        self._on_drawn()
 
     def steer(self, row: int) -> None:
         """Put this row at the top without that counting as somebody's wish; not drawn yet."""
-        self._steering = True
-        self.scroll_target_y = self.scroll_y = row
-        self._steering = False
+        self.steering = True
+        self._view.scroll_target_y = self._view.scroll_y = row
+        self.steering = False
+
+    def show(self, first: int, end: int) -> None:
+        """Scroll as little as brings the rows from `first` to before `end` into sight."""
+        if first < self._view.scroll_y or end - first > self.page_rows:
+            self.steer(first)
+        elif end > self._view.scroll_y + self.page_rows:
+            self.steer(end - self.page_rows)
+        self.sync_scrollbar()
 
     def sync_scrollbar(self) -> None:
         """Make the thumb fit, if it would look different by an eighth of a cell."""
-        if not self.show_vertical_scrollbar:
+        view = self._view
+        if not view.show_vertical_scrollbar:
             return
-        total, page = max(1, self.total_rows), self.page_rows
-        thumb = (round(8 * page * self.scroll_y / total), round(8 * page * page / total))
+        total, page = max(1, self._total_rows()), self.page_rows
+        thumb = (round(8 * page * view.scroll_y / total), round(8 * page * page / total))
         if thumb != self._thumb:
             self._thumb = thumb
-            bar = self.vertical_scrollbar
+            bar = view.vertical_scrollbar
             bar.window_virtual_size, bar.window_size = total, page
-            bar.position = self.scroll_y
-
-    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Leave the end: pause. Come back to it: follow."""
-        if self._steering:
-            return
-        super().watch_scroll_y(old_value, new_value)
-        self.sync_scrollbar()
-        if new_value < self.max_scroll_y:
-            self.pause()
-        elif new_value > old_value and not self.following:
-            self.follow()
-
-    def action_page_up(self) -> None:
-        """Go up by what is on screen."""
-        self.scroll_to(y=self.scroll_y - self.page_rows, animate=False)
-
-    def action_page_down(self) -> None:
-        """Go down by what is on screen."""
-        self.scroll_to(y=self.scroll_y + self.page_rows, animate=False)
-
-    def action_scroll_home(self) -> None:
-        """Go to the oldest row."""
-        self.scroll_to(y=0, animate=False)
-
-    def action_scroll_end(self) -> None:
-        """Go to the newest row and follow."""
-        self.follow()
+            bar.position = view.scroll_y

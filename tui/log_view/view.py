@@ -1,42 +1,265 @@
-"""The log as a person works with it: point at lines, choose, search, copy.
+"""The log as a person works with it: scroll, point at lines, choose, search.
 
+Each line is looked at once, by the filter, when it comes; only rows on screen are ever drawn.
 Pointing, searching and scrolling up pause the view; End follows again.
 """
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+from rich.segment import Segment
 from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
 
-from tui.log_view.choice import exported
-from tui.log_view.lines import LogLines
+from text.i18n import _
+from tui.log_view.choice import LineChoice, exported
+from tui.log_view.drawing import ColumnsFor, DrawnRows
+from tui.log_view.index import LogIndex
+from tui.log_view.palette import PALETTE_CLASSES, PALETTE_CSS
+from tui.log_view.ring import LineRing
+from tui.log_view.rows import columns_for, text_of
+from tui.log_view.tail import Tail
+from tui.widgets.one_style import OneStyle
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from textual.events import Click
+    from textual.events import Click, Resize
     from textual.selection import Selection
+    from textual.widget import Widget
 
-    from tui.log_view.ring import Entry
+    from launcher.status import LogLine
+    from tui.log_view.filter import LogFilter
+    from tui.log_view.ring import LogEntry
+
+SHIFT_CELLS = 16
 
 
-class LogView(LogLines):
-    """Lines of many nodes; up and down point at lines, with shift they choose several."""
+class LogView(OneStyle, ScrollView, can_focus=True):
+    """Shows what its filter lets through of the lines appended.
+
+    Up and down point at lines, with shift they choose several. `ring` keeps the lines, `index`
+    knows which of them are shown, on which rows, and which a search found, `choice` those chosen.
+    """
 
     ALLOW_SELECT = True
+    COMPONENT_CLASSES: ClassVar[set[str]] = PALETTE_CLASSES
+    DEFAULT_CSS = f"""
+    LogView {{
+        height: 1fr;
+        width: 1fr;
+        overflow-x: hidden;
+        overflow-y: scroll;
+        scrollbar-size-vertical: 1;
+        background: $surface;
+        color: $foreground;
+        &:focus {{ background-tint: $foreground 4%; }}
+        {PALETTE_CSS}
+    }}
+    """
     BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("home", "scroll_home", show=False),
+        Binding("end", "scroll_end", show=False),
         Binding("shift+up", "choose(-1)", show=False),
         Binding("shift+down", "choose(1)", show=False),
         Binding("escape", "let_go", show=False),
     ]
 
+    class StateChanged(Message):
+        """Rows have come, or what is shown, followed, found or chosen is not what it was."""
+
+        def __init__(self, view: LogView) -> None:
+            """Name the view."""
+            super().__init__()
+            self.view = view
+
+        @property
+        def control(self) -> Widget:
+            """The view."""
+            return self.view
+
+        def can_replace(self, message: Message) -> bool:
+            """Of many, the newest is enough."""
+            return isinstance(message, LogView.StateChanged) and message.view is self.view
+
+    def __init__(
+        self,
+        *,
+        max_lines: int = 20_000,
+        fold: bool = True,
+        period_s: float = 0.1,
+        columns_for: ColumnsFor = columns_for,
+        file_of: Callable[[str], str] = lambda _node: "",
+        id: str | None = None,
+        classes: str | None = None,
+    ) -> None:
+        """Keep so many lines; draw at most every `period_s`.
+
+        `file_of` gives the path of the file with all lines of a node, "" if it is not known.
+        """
+        super().__init__(id=id, classes=classes)
+        self.ring = LineRing(max_lines)
+        self.index = LogIndex(
+            lambda entry: text_of(entry, file_of(entry.node)) if entry.skipped else entry.text
+        )
+        self.fresh = 0
+        """Lines shown that have come since following ended."""
+        self.empty_words = ""
+        """Why no line has come; in place of "no lines yet"."""
+        self.minimum_words = ""
+        """How the bar calls lines above the lowest severity; in place of "WARN and worse"."""
+        self.choice = LineChoice(self.index)
+        self._tail = Tail(self, lambda: self.index.rows, self._tell, period_s)
+        self._drawn = DrawnRows(self, self.index, columns_for, fold=fold)
+
+    # What is shown
+
+    def append(self, lines: Sequence[LogLine], skipped: Mapping[str, int] | None = None) -> None:
+        """Take lines in the order they came in, and how many were skipped of which node."""
+        entries = self.ring.append(lines, skipped or {})
+        self.know_nodes(dict.fromkeys(entry.node for entry in entries))
+        shown = self.index.extend(entries)
+        self.fresh += 0 if self.following else shown
+        if self.ring.full:
+            self.index.prune(self.ring.trim())
+        self._tail.rows_came()
+
+    def know_nodes(self, names: Iterable[str]) -> None:
+        """Give these nodes their colours, in this order."""
+        if self._drawn.know_nodes(names):
+            self.lay_out()
+
+    def clear(self) -> None:
+        """Forget every line."""
+        self.ring.clear()
+        self.index.rebuild(())
+        self.follow()
+
+    def replace_lines(self, lines: Sequence[LogLine]) -> None:
+        """Show these lines in place of all others; a paused view stays paused."""
+        following = self.following
+        self.clear()
+        self.append(lines)
+        if not following:
+            self.pause()
+
+    @property
+    def log_filter(self) -> LogFilter:
+        """Which lines are shown."""
+        return self.index.filter
+
+    @log_filter.setter
+    def log_filter(self, chosen: LogFilter) -> None:
+        if chosen != self.index.filter:
+            top = self.top_id
+            self.index.filter = chosen
+            self.index.rebuild(self.ring.entries)
+            self._settle(top)
+
+    @property
+    def fold(self) -> bool:
+        """Whether long lines are folded."""
+        return self._drawn.fold
+
+    def set_fold(self, fold: bool) -> None:
+        """Fold long lines, or show one row of each and shift it sideways."""
+        if fold != self.fold:
+            self._drawn.set_fold(fold)
+            self.lay_out()
+
+    def cuts(self, node: str) -> bool:
+        """Whether its column has no room for the name of this node."""
+        return self._drawn.cuts(node)
+
+    def row_text(self, entry: LogEntry) -> str:
+        """Columns and text of a line as they are drawn, unfolded."""
+        return self._drawn.text(entry)
+
+    # Following
+
+    @property
+    def following(self) -> bool:
+        """Whether the newest line is kept in sight."""
+        return self._tail.following
+
     def follow(self) -> None:
-        """Keep the newest line in sight, nothing chosen."""
+        """Keep the newest line in sight from now on, nothing chosen."""
         if self.choice.cursor is not None:
             self.choice.clear()
-            self.repaint()
-        super().follow()
+            self._repaint()
+        self.fresh = 0
+        self.ring.release()
+        self._tail.following = True
+        self._tail.redraw()
+
+    def pause(self) -> None:
+        """Stand still: no line that is here now is dropped while lines come in."""
+        if self.following:
+            self.fresh = 0
+            self.ring.hold()
+            self._tail.following = False
+            self._tell()
+
+    def toggle_following(self) -> None:
+        """Pause, or follow again."""
+        if self.following:
+            self.pause()
+        else:
+            self.follow()
+
+    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
+        """Leave the end: pause. Come back to it: follow."""
+        if self._tail.steering:
+            return
+        super().watch_scroll_y(old_value, new_value)
+        self._tail.sync_scrollbar()
+        if new_value < self.max_scroll_y:
+            self.pause()
+        elif new_value > old_value and not self.following:
+            self.follow()
+
+    def action_page_up(self) -> None:
+        """Go up by what is on screen."""
+        self.scroll_to(y=self.scroll_y - self._tail.page_rows, animate=False)
+
+    def action_page_down(self) -> None:
+        """Go down by what is on screen."""
+        self.scroll_to(y=self.scroll_y + self._tail.page_rows, animate=False)
+
+    def action_scroll_home(self) -> None:
+        """Go to the oldest row."""
+        self.scroll_to(y=0, animate=False)
+
+    def action_scroll_end(self) -> None:
+        """Go to the newest row and follow."""
+        self.follow()
+
+    # Pointing, choosing, searching
+
+    def find(self, step: int) -> bool:
+        """Point at the next (1) or previous (-1) line that holds the text searched for."""
+        shown = self.index.shown
+        if not shown:
+            return False
+        start = self.choice.cursor
+        if start is None:
+            start = shown[self._place_on_row(0 if step > 0 else self._tail.page_rows - 1)].id - step
+        found = self.index.found_near(start, step)
+        if found is None:
+            return False
+        self._point_at(self.index.place_of(found))
+        return True
+
+    def chosen_lines(self) -> list[str]:
+        """The lines chosen, as text with date, severity and node."""
+        return exported(self.choice.entries, self.index)
+
+    def shown_lines(self) -> list[str]:
+        """All lines that the filter lets through, likewise."""
+        return exported(self.index.shown, self.index)
 
     def action_scroll_up(self) -> None:
         """Point at the line above."""
@@ -53,41 +276,21 @@ class LogView(LogLines):
     def action_let_go(self) -> None:
         """Choose nothing."""
         self.choice.clear()
-        self.repaint()
-        self.post_message(self.Changed(self))
+        self._repaint()
+        self._tell()
 
-    def _step(self, step: int, *, extend: bool) -> None:
-        if self.choice.cursor is not None:
-            place = self.index.place_of(self.choice.cursor) + step
-        else:
-            place = self._place_on_row(self.page_rows - 1)
-        self._point_at(place, extend=extend)
+    def action_scroll_left(self) -> None:
+        """Shift lines that are not folded."""
+        self._shift(-SHIFT_CELLS)
 
-    def _place_on_row(self, y: int) -> int:
-        """Place of the line on this row of the screen, or of the last above it."""
-        row = min(int(self.scroll_y) + y, self.total_rows - 1)
-        return self.index.locate(row)[0] if row >= 0 else 0
-
-    def _point_at(self, place: int, *, extend: bool = False) -> None:
-        shown = self.index.shown
-        if not shown:
-            return
-        self.pause()
-        place = max(0, min(place, len(shown) - 1))
-        self.choice.move(shown[place].id, extend=extend)
-        first, end = self.index.row_of(place), self.index.row_of(place + 1)
-        if first < self.scroll_y or end - first > self.page_rows:
-            self.steer(first)
-        elif end > self.scroll_y + self.page_rows:
-            self.steer(end - self.page_rows)
-        self.sync_scrollbar()
-        self.repaint()
-        self.post_message(self.Changed(self))
+    def action_scroll_right(self) -> None:
+        """Shift lines that are not folded."""
+        self._shift(SHIFT_CELLS)
 
     def on_click(self, event: Click) -> None:
         """Point at the line that was clicked; with shift choose all up to it."""
         row = int(self.scroll_y) + event.y
-        if self.text_selection is None and row < self.total_rows:
+        if self.text_selection is None and row < self.index.rows:
             self._point_at(self.index.locate(row)[0], extend=event.shift)
 
     def selection_updated(self, selection: Selection | None) -> None:
@@ -110,51 +313,86 @@ class LogView(LogLines):
                 lines.append(text[span[0] : len(text) if span[1] < 0 else span[1]])
         return ("\n".join(lines), "\n") if lines else None
 
-    def find(self, step: int) -> bool:
-        """Point at the next (1) or previous (-1) line that holds the text searched for."""
+    def _step(self, step: int, *, extend: bool) -> None:
+        if self.choice.cursor is not None:
+            place = self.index.place_of(self.choice.cursor) + step
+        else:
+            place = self._place_on_row(self._tail.page_rows - 1)
+        self._point_at(place, extend=extend)
+
+    def _place_on_row(self, y: int) -> int:
+        """Place of the line on this row of the screen, or of the last above it."""
+        row = min(int(self.scroll_y) + y, self.index.rows - 1)
+        return self.index.locate(row)[0] if row >= 0 else 0
+
+    def _point_at(self, place: int, *, extend: bool = False) -> None:
         shown = self.index.shown
         if not shown:
-            return False
-        start = self.choice.cursor
-        if start is None:
-            start = shown[self._place_on_row(0 if step > 0 else self.page_rows - 1)].id - step
-        found = self.index.found_near(start, step)
-        if found is None:
-            return False
-        self._point_at(self.index.place_of(found))
-        return True
+            return
+        self.pause()
+        place = max(0, min(place, len(shown) - 1))
+        self.choice.move(shown[place].id, extend=extend)
+        self._tail.show(self.index.row_of(place), self.index.row_of(place + 1))
+        self._repaint()
+        self._tell()
+
+    def _shift(self, cells: int) -> None:
+        if self._drawn.shift(cells):
+            self._repaint()
+
+    def _tell(self) -> None:
+        self.post_message(self.StateChanged(self))
+
+    # Drawing
 
     @property
-    def found_number(self) -> int:
-        """Which of the found lines is pointed at, from 1; 0 if none is."""
-        return self.index.found_number(self.choice.cursor)
+    def top_id(self) -> int | None:
+        """Which line is at the top of the screen."""
+        place = self.index.locate(int(self.scroll_y))[0]
+        return self.index.shown[place].id if place < len(self.index.shown) else None
 
-    @property
-    def chosen_count(self) -> int:
-        """How many of the lines shown are chosen."""
-        return len(self._chosen())
+    def lay_out(self) -> None:
+        """Fit columns and folding to the size and the language."""
+        width = self.container_size.width - self.scrollbar_size_vertical
+        if width >= 1:
+            top = self.top_id
+            self._drawn.lay_out(width)
+            self._settle(top)
 
-    @property
-    def chosen_node(self) -> str | None:
-        """Node of the line pointed at, None if none is."""
-        cursor = self.choice.cursor
-        found = [entry.node for entry in self._chosen() if entry.id == cursor]
-        return found[0] if found else None
+    def _on_resize(self, _event: Resize) -> None:
+        self.lay_out()
 
-    def _chosen(self) -> list[Entry]:
-        span = self.choice.span
-        if span is None:
-            return []
-        first, end = self.index.place_of(span[0]), self.index.place_of(span[1] + 1)
-        return self.index.shown[first:end]
+    def notify_style_update(self) -> None:
+        """Take the colours anew."""
+        super().notify_style_update()
+        self._drawn.forget()
 
-    def chosen_lines(self) -> list[str]:
-        """The lines chosen, as text with date, severity and node."""
-        return self._exported(self._chosen())
+    def _settle(self, top: int | None) -> None:
+        """After rows have changed: the same line at the top, unless the end is followed."""
+        self._repaint()
+        if not self.following and top is not None:
+            self._tail.steer(self.index.row_of(self.index.place_of(top)))
+        self._tail.redraw()
 
-    def shown_lines(self) -> list[str]:
-        """All lines that the filter lets through, likewise."""
-        return self._exported(self.index.shown)
+    def _repaint(self) -> None:
+        self._drawn.forget()
+        self.refresh()
 
-    def _exported(self, entries: Iterable[Entry]) -> list[str]:
-        return [exported(entry, self._text_of(entry)) for entry in entries]
+    def render_line(self, y: int) -> Strip:
+        """One row, or words where there is no line."""
+        row = int(self.scroll_y) + y
+        if row < self.index.rows:
+            place, part = self.index.locate(row)
+            entry = self.index.shown[place]
+            chosen = entry.id in self.choice
+            return self._drawn.strip(entry, part, self.text_selection, chosen=chosen)
+        strip = Strip([]) if self.index.rows else self._words_line(y)
+        return strip.adjust_cell_length(self.size.width, self.rich_style)
+
+    def _words_line(self, y: int) -> Strip:
+        words = self.empty_words or _("no lines yet")
+        if self.ring.entries:
+            words = _("no line of {count} passes the filter").format(count=len(self.ring.entries))
+        lines = textwrap.wrap(words, max(1, self.size.width - 2))
+        style = self.get_component_rich_style("log--muted")
+        return Strip([Segment(f" {lines[y]}", style)] if y < len(lines) else [])

@@ -66,7 +66,7 @@ class LogsScreen(DeckScreen):
         """The nodes beside the lines."""
         with Horizontal():
             yield LogNodes()
-            yield LogPane(file_of=self.feed.log_file)
+            yield LogPane(LogView(file_of=self.feed.log_file))
 
     @property
     def pane(self) -> LogPane:
@@ -83,7 +83,7 @@ class LogsScreen(DeckScreen):
         """The node that is meant: the chosen row of the list in focus, else the chosen line's."""
         if self.node_list.has_focus:
             return self.node_list.chosen or None
-        return self.pane.view.chosen_node
+        return self.pane.view.choice.node
 
     def on_mount(self) -> None:
         """Begin at the newest line."""
@@ -117,7 +117,7 @@ class LogsScreen(DeckScreen):
         self.pane.words_changed()
         self._show_nodes()
 
-    @on(LogView.Changed)
+    @on(LogView.StateChanged)
     def _keys_changed(self) -> None:
         self.refresh_bindings()
 

@@ -1,0 +1,119 @@
+"""The rows of a log as they are drawn: columns, colours of the nodes, and each row drawn once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, TypeAlias
+
+from rich.cells import cell_len
+from textual.cache import LRUCache
+
+from text.plain import plain
+from tui.log_view.paint import RowPainter
+from tui.log_view.palette import palette_of
+from tui.log_view.rows import LogColumns, gutter_texts
+
+if TYPE_CHECKING:
+    from textual.selection import Selection
+    from textual.strip import Strip
+    from textual.widget import Widget
+
+    from tui.log_view.index import LogIndex
+    from tui.log_view.ring import LogEntry
+
+ColumnsFor: TypeAlias = "Callable[[int, int], LogColumns]"
+"""Which columns stand in front of the text, for rows and a longest node of so many cells."""
+LEAST_TEXT = 8
+
+
+class DrawnRows:
+    """Draws the rows of an index for a widget, and keeps them until they look different."""
+
+    def __init__(
+        self, widget: Widget, index: LogIndex, columns_for: ColumnsFor, *, fold: bool
+    ) -> None:
+        """Draw in the colours of `widget`; long lines are folded, or shifted sideways."""
+        self.fold = fold
+        self._widget = widget
+        self._index = index
+        self._columns_for = columns_for
+        self._columns = LogColumns(0, 0, 0)
+        self._width = 0
+        self._shift = 0
+        self._node_places: dict[str, int] = {}
+        self._longest_node = 4
+        self._painter: RowPainter | None = None
+        self._strips: LRUCache[tuple[int, int], Strip] = LRUCache(512)
+
+    def know_nodes(self, names: Iterable[str]) -> bool:
+        """Give these nodes their colours, in this order; tell whether one needs more room."""
+        for name in names:
+            self._node_places.setdefault(name, len(self._node_places))
+        longest = max(map(len, self._node_places), default=0)
+        wider = longest > self._longest_node
+        self._longest_node = max(longest, self._longest_node)
+        return wider
+
+    def lay_out(self, width: int) -> None:
+        """Fit columns and folding to rows of so many cells."""
+        self._width = width
+        self._columns = self._columns_for(width, self._longest_node)
+        self._index.fold(self._text_width if self.fold else None)
+        self.forget()
+
+    def set_fold(self, fold: bool) -> None:
+        """Fold long lines, or show one row of each; to be laid out after."""
+        self.fold, self._shift = fold, 0
+
+    def shift(self, cells: int) -> bool:
+        """Shift lines that are not folded to the left; tell whether they look different now."""
+        most = 0 if self.fold else max(0, self._index.longest - self._text_width)
+        shift = max(0, min(self._shift + cells, most))
+        shifted, self._shift = shift != self._shift, shift
+        return shifted
+
+    def forget(self) -> None:
+        """Draw every row anew: it looks different."""
+        self._painter = None
+        self._strips.clear()
+
+    def cuts(self, node: str) -> bool:
+        """Whether its column has no room for the name of this node."""
+        return cell_len(plain(node)) > self._columns.node
+
+    def text(self, entry: LogEntry) -> str:
+        """Columns and text of a line as they are drawn, unfolded."""
+        return "".join(gutter_texts(entry, self._columns)) + self._index.text_of(entry)
+
+    def strip(
+        self, entry: LogEntry, part: int, selection: Selection | None, *, chosen: bool
+    ) -> Strip:
+        """Row number `part` of a line."""
+        strip = None if selection else self._strips.get((entry.id, part))
+        if strip is None:
+            strip = self._draw(entry, part, selection, chosen=chosen)
+            if selection is None:
+                self._strips[entry.id, part] = strip
+        return strip
+
+    @property
+    def _text_width(self) -> int:
+        return max(LEAST_TEXT, self._width - self._columns.gutter)
+
+    def _draw(
+        self, entry: LogEntry, part: int, selection: Selection | None, *, chosen: bool
+    ) -> Strip:
+        painter = self._painter
+        if painter is None:
+            painter = self._painter = RowPainter(
+                palette_of(self._widget),
+                self._columns,
+                self._text_width,
+                self._shift,
+                self.fold,
+                self._index.filter.pattern,
+            )
+        node_style = painter.palette.node(self._node_places[entry.node])
+        text = self._index.text_of(entry)
+        strip = painter.row(entry, part, text, node_style, selection, chosen=chosen)
+        return strip.adjust_cell_length(self._widget.size.width, self._widget.rich_style)
