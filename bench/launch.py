@@ -140,7 +140,7 @@ def by_picker(profile: Profile) -> Iterator[Started]:
     settings.write_text(json.dumps({"lesson": profile.path.stem}))
     terminal = Terminal(argv, 120, 40, {**environment(), "XDG_CONFIG_HOME": config.name})
     try:
-        terminal.wait_for(profile.title["en"])
+        terminal.wait_for(profile.document.title["en"])
         time.sleep(READING_S)
         pid = terminal.process.pid
         started = Started(pid, time.monotonic(), cpu_s(descendants(pid)))

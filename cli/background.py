@@ -86,7 +86,7 @@ async def _up(options: Namespace) -> int:
             await asyncio.wait_for(_settle(link), UP_WITHIN_S)
         except asyncio.TimeoutError:
             say_error(_("not everything is up yet; `deck ps` shows the progress"))
-        optional = {name for name, node in profile.nodes.items() if node.optional}
+        optional = {name for name, node in profile.nodes.items() if node.document.optional}
         show(link.session, tuple(link.nodes.values()), optional)
         healthy = all(well(node, optional) for node in link.nodes.values())
     finally:

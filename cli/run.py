@@ -191,7 +191,7 @@ class Run:
             return
         self._told[node.name] = now
         bad = node.state in (NodeState.FAILED, NodeState.BACKOFF) or node.restarts
-        if bad and not self._asked_to_stop and not self._profile.nodes[node.name].optional:
+        if bad and not self._asked_to_stop and not self._profile.nodes[node.name].document.optional:
             self._ever_bad.add(node.name)
         self.report.status(node)
 
@@ -209,7 +209,7 @@ class Run:
 
     def _summary(self, client: SupervisorClient, reason: str, seconds: float) -> int:
         nodes = self._before_stop or client.nodes
-        optional = {name for name, node in self._profile.nodes.items() if node.optional}
+        optional = {name for name, node in self._profile.nodes.items() if node.document.optional}
         healthy = {
             name: name not in self._ever_bad and well(node, optional, on_the_way=self._on_the_way)
             for name, node in nodes.items()

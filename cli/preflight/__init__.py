@@ -29,7 +29,8 @@ def examine(
     profile: Profile, look: Callable[[], Sequence[SerialPort]] = serial_ports
 ) -> list[Finding]:
     """Look at every device that the profile's nodes name, all at the same time."""
-    devices = {name: profile.devices[name] for name in profile.used if name in profile.devices}
+    said = profile.document.devices
+    devices = {name: said[name] for name in profile.used if name in said}
     questions: dict[str, Callable[[], tuple[str, Answer]]] = {
         **ask_ports(devices, look),
         **{

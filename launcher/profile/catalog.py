@@ -143,9 +143,9 @@ def _entry(path: Path, hardware: str) -> ProfileEntry:
     return ProfileEntry(
         name=profile.name,
         path=profile.path,
-        title=profile.title,
-        about=profile.about,
-        lesson=profile.lesson,
+        title=profile.document.title,
+        about=profile.document.about,
+        lesson=profile.document.lesson,
         nodes=tuple(profile.nodes),
-        panels=profile.panels,
+        panels=profile.document.panels,
     )

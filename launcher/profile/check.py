@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.profile.files import file_of, files_beside, is_file
-from launcher.profile.model import LONGEST_NODE_NAME, NODE_NAME
+from launcher.profile.files import file_of, files_beside
+from launcher.profile.model import LONGEST_NODE_NAME, NODE_NAME, is_file
 from launcher.profile.modules import is_installed, likely_names
 from launcher.profile.text import shown
 from launcher.profile.tree import did_you_mean, empty, find, place_of

@@ -9,7 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from launcher.profile.field_marks import Joined, marked
 from launcher.profile.files import with_own_files
+from launcher.profile.model import NodeDocument, ProfileDocument
 from launcher.profile.text import SHIPPED, read_text, shown
 from launcher.profile.tree import Branch, Entry, did_you_mean, empty, plain
 from launcher.profile.yaml_tree import read_yaml
@@ -23,8 +25,8 @@ if TYPE_CHECKING:
 ALL: Any = {}
 ALL["*"] = ALL
 JOINED: Any = {
-    "nodes": {"*": {"params": ALL, "remap": ALL, "env": ALL}},
-    "devices": ALL,
+    "nodes": {"*": dict.fromkeys(marked(NodeDocument, Joined), ALL)},
+    **dict.fromkeys(marked(ProfileDocument, Joined), ALL),
 }
 """Which mappings are joined, by their keys; `*` stands for any."""
 MAX_CHAIN = 32

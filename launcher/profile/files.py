@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+from launcher.profile.field_marks import PathFromProfile, marked
+from launcher.profile.model import NodeDocument
 from launcher.profile.tree import Branch, Entry, Scalar
 
 if TYPE_CHECKING:
@@ -14,9 +16,7 @@ if TYPE_CHECKING:
     from launcher.profile.tree import Tree
 
 
-def is_file(run: str) -> bool:
-    """Whether a file is meant, and not a module."""
-    return run.startswith(("./", "../", "/"))
+PATHS = marked(NodeDocument, PathFromProfile)
 
 
 def with_own_files(profile: Branch, folder: Path) -> Branch:
@@ -43,7 +43,7 @@ def _with_full_path(key: str, part: Entry, folder: Path) -> Entry:
     written = part.value
     if not isinstance(written, Scalar) or not isinstance(written.value, str):
         return part
-    if not (key == "cwd" or (key == "run" and is_file(written.value))):
+    if key not in PATHS or not PATHS[key].is_meant(written.value):
         return part
     path = os.path.normpath(folder.absolute() / written.value)
     return Entry(part.key_place, Scalar(path, written.text, written.place, written.size))

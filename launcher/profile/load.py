@@ -141,17 +141,10 @@ class _Reader:
             check_run(name, node.run, folders, self.tree, self.problems)
         return NodeSpec(
             name=name,
-            run=node.run,
-            exec=node.exec,
+            document=node,
             params={} if params is None else flatten(params, where, self.problems),
-            remap=node.remap,
-            env=node.env,
             needs=tuple(other for other in node.needs if other in running),
             ready=_ready(name, node),
-            restart=node.restart,
-            when=node.when,
-            optional=node.optional,
-            warm=node.warm,
             cwd=cwd,
         )
 
@@ -163,16 +156,10 @@ class _Reader:
             path=self.path,
             name=self.path.stem,
             nodes=nodes,
-            title=document.title,
-            about=document.about,
-            lesson=document.lesson,
+            document=document,
             domain=domain,
-            discovery=document.discovery,
             hardware=hardware,
-            devices=document.devices,
             used=tuple(name for name in document.devices if name in self.used),
-            panels=document.panels,
-            steps=document.steps,
             warnings=self._warnings(document),
         )
 

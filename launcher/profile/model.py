@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSche
 from pydantic_core import PydanticCustomError
 
 from launcher.domain.domain import LAST_DOMAIN
-from launcher.profile.files import is_file
+from launcher.profile.field_marks import AsText, Joined, PathFromProfile
 from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
 from launcher.words import Words, say
@@ -27,6 +27,11 @@ TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
 MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 PEER = re.compile(r"[A-Za-z0-9:][A-Za-z0-9.:%_-]*")
 ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+def is_file(run: str) -> bool:
+    """Whether a file is meant, and not a module."""
+    return run.startswith(("./", "../", "/"))
 
 
 def refuse(words: Words) -> PydanticCustomError:
@@ -124,6 +129,7 @@ Texts = Annotated[
         }
     ),
 ]
+ModuleOrFile = Annotated[str, BeforeValidator(_module)]
 RosName = Annotated[str, BeforeValidator(_ros_name)]
 TypeName = Annotated[str, BeforeValidator(_type_name)]
 _SCALARS: dict[str, Any] = {"type": ["string", "number", "boolean"]}
@@ -197,22 +203,26 @@ class ReadyDocument(Document):
 class NodeDocument(Document):
     """One node: a process, and what it needs."""
 
-    run: Annotated[str, BeforeValidator(_module)] | None = Field(
+    run: Annotated[ModuleOrFile | None, PathFromProfile(is_file)] = Field(
         None,
         description="Python module to run as a ROS node, named as its key: `nodes.hello`; or a file"
         " of your own, relative to the profile: `./my_sonar.py`.",
     )
-    exec: Command | None = Field(
+    exec: Annotated[Command | None, AsText()] = Field(
         None, strict=False, description="Any command instead: `[ros2, run, package, program]`."
     )
-    params: dict[str, Any] = Field({}, description="ROS parameters, nested as you like.")
-    remap: Annotated[dict[str, RosName], BeforeValidator(_ros_names)] = Field(
+    params: Annotated[dict[str, Any], Joined()] = Field(
+        {}, description="ROS parameters, nested as you like."
+    )
+    remap: Annotated[dict[str, RosName], BeforeValidator(_ros_names), AsText(), Joined()] = Field(
         {}, description="Names of topics and services: `{/drive: /drive_safe}`."
     )
     env: Annotated[
         dict[str, str],
         BeforeValidator(_variables),
         WithJsonSchema({"type": "object", "additionalProperties": _SCALARS}),
+        AsText(),
+        Joined(),
     ] = Field({}, description="Environment variables on top of the launcher's own.")
     needs: tuple[str, ...] = Field(
         (),
@@ -235,7 +245,9 @@ class NodeDocument(Document):
         " told and is no failure.",
     )
     warm: bool = Field(True, description="Fork it from a process that has imported rclpy already.")
-    cwd: str | None = Field(None, description="Working directory, relative to the profile's file.")
+    cwd: Annotated[str | None, PathFromProfile()] = Field(
+        None, description="Working directory, relative to the profile's file."
+    )
 
 
 class ProfileDocument(Document):
@@ -244,11 +256,13 @@ class ProfileDocument(Document):
     extends: str | None = Field(
         None, description="Another profile, by name or path; what stands here overrides it."
     )
-    title: Texts = Field(
+    title: Annotated[Texts, AsText()] = Field(
         {}, description="A line for the picker, by language: `{en: ..., ru: ...}`."
     )
-    about: Texts = Field({}, description="What it starts and what you see, by language.")
-    lesson: Annotated[str, WithJsonSchema({"type": ["string", "integer"]})] = Field(
+    about: Annotated[Texts, AsText()] = Field(
+        {}, description="What it starts and what you see, by language."
+    )
+    lesson: Annotated[str, WithJsonSchema({"type": ["string", "integer"]}), AsText()] = Field(
         "", description="Number of the lesson: 9, 4b."
     )
     domain: int | None = Field(
@@ -263,10 +277,12 @@ class ProfileDocument(Document):
     nodes: dict[str, NodeDocument | None] = Field(
         {}, description="Nodes by name; null takes out one of the profile that is extended."
     )
-    devices: dict[str, Annotated[dict[str, Any], WithJsonSchema(_DEVICE)]] = Field(
-        {},
-        description="Settings of devices, used as ${devices.pico.port} and overridden by"
-        " DECK_PICO_PORT.",
+    devices: Annotated[dict[str, Annotated[dict[str, Any], WithJsonSchema(_DEVICE)]], Joined()] = (
+        Field(
+            {},
+            description="Settings of devices, used as ${devices.pico.port} and overridden by"
+            " DECK_PICO_PORT.",
+        )
     )
     panels: tuple[Panel, ...] = Field(
         (), strict=False, description="What the deck shows beside nodes and logs."

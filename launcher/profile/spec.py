@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from launcher import node_program
 from launcher.profile.params import as_arguments
@@ -14,9 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from launcher.domain.domain import Discovery
     from launcher.errors import ProfileProblem
-    from launcher.profile.model import Restart
+    from launcher.profile.model import NodeDocument, ProfileDocument
     from launcher.profile.params import Param
 
 DEFAULT_WITHIN_S = 10.0
@@ -43,44 +42,45 @@ class NodeSpec:
 
     name: str
     """Its key in the profile; of a `run` node also its name in the ROS graph."""
-    run: str | None = None
-    """A Python module, or the absolute path of a file. Either this or `exec` is set."""
-    exec: tuple[str, ...] | None = None
-    params: Mapping[str, Param] = field(default_factory=dict)
+    document: NodeDocument
+    """All that the profile says; what it comes to here stands below, by the same names."""
+    params: Mapping[str, Param]
     """Flat: `{"limits.front": 0.5}`."""
-    remap: Mapping[str, str] = field(default_factory=dict)
-    env: Mapping[str, str] = field(default_factory=dict)
-    needs: tuple[str, ...] = ()
+    needs: tuple[str, ...]
     """Only nodes that run: those that `when` leaves out are not waited for."""
-    ready: Ready | None = None
-    restart: Restart = "never"
-    when: str | None = None
-    """The condition as written; it holds."""
-    optional: bool = False
-    """If it cannot be started, or ends, that is told and is no failure."""
-    warm: bool = True
-    cwd: Path | None = None
+    ready: Ready | None
+    """For `run`, if nothing is said, that the node is in the graph."""
+    cwd: Path | None
     """Absolute; None: where the launcher was started."""
 
     @property
     def command(self) -> str:
         """What is run, for people."""
-        if self.run is None:
-            return " ".join(self.exec or ())
-        return f"./{os.path.basename(self.run)}" if "/" in self.run else self.run  # noqa: PTH119
+        run = self.document.run
+        if run is None:
+            return " ".join(self.document.exec or ())
+        return f"./{os.path.basename(run)}" if "/" in run else run  # noqa: PTH119
 
     def ros_args(self) -> list[str]:
         """Return `--ros-args` and all that follows; empty for a command without parameters."""
-        named = ["-r", f"__node:={self.name}"] if self.run is not None else []
-        remaps = [part for old, new in self.remap.items() for part in ("-r", f"{old}:={new}")]
+        named = ["-r", f"__node:={self.name}"] if self.document.run is not None else []
+        remaps = [
+            part for old, new in self.document.remap.items() for part in ("-r", f"{old}:={new}")
+        ]
         arguments = [*named, *remaps, *as_arguments(self.params)]
         return ["--ros-args", *arguments] if arguments else []
 
     def argv(self) -> list[str]:
         """Return the full command line, as it is started without the spawn server."""
-        if self.run is not None:
-            return [sys.executable, "-u", node_program.__file__, self.run, *self.ros_args()]
-        return [*(self.exec or ()), *self.ros_args()]
+        if self.document.run is not None:
+            return [
+                sys.executable,
+                "-u",
+                node_program.__file__,
+                self.document.run,
+                *self.ros_args(),
+            ]
+        return [*(self.document.exec or ()), *self.ros_args()]
 
 
 @dataclass(frozen=True)
@@ -93,19 +93,12 @@ class Profile:
     """File name without its ending: `09-brain`."""
     nodes: Mapping[str, NodeSpec]
     """In the order of the file; only those that run on this hardware."""
-    title: Mapping[str, str] = field(default_factory=dict)
-    """Language code to title."""
-    about: Mapping[str, str] = field(default_factory=dict)
-    """Language code to what it starts and shows."""
-    lesson: str = ""
-    domain: int = 0
+    document: ProfileDocument
+    """All else that it says: title, panels, devices and so on."""
+    domain: int
     """The one that counts, whoever chose it."""
-    discovery: Discovery = "localhost"
-    hardware: str = "mock"
-    devices: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    hardware: str
     used: tuple[str, ...] = ()
     """The devices that its nodes name, in the order of the file."""
-    panels: tuple[str, ...] = ()
-    steps: tuple[Mapping[str, Any], ...] = ()
     warnings: tuple[ProfileProblem, ...] = ()
     """What is allowed, and probably not meant."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import ValidationError
 
+from launcher.profile.field_marks import AsText, marked
 from launcher.profile.model import Document, NodeDocument, ProfileDocument, ReadyDocument
 from launcher.profile.tree import Branch, Listing, did_you_mean, empty, find, place_of, plain
 from launcher.words import say
@@ -64,7 +65,7 @@ def _data(tree: Branch) -> dict[str, Any]:
     data: dict[str, Any] = {
         key: plain(entry.value) for key, entry in tree.entries.items() if not empty(entry.value)
     }
-    for key in ("lesson", "title", "about"):
+    for key in marked(ProfileDocument, AsText):
         if key in data:
             data[key] = _as_text(find(tree, (key,)))
     nodes = find(tree, ("nodes",))
@@ -76,7 +77,7 @@ def _data(tree: Branch) -> dict[str, Any]:
 def _node(tree: Tree) -> Any:  # noqa: ANN401 - whatever stands there
     if not isinstance(tree, Branch):
         return plain(tree) if not empty(tree) else {}
-    as_text = {"exec", "env", "remap"}
+    as_text = marked(NodeDocument, AsText)
     return {
         key: _as_text(entry.value) if key in as_text else plain(entry.value)
         for key, entry in tree.entries.items()

@@ -123,24 +123,24 @@ def plan_of(
         env=_common_env(profile, node_lang),
         run_dir=run_dir,
         log_dir=log_dir,
-        title=dict(profile.title),
-        lesson=profile.lesson,
+        title=dict(profile.document.title),
+        lesson=profile.document.lesson,
         domain=profile.domain,
-        discovery=profile.discovery,
+        discovery=profile.document.discovery,
         hardware=profile.hardware,
-        panels=tuple(profile.panels),
+        panels=tuple(profile.document.panels),
         foreground=foreground,
     )
 
 
 def _common_env(profile: Profile, node_lang: str) -> dict[str, str | None]:
-    wanted = ros_environment(os.environ, profile.domain, profile.discovery)
+    wanted = ros_environment(os.environ, profile.domain, profile.document.discovery)
     env: dict[str, str | None] = {
         name: wanted.get(name)
         for name in {*wanted, *os.environ}
         if wanted.get(name) != os.environ.get(name)
     }
-    env.update(settings_of_discovery(os.environ, profile.discovery))
+    env.update(settings_of_discovery(os.environ, profile.document.discovery))
     # One format of log lines, one that can be read back.
     env["RCUTILS_CONSOLE_OUTPUT_FORMAT"] = None
     env["RCUTILS_COLORIZED_OUTPUT"] = "0"
@@ -152,28 +152,29 @@ def _common_env(profile: Profile, node_lang: str) -> dict[str, str | None]:
 
 
 def _node_plan(node: NodeSpec) -> NodePlan:
+    said = node.document
     argv = tuple(node.argv())
     env: dict[str, str | None] = {}
     module: tuple[str, ...] = ()
-    if node.run is None:
+    if said.run is None:
         env.update(_foreign_env())
-    elif node.warm and not any(name.startswith(_COLD_PREFIXES) for name in node.env):
-        module = argv[argv.index(node.run) :]
+    elif said.warm and not any(name.startswith(_COLD_PREFIXES) for name in said.env):
+        module = argv[argv.index(said.run) :]
     ready = node.ready
     return NodePlan(
         name=node.name,
         command=node.command,
         argv=argv,
         module=module,
-        env={**env, **node.env},
+        env={**env, **said.env},
         cwd=str(node.cwd) if node.cwd is not None else os.getcwd(),  # noqa: PTH109
         needs=tuple(node.needs),
         ready=None
         if ready is None
         else Condition(ready.kind, ready.name, ready.type, ready.rate_hz),
         within_s=10.0 if ready is None else ready.within_s,
-        restart=node.restart,
-        optional=node.optional,
+        restart=said.restart,
+        optional=said.optional,
     )
 
 

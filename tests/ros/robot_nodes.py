@@ -61,12 +61,12 @@ class RobotNodes:
         """Start nodes, one right after the other, and wait until each works."""
         for name in names:
             spec = self._specs[name]
-            assert spec.run is not None
+            assert spec.document.run is not None
             params = {**spec.params, **OWN.get(name, {})}
             if "port" in params:
                 params["port"] = str(self.folder / str(params["port"]).rpartition("/")[2])
             arguments = tuple(replace(spec, params=params).ros_args())
-            self.processes[name] = NodeProcess(spec.run, self.domain, arguments=arguments)
+            self.processes[name] = NodeProcess(spec.document.run, self.domain, arguments=arguments)
         for name in names:
             self.processes[name].wait_for_words(READY[name])
 

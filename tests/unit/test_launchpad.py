@@ -6,9 +6,8 @@ import os
 import subprocess
 import sys
 
-from tui.session.launchpad import LivePad
-
 from launcher.status import SessionInfo
+from tui.session.launchpad import LivePad
 
 OPENED = """
 import asyncio, sys

@@ -35,7 +35,7 @@ def test_every_lesson_is_there() -> None:
 @pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
 def test_a_lesson_is_valid_and_titled_in_both_languages(path: Path, hardware: str) -> None:
     profile = load_profile(path, hardware=hardware)
-    assert set(profile.title) == set(profile.about) == {"en", "ru"}
+    assert set(profile.document.title) == set(profile.document.about) == {"en", "ru"}
     assert profile.warnings == ()
     assert profile.path.read_text().startswith("# yaml-language-server: $schema=schema.json")
 
@@ -95,7 +95,7 @@ def test_the_robot_has_the_same_drivers_on_mock_and_on_real_hardware() -> None:
     for name in ("chassis", "sonar_front", "sonar_rear", "head_controller", "safety_stop"):
         assert mock[name].run == real[name].run
         assert {**mock[name].params, "port": ""} == {**real[name].params, "port": ""}
-    assert not [name for name, node in real.items() if "mock" in str(node.run)]
+    assert not [name for name, node in real.items() if "mock" in str(node.document.run)]
     assert set(real) - set(mock) == {"camera", "audio"}
     assert set(mock) - set(real) == {"mock_robot", "mock_camera", "mock_audio"}
 

@@ -43,8 +43,8 @@ def test_places_are_put_in_on_mock_hardware(tmp_path: Path) -> None:
 def test_the_profiles_own_domain_counts_in_places_too(tmp_path: Path) -> None:
     profile = loaded(tmp_path, "domain: 9\n" + ROBOT)
     assert str(profile.nodes["chassis"].params["port"]).endswith("/devices/9/pico")
-    assert profile.devices["pico"]["port"] == profile.nodes["chassis"].params["port"]
-    assert "mock" not in profile.devices["pico"]
+    assert profile.document.devices["pico"]["port"] == profile.nodes["chassis"].params["port"]
+    assert "mock" not in profile.document.devices["pico"]
 
 
 def test_reading_alone_looks_for_no_ports(tmp_path: Path) -> None:
@@ -55,8 +55,8 @@ def test_reading_alone_looks_for_no_ports(tmp_path: Path) -> None:
 def test_auto_becomes_the_port_that_was_found(tmp_path: Path) -> None:
     profile = started(tmp_path, PICO)
     assert profile.nodes["chassis"].params["port"] == "/dev/serial/by-id/pico"
-    assert profile.devices["pico"]["port"] == "/dev/serial/by-id/pico"
-    assert profile.devices["other"]["port"] == "auto", "no node that runs uses it"
+    assert profile.document.devices["pico"]["port"] == "/dev/serial/by-id/pico"
+    assert profile.document.devices["other"]["port"] == "auto", "no node that runs uses it"
 
 
 def test_a_variable_goes_before_auto(tmp_path: Path) -> None:
@@ -101,8 +101,8 @@ def test_settings_with_several_values_are_told(tmp_path: Path) -> None:
 def test_other_names_in_braces_stay(tmp_path: Path) -> None:
     text = 'nodes: {a: {exec: [x, "${HOME}", "${run_dirs}", "${}"], env: {D: "${domain}"}}}'
     node = loaded(tmp_path, "domain: 5\n" + text).nodes["a"]
-    assert node.exec == ("x", "${HOME}", "${run_dirs}", "${}")
-    assert node.env == {"D": "5"}
+    assert node.document.exec == ("x", "${HOME}", "${run_dirs}", "${}")
+    assert node.document.env == {"D": "5"}
 
 
 @pytest.mark.parametrize("hardware", ["mock", "real"])

@@ -24,7 +24,7 @@ def test_a_file_stands_relative_to_the_profile_that_names_it(
     written(other, "extends: ../robot/robot.yaml\nnodes: {b: {run: ../robot/my_sonar.py}}")
     monkeypatch.chdir(other)
     nodes = load_profile("lesson.yaml").nodes
-    assert nodes["a"].run == nodes["b"].run == str(robot / "my_sonar.py")
+    assert nodes["a"].document.run == nodes["b"].document.run == str(robot / "my_sonar.py")
     assert nodes["a"].command == "./my_sonar.py"
     assert nodes["a"].argv()[-4:] == [
         *(str(robot / "my_sonar.py"), "--ros-args", "-r", "__node:=a")
@@ -89,7 +89,9 @@ def test_a_folder_of_the_users_does_not_stand_for_the_shipped_nodes(
     for name in ("__init__", "hello", "only_here"):
         (tmp_path / "nodes" / f"{name}.py").write_text(NEVER)
     monkeypatch.chdir(tmp_path)
-    assert loaded(tmp_path, "nodes: {a: {run: nodes.hello}}").nodes["a"].run == "nodes.hello"
+    assert (
+        loaded(tmp_path, "nodes: {a: {run: nodes.hello}}").nodes["a"].document.run == "nodes.hello"
+    )
     (problem,) = problems(tmp_path, "nodes: {a: {run: nodes.only_here}}")
     assert problem.hint == "for your own file write run: ./nodes/only_here.py"
 

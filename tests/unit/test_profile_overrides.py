@@ -35,14 +35,14 @@ def extended(folder: Path, text: str) -> Profile:
 def test_a_parameter_deep_down_is_overridden_and_the_rest_stays(tmp_path: Path) -> None:
     profile = extended(tmp_path, "nodes: {sonar: {params: {limits: {near: 0.5}}}}")
     assert profile.nodes["sonar"].params == {"rate": 1.0, "limits.near": 0.5, "limits.far": 3.0}
-    assert profile.nodes["sonar"].run == "nodes.hello"
-    assert profile.title == {"en": "Base", "ru": "Основа"}
-    assert profile.panels == ("sonar",)
+    assert profile.nodes["sonar"].document.run == "nodes.hello"
+    assert profile.document.title == {"en": "Base", "ru": "Основа"}
+    assert profile.document.panels == ("sonar",)
 
 
 def test_readiness_and_titles_are_replaced_as_a_whole(tmp_path: Path) -> None:
     profile = extended(tmp_path, "title: {en: Own}\nnodes: {sonar: {ready: {node: sonar}}}")
-    assert profile.title == {"en": "Own"}
+    assert profile.document.title == {"en": "Own"}
     ready = profile.nodes["sonar"].ready
     assert ready is not None
     assert (ready.kind, ready.name, ready.within_s) == ("node", "sonar", 10.0)
@@ -55,7 +55,7 @@ def test_a_node_is_taken_out_by_null_and_one_added(tmp_path: Path) -> None:
 
 def test_exec_replaces_run(tmp_path: Path) -> None:
     profile = extended(tmp_path, "nodes: {sonar: {exec: [ros2, run, tof, sonar]}}")
-    assert profile.nodes["sonar"].run is None
+    assert profile.nodes["sonar"].document.run is None
     assert profile.nodes["sonar"].argv()[:4] == ["ros2", "run", "tof", "sonar"]
 
 
@@ -75,7 +75,7 @@ def test_merge_keys_and_anchors_work(tmp_path: Path) -> None:
           b: {<<: *common, params: {rate: 2}}
         """,
     )
-    assert profile.nodes["b"].restart == "always"
+    assert profile.nodes["b"].document.restart == "always"
     assert profile.nodes["b"].params == {"rate": 2}
 
 
@@ -135,15 +135,15 @@ nodes:
 def test_devices_are_put_in_with_their_types(tmp_path: Path) -> None:
     node = loaded(tmp_path, DEVICES).nodes["chassis"]
     assert node.params == {"port": "/dev/ttyACM0", "baud": 115200, "k": 1.5}
-    assert node.exec == ("chassis", "--url", "serial:/dev/ttyACM0", "${HOME}")
-    assert node.env == {"PORT": "/dev/ttyACM0"}
+    assert node.document.exec == ("chassis", "--url", "serial:/dev/ttyACM0", "${HOME}")
+    assert node.document.env == {"PORT": "/dev/ttyACM0"}
 
 
 def test_variables_override_devices(tmp_path: Path) -> None:
     path = written(tmp_path, DEVICES)
     profile = load_profile(path, environ={"DECK_PICO_PORT": "/dev/x", "DECK_PICO_BAUD": "9600"})
     assert profile.nodes["chassis"].params == {"port": "/dev/x", "baud": 9600, "k": 1.5}
-    assert profile.devices["pico"] == {"port": "/dev/x", "baud": 9600, "scale": 1.5}
+    assert profile.document.devices["pico"] == {"port": "/dev/x", "baud": 9600, "scale": 1.5}
 
 
 def test_a_variable_of_the_wrong_type_is_told(tmp_path: Path) -> None:
@@ -179,4 +179,4 @@ def test_a_domain_whose_ports_may_be_taken_is_warned_of(tmp_path: Path) -> None:
 
 def test_static_peers_are_kept(tmp_path: Path) -> None:
     profile = loaded(tmp_path, "discovery: [192.168.1.7, robot.local, 'fe80::1%eth0']\n" + PLAIN)
-    assert profile.discovery == ("192.168.1.7", "robot.local", "fe80::1%eth0")
+    assert profile.document.discovery == ("192.168.1.7", "robot.local", "fe80::1%eth0")

@@ -123,7 +123,8 @@ def _lessons_with_drivers() -> tuple[str, ...]:
         except LauncherError:
             continue
         if any(
-            node.run in DRIVERS or (node.run == HEAD and "port" in node.params) for node in nodes
+            node.document.run in DRIVERS or (node.document.run == HEAD and "port" in node.params)
+            for node in nodes
         ):
             found.append(entry.name)
     return tuple(found)
