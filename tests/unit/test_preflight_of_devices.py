@@ -20,6 +20,7 @@ from cli.preflight.holders import holders
 from cli.preflight.line import Line
 from cli.preflight.opening import opened
 from launcher.profile.load import Profile
+from launcher.profile.model import ProfileDocument
 from launcher.serial_ports import SerialPort
 
 
@@ -134,14 +135,21 @@ def test_who_made_a_pseudo_terminal_is_not_in_the_way(tmp_path: Path) -> None:
 # -------------------------------------------------------------------- a profile
 
 
-def robot(**devices: dict[str, object]) -> Profile:
-    """Return a profile with these devices, all of them used."""
-    return Profile(Path("robot.yaml"), "robot", {}, devices=devices, used=tuple(devices))
+def robot(*, used: bool = True, **devices: dict[str, object]) -> Profile:
+    """Return a profile with these devices, all of them used or none."""
+    return Profile(
+        path=Path("robot.yaml"),
+        name="robot",
+        nodes={},
+        document=ProfileDocument(devices=devices),
+        domain=0,
+        hardware="real",
+        used=tuple(devices) if used else (),
+    )
 
 
 def test_devices_that_are_not_named_are_not_asked() -> None:
-    profile = Profile(Path("x"), "x", {}, devices={"pico": {"port": "/dev/none"}})
-    assert examine(profile, list) == []
+    assert examine(robot(used=False, pico={"port": "/dev/none"}), list) == []
 
 
 def test_two_devices_on_one_port(port: str) -> None:

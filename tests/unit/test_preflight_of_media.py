@@ -7,10 +7,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from tui.preflight import examine
 
 from cli.doctor import Level
-from cli.preflight import media
+from cli.preflight import examine, media
 from tests.unit.test_preflight_of_devices import robot
 
 
