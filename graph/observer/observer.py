@@ -13,34 +13,47 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from graph.data import GraphUpdate
-from graph.observer.asking import Asking
+from graph.data import GraphUpdate, ParametersResult, SetResult
 from graph.observer.interest import Interest
-from graph.observer.orders import ObserverError
-from graph.observer.station import LOOK_AT_GRAPH_S, Station
+from graph.observer.node import LOOK_AT_GRAPH_S, ObserverNode
+from graph.observer.requests import (
+    Begin,
+    CallService,
+    ObserverError,
+    Perform,
+    PreparePublisher,
+    PublishOnce,
+    RequestQueue,
+)
 from graph.ros import open_ros
 from graph.words import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
+    from concurrent.futures import Future
+
+    from graph.data import CallResult, Value
+    from graph.publishing.dead_man_switch import Holding
 
 logger = logging.getLogger(__name__)
 
 STOP_WITHIN_S = 5.0
 
 
-class Observer(Asking):
+class Observer:
     """The ROS graph of one domain as plain data. All methods may be called from any thread."""
 
     def __init__(
         self, domain: int, discovery: str | tuple[str, ...] = "localhost", period_s: float = 0.1
     ) -> None:
         """Prepare for a domain; `discovery` is localhost, subnet, or the addresses of peers."""
-        super().__init__()
         self._domain = domain
         self._discovery = discovery
         self._period_s = period_s
         self._interest = Interest()
+        self._lock = threading.Lock()
+        self._wake = threading.Event()
+        self._requests = RequestQueue(self._wake)
         self._stopping = False
         self._thread: threading.Thread | None = None
 
@@ -72,7 +85,7 @@ class Observer(Asking):
         self._wake.set()
         atexit.unregister(self.stop)
         if self._thread is None:
-            self._refuse_orders(ObserverError(say("the observer was never started")))
+            self._requests.refuse(ObserverError(say("the observer was never started")))
         elif self._thread is not threading.current_thread():
             self._thread.join(STOP_WITHIN_S)
 
@@ -92,6 +105,154 @@ class Observer(Asking):
         """Tell in each update of the goals that others have sent to exactly these actions."""
         self._look_at(actions=frozenset(actions))
 
+    def prepare_publisher(
+        self, topic: str, type_name: str, *, latched: bool = False
+    ) -> Future[None]:
+        """Make a publisher now, so that its first message goes out at once."""
+        request = PreparePublisher(topic, type_name, latched)
+        self._requests.put(request)
+        return request.future
+
+    def publish(
+        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
+    ) -> Future[int]:
+        """Publish one message; the future tells how many subscribers it went to.
+
+        A new publisher waits up to a second for its subscribers, in the first seconds up to four.
+        A latched message goes out at once and stays for those who come later; only the count
+        waits. The future raises PublishError, UnknownTypeError, FieldError or
+        ObserverError.
+        """
+        request = PublishOnce(topic, type_name, value, latched)
+        if latched:
+            # An emergency stop is one of these.
+            self._requests.hurry(request, lambda node: node.outbox.knows_latched(topic, type_name))
+        else:
+            self._requests.put(request)
+        return request.future
+
+    def call(
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[CallResult]:
+        """Call a service; the result tells of an answer or why there is none, it never raises."""
+        asked = CallService(service, type_name, request, timeout_s)
+        self._requests.put(asked)
+        return asked.future
+
+    def start_publishing(
+        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
+    ) -> Future[int]:
+        """Publish a message at 0.1 to 100 Hz until it is stopped, or the observer is.
+
+        The future tells its number; it raises PublishError, UnknownTypeError, FieldError or
+        ObserverError.
+        """
+        request = Begin[int](
+            lambda node, future: node.publications.start(
+                topic, type_name, value, hz, node.ends(topic), future
+            )
+        )
+        self._requests.put(request)
+        return request.future
+
+    def stop_publishing(self, number: int) -> None:
+        """Publish that one no more; updates do not tell of it any longer."""
+        self._requests.put(Perform(lambda node: node.publications.stop(number)))
+
+    def stop_publishing_all(self) -> None:
+        """Publish nothing at a rate any more, not even what was asked for a moment ago."""
+        request = Perform(lambda node: node.publications.close())
+        self._requests.hurry(request)
+        # What has been asked for and has not begun does so before this one's turn.
+        self._requests.put(request)
+
+    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
+        """Make a publisher for what may be held, and publish nothing.
+
+        The future raises PublishError, UnknownTypeError or ObserverError.
+        """
+
+        def prepare(node: ObserverNode, future: Future[None]) -> None:
+            node.held.prepare(topic, type_name, node.ends(topic))
+            future.set_result(None)
+
+        request = Begin[None](prepare)
+        self._requests.put(request)
+        return request.future
+
+    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
+        """Publish a message again and again until `word.until_s`, unless asked again before.
+
+        Then `word.rest` is published, and nothing more. The future tells how many subscribers are
+        matched now; it raises PublishError, UnknownTypeError, FieldError or ObserverError.
+        """
+
+        def hold(node: ObserverNode, future: Future[int]) -> None:
+            if not node.held.knows(topic):
+                node.held.prepare(topic, type_name, node.ends(topic))
+            future.set_result(node.held.hold(topic, word))
+
+        request = Begin[int](hold)
+        self._requests.hurry(request, lambda node: node.held.knows(topic))
+        return request.future
+
+    def let_go(self, topic: str) -> None:
+        """Publish the message of rest of what is held, at once."""
+        self._requests.hurry(Perform(lambda node: node.held.let_go(topic)))
+
+    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
+        """Send a goal; the future tells its number, and updates how it goes.
+
+        It raises GoalError, UnknownTypeError, FieldError or ObserverError.
+        """
+        request = Begin[int](
+            lambda node, future: node.goals.send(
+                action, type_name, goal, node.action(action), future
+            )
+        )
+        self._requests.put(request)
+        return request.future
+
+    def cancel_goal(self, number: int) -> None:
+        """Ask for a goal to be cancelled; updates tell whether its server agrees."""
+        self._requests.put(Perform(lambda node: node.goals.cancel(number)))
+
+    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
+        """Ask for a goal of somebody else's to be cancelled; updates tell what came of it."""
+        self._requests.put(Perform(lambda node: node.seen_goals.cancel(action, goal_id)))
+
+    def forget_goal(self, number: int) -> None:
+        """Tell no more of a goal; one that has not ended is cancelled."""
+        self._requests.put(Perform(lambda node: node.goals.forget(number)))
+
+    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+        """Read all parameters of a node, with descriptors; `timeout_s` is for each answer.
+
+        The result tells of them or why there are none, the future never raises.
+        """
+        asked_s = time.monotonic()
+        request = Begin[ParametersResult](
+            lambda own, future: own.parameters.read(node, timeout_s, asked_s, future),
+            lambda error: ParametersResult(node, (), str(error), time.monotonic() - asked_s),
+        )
+        self._requests.put(request)
+        return request.future
+
+    def set_parameters(
+        self, node: str, values: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[SetResult]:
+        """Set parameters by the types that they have, each for itself.
+
+        The result tells of each that was refused, and why; the future never raises.
+        """
+        asked_s = time.monotonic()
+        request = Begin[SetResult](
+            lambda own, future: own.parameters.write(node, values, timeout_s, asked_s, future),
+            lambda error: SetResult(node, {}, str(error), time.monotonic() - asked_s),
+        )
+        self._requests.put(request)
+        return request.future
+
     def _look_at(self, **changes: frozenset[str] | bool) -> None:
         with self._lock:
             wanted = replace(self._interest, **changes)  # type: ignore[arg-type]
@@ -104,34 +265,34 @@ class Observer(Asking):
         end = ObserverError(say("the observer has been stopped"))
         try:
             # This imports rclpy; the screen need not wait for it.
-            station = Station(open_ros(self._domain, self._discovery))
-            station.breathe = lambda: self._breathe(station)
+            node = ObserverNode(open_ros(self._domain, self._discovery))
+            node.breathe = lambda: self._breathe(node)
         except Exception as error:  # noqa: BLE001 - told to the screen
             words = say("ROS cannot be used: {error}", error=str(error))
             end = ObserverError(words)
             self._tell(on_update, GraphUpdate(time.time(), error=words))
         else:
             try:
-                self._observe(station, on_update)
+                self._observe(node, on_update)
             finally:
-                station.close(end)
+                node.close(end)
         finally:
-            self._refuse_orders(end)
+            self._requests.refuse(end)
 
-    def _observe(self, station: Station, on_update: Callable[[GraphUpdate], None]) -> None:
+    def _observe(self, node: ObserverNode, on_update: Callable[[GraphUpdate], None]) -> None:
         next_look_s = 0.0
         interest = self._interest
         while not self._stopping:
-            self._carry_out_orders(station)
+            self._requests.carry_out(node)
             try:
-                due_s = station.step()
+                due_s = node.step()
                 now_s = time.monotonic()
                 if now_s >= next_look_s or self._interest is not interest:
                     interest = self._interest
-                    period_s = LOOK_AT_GRAPH_S if station.is_idle else self._period_s
+                    period_s = LOOK_AT_GRAPH_S if node.is_idle else self._period_s
                     # In step, save that a look out of turn does not put off the next.
                     next_look_s = max(now_s, min(next_look_s, now_s) + period_s)
-                    self._look(station, interest, on_update)
+                    self._look(node, interest, on_update)
             except Exception as error:
                 # The graph is in motion while it is looked at: the next look has another chance.
                 logger.exception("a look at the graph failed")
@@ -144,10 +305,15 @@ class Observer(Asking):
             if self._wake.wait(max(0.0, until_s - time.monotonic())):
                 self._wake.clear()
 
+    def _breathe(self, node: ObserverNode) -> None:
+        """Do what cannot wait for the end of a look: stops, and what is held."""
+        self._requests.carry_out_urgent(node)
+        node.held.step()
+
     def _look(
-        self, station: Station, interest: Interest, on_update: Callable[[GraphUpdate], None]
+        self, node: ObserverNode, interest: Interest, on_update: Callable[[GraphUpdate], None]
     ) -> None:
-        update = station.look(interest)
+        update = node.look(interest)
         if update is not None:
             self._tell(on_update, update)
 

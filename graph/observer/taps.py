@@ -12,7 +12,7 @@ from graph.messages.types import UnknownTypeError
 from graph.observer.interest import Interest
 from graph.observer.rates import QUIET_S
 from graph.observer.tap import FOLLOWED, Tap, first_depth
-from graph.observer.troubles import Finding, quiet, structural
+from graph.observer.troubles import Diagnosis, quiet, structural
 from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
 from graph.scan.endpoints import TopicEnds
 from graph.scan.scan import Scan
@@ -186,19 +186,19 @@ def _measured(row: TopicRow, tap: Tap, now_s: float) -> TopicRow:
     )
 
 
-def _finding(row: TopicRow, tap: Tap, now_s: float) -> Finding:
+def _finding(row: TopicRow, tap: Tap, now_s: float) -> Diagnosis:
     if row.trouble is not None:
-        return Finding(row.trouble, row.detail, row.facts)
+        return Diagnosis(row.trouble, row.detail, row.facts)
     if tap.broken:
         facts = {"type": tap.type_name, "package": "", "reason": tap.broken}
-        return Finding(Trouble.UNKNOWN_TYPE, tap.broken, facts)
+        return Diagnosis(Trouble.UNKNOWN_TYPE, tap.broken, facts)
     age_s = tap.meter.age_s(now_s)
     if age_s is None and now_s - tap.since_s > QUIET_S:
         return quiet(now_s - tap.since_s, ever=False)
     # A latched topic has said what it has to say.
     if age_s is not None and tap.meter.is_quiet(now_s) and tap.qos.durability != TRANSIENT_LOCAL:
         return quiet(age_s, ever=True)
-    return Finding(row.trouble, row.detail, row.facts)
+    return Diagnosis(row.trouble, row.detail, row.facts)
 
 
 def _type_to_show(ends: TopicEnds) -> str:

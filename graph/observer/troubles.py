@@ -20,7 +20,7 @@ MOST_PAIRS = 5
 
 
 @dataclass(frozen=True)
-class Finding:
+class Diagnosis:
     """A trouble, or a remark where there is none, and what it is made of."""
 
     trouble: Trouble | None = None
@@ -28,13 +28,13 @@ class Finding:
     facts: Mapping[str, str] = field(default_factory=dict)
 
 
-def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> Finding:
+def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> Diagnosis:
     """Return what is wrong with the topic however its messages come.
 
     `shown_type` is the one that Deck decodes, `unknown` why it cannot.
     """
     if unknown is not None:
-        return Finding(
+        return Diagnosis(
             Trouble.UNKNOWN_TYPE,
             unknown.reason,
             {
@@ -45,21 +45,21 @@ def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | Non
             },
         )
     if not ends.everyone_publishing:
-        return Finding(Trouble.NO_PUBLISHER, "nobody publishes this topic")
+        return Diagnosis(Trouble.NO_PUBLISHER, "nobody publishes this topic")
     found = mismatches(ends.everyone_publishing, ends.subscribers)
     if found:
         return _misfit(found)
     if len(ends.type_names) > 1:
         types = ", ".join(ends.type_names)
-        return Finding(
+        return Diagnosis(
             None,
             f"peers disagree about the type: {types}; shown is {shown_type}",
             {"types": types, "shown": shown_type},
         )
-    return Finding()
+    return Diagnosis()
 
 
-def _misfit(found: Sequence[Mismatch]) -> Finding:
+def _misfit(found: Sequence[Mismatch]) -> Diagnosis:
     """Return all that does not fit in words, and the first of it as facts."""
     # Two endpoints alike of one node read the same.
     told = list(dict.fromkeys(found))
@@ -67,12 +67,12 @@ def _misfit(found: Sequence[Mismatch]) -> Finding:
     words = [pair.in_words() for pair in told[:MOST_PAIRS]]
     words += [f"(and {more} more pairs)"] if more > 0 else []
     others = {"more": str(len(told) - 1)} if len(told) > 1 else {}
-    return Finding(Trouble.QOS_MISMATCH, " ".join(words), told[0].facts() | others)
+    return Diagnosis(Trouble.QOS_MISMATCH, " ".join(words), told[0].facts() | others)
 
 
-def quiet(seconds: float, *, ever: bool) -> Finding:
+def quiet(seconds: float, *, ever: bool) -> Diagnosis:
     """Return that nothing has come for `seconds`, and whether anything `ever` did."""
     since = "" if ever else ", and never before"
-    return Finding(
+    return Diagnosis(
         Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"}
     )

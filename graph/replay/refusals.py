@@ -6,7 +6,7 @@ from concurrent.futures import Future
 from typing import TYPE_CHECKING, TypeVar
 
 from graph.data import CallResult, ParametersResult, SetResult
-from graph.observer.orders import ObserverError
+from graph.observer.requests import ObserverError
 from graph.words import say
 
 if TYPE_CHECKING:

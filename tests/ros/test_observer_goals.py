@@ -15,7 +15,7 @@ from graph.calls.goals import GoalError
 from graph.data import Goal, GoalStatus
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
-from graph.observer.orders import ObserverError
+from graph.observer.requests import ObserverError
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
 

@@ -13,9 +13,9 @@ import pytest
 
 from graph.data import GraphUpdate
 from graph.observer.interest import Interest
+from graph.observer.node import ObserverNode
 from graph.observer.observer import Observer
-from graph.observer.orders import ObserverError
-from graph.observer.station import Station
+from graph.observer.requests import ObserverError
 from tests.middleware_words import own_words
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until
@@ -165,14 +165,14 @@ def test_a_screen_that_fails_to_take_an_update_gets_the_next(ros_domain: int) ->
 def test_one_look_that_fails_is_told_and_the_next_has_another_chance(
     ros_domain: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    look, failures = Station.look, [RuntimeError("the node went"), RuntimeError("and another")]
+    look, failures = ObserverNode.look, [RuntimeError("the node went"), RuntimeError("and another")]
 
-    def failing(station: Station, interest: Interest) -> GraphUpdate | None:
+    def failing(node: ObserverNode, interest: Interest) -> GraphUpdate | None:
         if failures:
             raise failures.pop()
-        return look(station, interest)
+        return look(node, interest)
 
-    monkeypatch.setattr(Station, "look", failing)
+    monkeypatch.setattr(ObserverNode, "look", failing)
     updates: list[GraphUpdate] = []
     peer, observer = Peer("talker", ros_domain), Observer(ros_domain)
     observer.start(updates.append)

@@ -12,7 +12,7 @@ from std_msgs.msg import Float32
 from graph.data import Publication
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
-from graph.observer.orders import ObserverError
+from graph.observer.requests import ObserverError
 from graph.publishing.outbox import PublishError
 from tests.ros.observing import Peer as Process
 from tests.ros.observing import Watcher

@@ -10,7 +10,7 @@ import pytest
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.observer import Observer
-from graph.observer.orders import ObserverError
+from graph.observer.requests import ObserverError
 from graph.publishing.outbox import PublishError
 from tests.ros.observing import Peer, Watcher
 from tests.waiting import wait_until

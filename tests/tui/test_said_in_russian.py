@@ -10,7 +10,7 @@ import pytest
 
 from graph.data import ParameterRow, Trouble
 from graph.messages.types import UnknownTypeError, load_message
-from graph.observer.orders import ObserverError
+from graph.observer.requests import ObserverError
 from graph.pictures.images import to_rgb
 from graph.pictures.pixels import ImageError
 from graph.replay.refusals import Refusals

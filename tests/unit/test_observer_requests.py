@@ -8,16 +8,16 @@ from typing import Any, cast
 
 import pytest
 
-from graph.observer.asking import Asking
-from graph.observer.orders import ObserverError
-from graph.observer.station import Station
+from graph.observer.node import ObserverNode
+from graph.observer.observer import Observer
+from graph.observer.requests import ObserverError
 from graph.publishing.dead_man_switch import Holding
 
 BOOL, STOP = "std_msgs/msg/Bool", {"data": True}
 
 
 class Desk:
-    """As much of a station as these orders touch; it notes what was done."""
+    """As much of the observer's node as these requests touch; it notes what was done."""
 
     def __init__(self, *known: str) -> None:
         self.known = set(known)
@@ -65,29 +65,29 @@ def word() -> Holding:
 
 
 def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:
-    asking, desk = Asking(), Desk("/stop", "/drive")
-    station = cast("Station", desk)
-    chatter = asking.publish("/chatter", BOOL, STOP)
-    held = asking.hold("/drive", BOOL, word())
-    stop = asking.publish("/stop", BOOL, STOP, latched=True)
-    asking.let_go("/drive")
-    asking._breathe(station)
+    observer, desk = Observer(1), Desk("/stop", "/drive")
+    node = cast("ObserverNode", desk)
+    chatter = observer.publish("/chatter", BOOL, STOP)
+    held = observer.hold("/drive", BOOL, word())
+    stop = observer.publish("/stop", BOOL, STOP, latched=True)
+    observer.let_go("/drive")
+    observer._breathe(node)
     assert desk.done == ["hold /drive", "publish /stop True", "let go of /drive", "step"]
     assert stop.done()
     assert held.done()
     assert not chatter.done()
-    asking._carry_out_orders(station)
+    observer._requests.carry_out(node)
     assert desk.done[4:] == ["look for /chatter", "publish /chatter False"]
 
 
 def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
-    asking, desk = Asking(), Desk()
-    station = cast("Station", desk)
-    asking.hold("/drive", BOOL, word())
-    asking.publish("/stop", BOOL, STOP, latched=True)
-    asking._breathe(station)
+    observer, desk = Observer(1), Desk()
+    node = cast("ObserverNode", desk)
+    observer.hold("/drive", BOOL, word())
+    observer.publish("/stop", BOOL, STOP, latched=True)
+    observer._breathe(node)
     assert desk.done == ["step"]
-    asking._carry_out_orders(station)
+    observer._requests.carry_out(node)
     assert desk.done[1:] == [
         "look for /drive",
         "hold /drive",
@@ -97,9 +97,9 @@ def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
 
 
 def test_what_cannot_be_done_any_more_says_so() -> None:
-    asking = Asking()
-    before = asking.publish("/stop", BOOL, STOP, latched=True)
-    asking._refuse_orders(ObserverError("over"))
-    for future in (before, asking.publish("/stop", BOOL, STOP, latched=True)):
+    observer = Observer(1)
+    before = observer.publish("/stop", BOOL, STOP, latched=True)
+    observer._requests.refuse(ObserverError("over"))
+    for future in (before, observer.publish("/stop", BOOL, STOP, latched=True)):
         with pytest.raises(ObserverError, match="over"):
             future.result(0)

@@ -31,7 +31,7 @@ RESCAN_S = 3.0
 """A node that was replaced by its like between two looks is noticed after this long."""
 
 
-class Station:
+class ObserverNode:
     """One open node at work; every method returns soon."""
 
     def __init__(self, ros: Ros) -> None:

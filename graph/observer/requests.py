@@ -1,8 +1,10 @@
-"""What the screen asks of the observer, on its way from one thread to the other."""
+"""What other threads ask of the observer, and the queue on which it goes to its own thread."""
 
 from __future__ import annotations
 
+import threading
 import time
+from collections import deque
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from graph.data import Value
-    from graph.observer.station import Station
+    from graph.observer.node import ObserverNode
 
 T = TypeVar("T")
 
@@ -27,26 +29,26 @@ class ObserverError(Exception):
         self.words = words
 
 
-class Order(Protocol):
+class Request(Protocol):
     """Something to be done on the observer's thread."""
 
-    def carry_out(self, station: Station) -> None:
+    def carry_out(self, node: ObserverNode) -> None:
         """Do it; may raise anything."""
 
     def fail(self, error: Exception) -> None:
         """Say that it cannot be done."""
 
 
-class Urgent(NamedTuple):
-    """An order that may be carried out in the middle of a look, once there is what it needs."""
+class UrgentRequest(NamedTuple):
+    """A request that may be carried out in the middle of a look, once there is what it needs."""
 
-    order: Order
-    ready: Callable[[Station], bool]
+    request: Request
+    ready: Callable[[ObserverNode], bool]
     """Whether it needs no look at the graph any more."""
 
 
 @dataclass(frozen=True)
-class Prepare:
+class PreparePublisher:
     """Make a publisher."""
 
     topic: str
@@ -54,10 +56,10 @@ class Prepare:
     latched: bool
     future: Future[None] = field(default_factory=Future)
 
-    def carry_out(self, station: Station) -> None:
+    def carry_out(self, node: ObserverNode) -> None:
         """Do it."""
-        ends = station.ends(self.topic)
-        station.outbox.prepare(self.topic, self.type_name, ends, latched=self.latched)
+        ends = node.ends(self.topic)
+        node.outbox.prepare(self.topic, self.type_name, ends, latched=self.latched)
         self.future.set_result(None)
 
     def fail(self, error: Exception) -> None:
@@ -66,7 +68,7 @@ class Prepare:
 
 
 @dataclass(frozen=True)
-class Publish:
+class PublishOnce:
     """Publish one message."""
 
     topic: str
@@ -75,13 +77,13 @@ class Publish:
     latched: bool
     future: Future[int] = field(default_factory=Future)
 
-    def carry_out(self, station: Station) -> None:
+    def carry_out(self, node: ObserverNode) -> None:
         """Do it, unless it was cancelled meanwhile."""
         if self.future.set_running_or_notify_cancel():
             # An emergency stop must not wait for a look at the graph, which takes its time.
-            ready = self.latched and station.outbox.knows_latched(self.topic, self.type_name)
-            ends = None if ready else station.ends(self.topic)
-            station.outbox.publish(
+            ready = self.latched and node.outbox.knows_latched(self.topic, self.type_name)
+            ends = None if ready else node.ends(self.topic)
+            node.outbox.publish(
                 self.topic, self.type_name, self.value, ends, self.future, latched=self.latched
             )
 
@@ -92,7 +94,7 @@ class Publish:
 
 
 @dataclass(frozen=True)
-class Call:
+class CallService:
     """Call a service."""
 
     service: str
@@ -102,14 +104,14 @@ class Call:
     asked_s: float = field(default_factory=time.monotonic)
     future: Future[CallResult] = field(default_factory=Future)
 
-    def carry_out(self, station: Station) -> None:
+    def carry_out(self, node: ObserverNode) -> None:
         """Do it, unless it was cancelled meanwhile."""
         if self.future.set_running_or_notify_cancel():
-            station.calls.begin(
+            node.calls.begin(
                 self.service,
                 self.type_name,
                 self.request,
-                station.service(self.service),
+                node.service(self.service),
                 self.future,
                 self.timeout_s,
                 self.asked_s,
@@ -123,33 +125,33 @@ class Call:
 
 
 @dataclass(frozen=True)
-class Do:
+class Perform:
     """Have something done that nobody waits for; without an observer there is nothing to do."""
 
-    act: Callable[[Station], None]
+    act: Callable[[ObserverNode], None]
 
-    def carry_out(self, station: Station) -> None:
+    def carry_out(self, node: ObserverNode) -> None:
         """Do it."""
-        self.act(station)
+        self.act(node)
 
     def fail(self, error: Exception) -> None:
         """Keep silent: what it was about has ended with the observer."""
 
 
 @dataclass(frozen=True)
-class Ask(Generic[T]):
+class Begin(Generic[T]):
     """Have something begun that has a future for its end."""
 
-    begin: Callable[[Station, Future[T]], None]
+    begin: Callable[[ObserverNode, Future[T]], None]
     """Called on the observer's thread; may raise anything."""
     refusal: Callable[[Exception], T] | None = None
     """Makes the result that says why not, where the future is never to raise."""
     future: Future[T] = field(default_factory=Future)
 
-    def carry_out(self, station: Station) -> None:
+    def carry_out(self, node: ObserverNode) -> None:
         """Begin it, unless it was cancelled meanwhile."""
         if self.future.set_running_or_notify_cancel():
-            self.begin(station, self.future)
+            self.begin(node, self.future)
 
     def fail(self, error: Exception) -> None:
         """Say that it cannot be done."""
@@ -159,3 +161,63 @@ class Ask(Generic[T]):
             self.future.set_result(self.refusal(error))
         else:
             self.future.set_exception(error)
+
+
+class RequestQueue:
+    """Takes requests on any thread; the observer's own carries them out."""
+
+    def __init__(self, wake: threading.Event) -> None:
+        """`wake` is set when there is something to do."""
+        self._wake = wake
+        self._requests: deque[Request] = deque()
+        self._urgent: deque[UrgentRequest] = deque()
+        self._lock = threading.Lock()
+        self._failure: ObserverError | None = None
+
+    def put(self, request: Request) -> None:
+        """Have it carried out in its turn, between two looks at the graph."""
+        self._put(self._requests, request, request)
+
+    def hurry(self, request: Request, ready: Callable[[ObserverNode], bool] | None = None) -> None:
+        """Have it carried out before all others, in the middle of a look if it is `ready`."""
+        self._put(self._urgent, UrgentRequest(request, ready or _always), request)
+
+    def carry_out(self, node: ObserverNode) -> None:
+        """Do all that has been asked for."""
+        while self._urgent or self._requests:
+            request = self._urgent.popleft().request if self._urgent else self._requests.popleft()
+            _carry_out(request, node)
+
+    def carry_out_urgent(self, node: ObserverNode) -> None:
+        """Do what cannot wait for the end of a look, as far as it needs none itself."""
+        while self._urgent and self._urgent[0].ready(node):
+            _carry_out(self._urgent.popleft().request, node)
+
+    def refuse(self, failure: ObserverError) -> None:
+        """Let fail what has been asked for, and whatever is asked from now on."""
+        with self._lock:
+            self._failure = failure
+        while self._urgent:
+            self._urgent.popleft().request.fail(failure)
+        while self._requests:
+            self._requests.popleft().fail(failure)
+
+    def _put(self, queue: deque[T], entry: T, request: Request) -> None:
+        with self._lock:
+            failure = self._failure
+            if failure is None:
+                queue.append(entry)
+        if failure is not None:
+            request.fail(failure)
+        self._wake.set()
+
+
+def _always(_node: ObserverNode) -> bool:
+    return True
+
+
+def _carry_out(request: Request, node: ObserverNode) -> None:
+    try:
+        request.carry_out(node)
+    except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+        request.fail(error)
