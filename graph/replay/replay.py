@@ -1,7 +1,7 @@
 """A bag played back as if it were a live graph, with no ROS at hand.
 
-`Replay` fits the screen's seam for a graph. It has a thread of its own, which reads, counts and
-decodes; what the screen asks is done there, in order.
+`Replay` fits the screen's port for a graph; what would change something it refuses. It has a
+thread of its own, which reads, counts and decodes; what the screen asks is done there, in order.
 """
 
 from __future__ import annotations
@@ -10,29 +10,35 @@ import logging
 import threading
 import time
 from collections import deque
+from concurrent.futures import Future
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from graph.bag.errors import BagError
 from graph.bag.reading import open_bag
-from graph.data import GraphUpdate
+from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult
 from graph.observer.interest import Interest
+from graph.observer.requests import ObserverError
 from graph.replay.player import Player
-from graph.replay.refusals import Refusals
 from graph.replay.state import RATES, ReplayState, next_rate
 from graph.replay.topics import NANOSECONDS
 from graph.words import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
     from pathlib import Path
+
+    from graph.data import Value
+    from graph.publishing.dead_man_switch import Holding
 
 logger = logging.getLogger(__name__)
 
 STOP_WITHIN_S = 5.0
 
+T = TypeVar("T")
 
-class Replay(Refusals):
+
+class Replay:
     """A bag as a graph. All methods may be called from any thread; none waits for the bag."""
 
     def __init__(
@@ -143,6 +149,81 @@ class Replay(Refusals):
         """Begin anew at the end, or stay there."""
         self._order(lambda _player: self._set(loop=loop))
 
+    # What a recording cannot do: whoever asks gets a word, never silence.
+
+    def prepare_publisher(
+        self, topic: str, type_name: str, *, latched: bool = False
+    ) -> Future[None]:
+        """Fail."""
+        del topic, type_name, latched
+        return refused()
+
+    def publish(
+        self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
+    ) -> Future[int]:
+        """Fail."""
+        del topic, type_name, value, latched
+        return refused()
+
+    def start_publishing(
+        self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
+    ) -> Future[int]:
+        """Fail."""
+        del topic, type_name, value, hz
+        return refused()
+
+    def stop_publishing(self, number: int) -> None:
+        """Do nothing: nothing is published."""
+
+    def stop_publishing_all(self) -> None:
+        """Do nothing: nothing is published."""
+
+    def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
+        """Fail."""
+        del topic, type_name
+        return refused()
+
+    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
+        """Fail."""
+        del topic, type_name, word
+        return refused()
+
+    def let_go(self, topic: str) -> None:
+        """Do nothing: nothing is held."""
+
+    def call(
+        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[CallResult]:
+        """Answer that there is nobody to answer."""
+        del type_name, request, timeout_s
+        return _done(CallResult(service, False, None, _refusal(), 0.0))
+
+    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+        """Answer that there is nobody to ask."""
+        del timeout_s
+        return _done(ParametersResult(node, error=_refusal()))
+
+    def set_parameters(
+        self, node: str, values: Mapping[str, Value], timeout_s: float = 5.0
+    ) -> Future[SetResult]:
+        """Answer that there is nobody to tell."""
+        del values, timeout_s
+        return _done(SetResult(node, error=_refusal()))
+
+    def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
+        """Fail."""
+        del action, type_name, goal
+        return refused()
+
+    def cancel_goal(self, number: int) -> None:
+        """Do nothing: there is no goal."""
+
+    def cancel_seen_goal(self, action: str, goal_id: str) -> None:
+        """Do nothing: there is no goal."""
+
+    def forget_goal(self, number: int) -> None:
+        """Do nothing: there is no goal."""
+
     def _order(self, order: Callable[[Player], None]) -> None:
         self._orders.append(order)
         self._wake.set()
@@ -222,3 +303,20 @@ class Replay(Refusals):
     def _fail(self, words: str, on_update: Callable[[GraphUpdate], None]) -> None:
         self._set(error=words, paused=True)
         on_update(GraphUpdate(time.time(), error=words))
+
+
+def _refusal() -> str:
+    return say("this is a recording: nobody can hear it")
+
+
+def refused() -> Future[T]:
+    """Return what somebody gets who asks a recording for what would change something."""
+    future: Future[T] = Future()
+    future.set_exception(ObserverError(_refusal()))
+    return future
+
+
+def _done(result: T) -> Future[T]:
+    future: Future[T] = Future()
+    future.set_result(result)
+    return future

@@ -13,7 +13,7 @@ from graph.messages.types import UnknownTypeError, load_message
 from graph.observer.requests import ObserverError
 from graph.pictures.images import to_rgb
 from graph.pictures.pixels import ImageError
-from graph.replay.refusals import Refusals
+from graph.replay.replay import refused
 from tests.tui.app_runs import opened
 from tests.tui.recorded import lesson_update, topic
 from text.i18n import said, set_language
@@ -41,8 +41,8 @@ def latin(words: str) -> bool:
 
 
 def test_what_a_recording_refuses() -> None:
-    refused: Future[int] = Refusals().publish("/x", "std_msgs/msg/String", {})
-    error = refused.exception(1)
+    future: Future[int] = refused()
+    error = future.exception(1)
     assert isinstance(error, ObserverError)
     assert reason_words(error) == "это запись: принять сообщение некому"
 
@@ -51,7 +51,7 @@ async def test_a_command_that_a_recording_refuses_is_told_in_russian() -> None:
     async with opened() as (app, pilot):
         set_language("ru")
         assert isinstance(app.screen, LessonDeck)
-        app.screen._tell_if_lost(Refusals().publish("/x", "std_msgs/msg/String", {}))
+        app.screen._tell_if_lost(refused())
         await pilot.pause()
         (told,) = [one.message for one in app._notifications]
         assert told == "это запись: принять сообщение некому"
