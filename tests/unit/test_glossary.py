@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 DOCS = (ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.ru.md")))
 ENGLISH_DOCS = sorted({ROOT / "README.md", *(ROOT / "docs").glob("*.md")} - set(DOCS))
 PROFILES = sorted((ROOT / "profiles").glob("*.yaml"))
-SPEAKERS = sorted(path for room in ("nodes", "robot") for path in (ROOT / room).glob("*.py"))
+SPEAKERS = sorted(path for room in ("nodes", "robot") for path in (ROOT / room).rglob("*.py"))
 CODE = re.compile(r"```.*?```|`[^`]*`", re.DOTALL)
 INSTEAD = {
     r"\bлог(и|а|ов|у|е|ах|ом|ами)?\b": "журнал",
