@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 from textual.binding import Binding, BindingType
 from textual.dom import DOMNode
 
-Target = TypeVar("Target", bound=DOMNode)
+Target = TypeVar("Target")
 
 REGISTRY: dict[str, type[Action[Any]]] = {}
 """Binding id to action, in the order in which the modules were imported."""

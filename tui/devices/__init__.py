@@ -1,1 +1,4 @@
-"""The tab of devices: drivers, and the frames on their wires."""
+"""The tab of devices: what each driver says of itself, and the frames on its wire.
+
+The app makes its `screen.DevicesScreen`; nothing else here is for others.
+"""

@@ -2,27 +2,70 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
-from tui.devices import trouble as device_trouble
-from tui.log_view import actions as lines
+from tui.devices.trouble import BATTERY, NOISE, SILENCE, UNPLUGGED, SimulatedTrouble
+from tui.log_view.actions import (
+    CopyLines,
+    FoldLines,
+    NextLine,
+    PauseLines,
+    PreviousLine,
+    SaveLines,
+    SearchLines,
+    ShowsLines,
+)
 
 if TYPE_CHECKING:
-    from tui.devices.screen import DevicesScreen
+    from tui.devices.frame_rows import FrameRows
+    from tui.devices.reading import Device
 
 
-class DevicesAction(Action["DevicesScreen"]):
+class DevicesTarget(ShowsLines, Protocol):
+    """What these actions need of the screen of devices."""
+
+    frames: FrameRows
+
+    @property
+    def chosen(self) -> Device | None:
+        """The driver that is looked at."""
+
+    @property
+    def only_bad(self) -> bool:
+        """Whether good frames are left out."""
+
+    @property
+    def simulated(self) -> tuple[str, str] | None:
+        """The simulated robot's node and which line of it is chosen."""
+
+    def next_way(self) -> None:
+        """Show both ways, then in, then out."""
+
+    def toggle_bad(self) -> None:
+        """Show noise and bad frames only, or all."""
+
+    def toggle_hex(self) -> None:
+        """Show bytes that are text in hex, or as text."""
+
+    def clear_frames(self) -> None:
+        """Forget all frames."""
+
+    def switch_trouble(self, trouble: SimulatedTrouble) -> object:
+        """Make this trouble of the chosen device, or mend it."""
+
+
+class DevicesAction(Action[DevicesTarget]):
     """Something about the frames of the chosen port."""
 
     @classmethod
-    def possible(cls, target: DevicesScreen) -> bool | None:
+    def possible(cls, target: DevicesTarget) -> bool | None:
         """Only with a driver to look at."""
         return bool(target.chosen)
 
 
-class Pause(lines.Pause["DevicesScreen"], DevicesAction):
+class PauseFrames(PauseLines[DevicesTarget], DevicesAction):
     """Stand still, or follow."""
 
     id = "devices.pause"
@@ -40,7 +83,7 @@ class OneWay(DevicesAction):
     from_elsewhere = True
 
     @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
+    async def run(cls, target: DevicesTarget) -> None:
         """Take the next of the three."""
         target.next_way()
 
@@ -57,12 +100,12 @@ class OnlyBad(DevicesAction):
     from_elsewhere = True
 
     @classmethod
-    def label(cls, target: DevicesScreen) -> str:
+    def label(cls, target: DevicesTarget) -> str:
         """By what it would do now."""
         return N_("All frames") if target.only_bad else cls.title
 
     @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
+    async def run(cls, target: DevicesTarget) -> None:
         """Do the other of the two."""
         target.toggle_bad()
 
@@ -79,23 +122,23 @@ class Hex(DevicesAction):
     from_elsewhere = True
 
     @classmethod
-    def label(cls, target: DevicesScreen) -> str:
+    def label(cls, target: DevicesTarget) -> str:
         """By what it would do now."""
         return N_("Text") if target.frames.as_hex else cls.title
 
     @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
+    async def run(cls, target: DevicesTarget) -> None:
         """Do the other of the two."""
         target.toggle_hex()
 
 
-class Fold(lines.Fold["DevicesScreen"], DevicesAction):
+class FoldFrames(FoldLines[DevicesTarget], DevicesAction):
     """Fold long lines, or not."""
 
     id = "devices.fold"
 
 
-class Clear(DevicesAction):
+class ClearFrames(DevicesAction):
     """Forget the frames so far."""
 
     id = "devices.clear"
@@ -106,12 +149,12 @@ class Clear(DevicesAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
+    async def run(cls, target: DevicesTarget) -> None:
         """Forget them."""
         target.clear_frames()
 
 
-class Search(lines.Search["DevicesScreen"], DevicesAction):
+class SearchFrames(SearchLines[DevicesTarget], DevicesAction):
     """Search."""
 
     id = "devices.search"
@@ -119,7 +162,7 @@ class Search(lines.Search["DevicesScreen"], DevicesAction):
     tooltip = N_("Find text in the frames as you type; Escape ends it.")
 
 
-class FindNext(lines.FindNext["DevicesScreen"], DevicesAction):
+class NextFrame(NextLine[DevicesTarget], DevicesAction):
     """The next found frame."""
 
     id = "devices.next"
@@ -127,7 +170,7 @@ class FindNext(lines.FindNext["DevicesScreen"], DevicesAction):
     tooltip = N_("Go to the next frame found.")
 
 
-class FindPrevious(lines.FindPrevious["DevicesScreen"], DevicesAction):
+class PreviousFrame(PreviousLine[DevicesTarget], DevicesAction):
     """The previous found frame."""
 
     id = "devices.previous"
@@ -135,13 +178,13 @@ class FindPrevious(lines.FindPrevious["DevicesScreen"], DevicesAction):
     tooltip = N_("Go to the previous frame found.")
 
 
-class Copy(lines.Copy["DevicesScreen"], DevicesAction):
+class CopyFrames(CopyLines[DevicesTarget], DevicesAction):
     """Copy the frames chosen."""
 
     id = "devices.copy"
 
 
-class Save(lines.Save["DevicesScreen"], DevicesAction):
+class SaveFrames(SaveLines[DevicesTarget], DevicesAction):
     """Write frames to a file."""
 
     id = "devices.save"
@@ -151,16 +194,16 @@ class Save(lines.Save["DevicesScreen"], DevicesAction):
 class _MakeTrouble(DevicesAction):
     """Trouble of the chosen device, or no more of it: only a simulated one can have it made."""
 
-    trouble: ClassVar[device_trouble.Trouble]
+    trouble: ClassVar[SimulatedTrouble]
 
     @classmethod
-    def possible(cls, target: DevicesScreen) -> bool | None:
+    def possible(cls, target: DevicesTarget) -> bool | None:
         """Only with a device of the simulated robot, that may have it."""
         found = target.simulated
         return found is not None and found[1] in cls.trouble.devices
 
     @classmethod
-    async def run(cls, target: DevicesScreen) -> None:
+    async def run(cls, target: DevicesTarget) -> None:
         """Make it, or mend it."""
         target.switch_trouble(cls.trouble)
 
@@ -173,7 +216,7 @@ class Unplug(_MakeTrouble):
     title = N_("Pull cable")
     tooltip = N_("Simulated robot: pull the cable of the chosen device; again: plug it in.")
     footer = True
-    trouble = device_trouble.UNPLUGGED
+    trouble = UNPLUGGED
 
 
 class Noise(_MakeTrouble):
@@ -183,7 +226,7 @@ class Noise(_MakeTrouble):
     key = "Z,Я"
     title = N_("Noise")
     tooltip = N_("Simulated robot: noise on the line of the chosen device; again: none.")
-    trouble = device_trouble.NOISE
+    trouble = NOISE
 
 
 class Silence(_MakeTrouble):
@@ -193,7 +236,7 @@ class Silence(_MakeTrouble):
     key = "H,Р"
     title = N_("Silence")
     tooltip = N_("Simulated robot: the chosen device says nothing; again: it speaks.")
-    trouble = device_trouble.SILENCE
+    trouble = SILENCE
 
 
 class LowBattery(_MakeTrouble):
@@ -203,21 +246,21 @@ class LowBattery(_MakeTrouble):
     key = "B,И"
     title = N_("Low battery")
     tooltip = N_("Simulated robot: the battery of Pico and servos is weak; again: it is charged.")
-    trouble = device_trouble.BATTERY
+    trouble = BATTERY
 
 
 DEVICES_ACTIONS = (
-    Pause,
+    PauseFrames,
     OneWay,
     OnlyBad,
     Hex,
-    Fold,
-    Clear,
-    Copy,
-    Save,
-    Search,
-    FindNext,
-    FindPrevious,
+    FoldFrames,
+    ClearFrames,
+    CopyFrames,
+    SaveFrames,
+    SearchFrames,
+    NextFrame,
+    PreviousFrame,
     Unplug,
     Noise,
     Silence,

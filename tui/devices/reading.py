@@ -27,7 +27,7 @@ _STRING = "std_msgs/msg/String"
 _ISO = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d")
 
 
-class Level(IntEnum):
+class DeviceLevel(IntEnum):
     """As diagnostic_msgs/DiagnosticStatus has it."""
 
     OK = 0
@@ -41,7 +41,7 @@ class Device:
     """What a driver said last."""
 
     name: str
-    level: Level
+    level: DeviceLevel
     message: str
     hardware: str
     values: Mapping[str, str]
@@ -134,7 +134,7 @@ def _device(status: Any, heard_s: float) -> Device | None:  # noqa: ANN401 - of 
         said, hardware = _text(status["message"]), _text(status["hardware_id"])
     except (KeyError, TypeError, ValueError):
         return None
-    known = Level(level) if level in Level.__members__.values() else Level.ERROR
+    known = DeviceLevel(level) if level in DeviceLevel.__members__.values() else DeviceLevel.ERROR
     return Device(name or "?", known, said, hardware, values, heard_s)
 
 

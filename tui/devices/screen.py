@@ -197,7 +197,7 @@ class DevicesScreen(DeckScreen):
         return device_trouble.simulated(self.chosen, self.feed)
 
     @work(group="trouble")
-    async def switch_trouble(self, trouble: device_trouble.Trouble) -> None:
+    async def switch_trouble(self, trouble: device_trouble.SimulatedTrouble) -> None:
         """Make this trouble of the chosen device, or mend it, and tell which."""
         found, graph = self.simulated, self.feed.graph
         if found is None or graph is None:

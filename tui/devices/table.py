@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, NamedTuple
 from text.figures import whole
 from text.i18n import N_, _
 from text.plain import plain
-from tui.devices.reading import STALE_S, Device, Level
+from tui.devices.reading import STALE_S, Device, DeviceLevel
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _STATES = {
-    Level.OK: (N_("● fine"), "good"),
-    Level.WARN: (N_("▲ warning"), "warn"),
-    Level.ERROR: (N_("✗ error"), "bad"),
-    Level.STALE: (N_("○ stale"), "dim"),
+    DeviceLevel.OK: (N_("● fine"), "good"),
+    DeviceLevel.WARN: (N_("▲ warning"), "warn"),
+    DeviceLevel.ERROR: (N_("✗ error"), "bad"),
+    DeviceLevel.STALE: (N_("○ stale"), "dim"),
 }
 _HOME, _WIDE = 100, 160
 """Widths from which there is a column for the message, and for more figures."""

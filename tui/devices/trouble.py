@@ -26,7 +26,7 @@ _REAL = PurePosixPath("/dev")
 
 
 @dataclass(frozen=True)
-class Trouble:
+class SimulatedTrouble:
     """A parameter's value while there is this trouble, and without it."""
 
     wrong: str | float
@@ -41,19 +41,19 @@ class Trouble:
     """Which may have it."""
 
 
-UNPLUGGED = Trouble(
+UNPLUGGED = SimulatedTrouble(
     *("unplugged", "fine"),
     *(N_("{device}: the cable is pulled."), N_("{device}: the cable is plugged in again.")),
 )
-NOISE = Trouble(
+NOISE = SimulatedTrouble(
     *("noise", "fine"),
     *(N_("{device}: there is noise on the line."), N_("{device}: the noise is gone.")),
 )
-SILENCE = Trouble(
+SILENCE = SimulatedTrouble(
     *("silent", "fine"),
     *(N_("{device}: it says nothing any more."), N_("{device}: it speaks again.")),
 )
-BATTERY = Trouble(
+BATTERY = SimulatedTrouble(
     *(5.8, 7.4),
     *(N_("The battery has 5.8 V."), N_("The battery has 7.4 V.")),
     *("battery", POWERED),
@@ -75,7 +75,9 @@ def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
     return (names[0], port.name) if names else None
 
 
-async def switch(graph: GraphLink, node: str, device: str, trouble: Trouble) -> tuple[bool, str]:
+async def switch(
+    graph: GraphLink, node: str, device: str, trouble: SimulatedTrouble
+) -> tuple[bool, str]:
     """Make the trouble, or mend it if it is there; return whether it is there, or why not."""
     name = trouble.parameter or device
     read = await asyncio.wrap_future(graph.parameters(node))

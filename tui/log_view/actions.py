@@ -5,19 +5,27 @@ A screen makes one its own by a subclass with an id, and with other words where 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Protocol, TypeVar
 
 from text.i18n import N_
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.devices.screen import DevicesScreen
-    from tui.logs.screen import LogsScreen
-
-Shown = TypeVar("Shown", bound="LogsScreen | DevicesScreen")
+    from tui.log_view.pane import LogPane
 
 
-class Pause(Action[Shown]):
+class ShowsLines(Protocol):
+    """What these actions need of a screen."""
+
+    @property
+    def pane(self) -> LogPane:
+        """The lines."""
+
+
+Shown = TypeVar("Shown", bound=ShowsLines)
+
+
+class PauseLines(Action[Shown]):
     """Stand still, or follow."""
 
     key = "p,з"
@@ -36,7 +44,7 @@ class Pause(Action[Shown]):
         target.pane.view.toggle_following()
 
 
-class Search(Action[Shown]):
+class SearchLines(Action[Shown]):
     """Search."""
 
     key = "slash,ctrl+f"
@@ -55,7 +63,7 @@ class Search(Action[Shown]):
         target.pane.search()
 
 
-class Find(Action[Shown]):
+class FindLine(Action[Shown]):
     """Go to a line that was found."""
 
     step: ClassVar[int]
@@ -66,7 +74,7 @@ class Find(Action[Shown]):
         target.pane.find(cls.step)
 
 
-class FindNext(Find[Shown]):
+class NextLine(FindLine[Shown]):
     """The next found line."""
 
     key = "n,т"
@@ -74,7 +82,7 @@ class FindNext(Find[Shown]):
     step = 1
 
 
-class FindPrevious(Find[Shown]):
+class PreviousLine(FindLine[Shown]):
     """The previous found line."""
 
     key = "N,Т"
@@ -82,7 +90,7 @@ class FindPrevious(Find[Shown]):
     step = -1
 
 
-class Fold(Action[Shown]):
+class FoldLines(Action[Shown]):
     """Fold long lines, or not."""
 
     key = "w,ц"
@@ -97,7 +105,7 @@ class Fold(Action[Shown]):
         target.pane.view.set_fold(not target.pane.view.fold)
 
 
-class Copy(Action[Shown]):
+class CopyLines(Action[Shown]):
     """Copy the lines chosen."""
 
     key = "y,н"
@@ -111,7 +119,7 @@ class Copy(Action[Shown]):
         target.pane.copy()
 
 
-class Save(Action[Shown]):
+class SaveLines(Action[Shown]):
     """Write lines to a file."""
 
     key = "W,Ц"

@@ -3,30 +3,56 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
-from tui.log_view import actions as lines
+from tui.log_view.actions import (
+    CopyLines,
+    FoldLines,
+    NextLine,
+    PauseLines,
+    PreviousLine,
+    SaveLines,
+    SearchLines,
+    ShowsLines,
+)
 
 if TYPE_CHECKING:
-    from tui.logs.screen import LogsScreen
+    from tui.log_view.filter import LogFilter
 
 
-class LogsAction(Action["LogsScreen"]):
+class LogsTarget(ShowsLines, Protocol):
+    """What these actions need of the screen of logs."""
+
+    @property
+    def chosen_node(self) -> str | None:
+        """The node that is meant."""
+
+    def choose(self, chosen: LogFilter) -> None:
+        """Show these lines."""
+
+    def hear_all(self) -> None:
+        """Let every node be heard, at every severity."""
+
+    def toggle_nodes(self) -> None:
+        """Go to the list of nodes, or back to the lines."""
+
+
+class LogsAction(Action[LogsTarget]):
     """Something about the log."""
 
     from_elsewhere = True
 
 
-class Pause(lines.Pause["LogsScreen"]):
+class PauseLog(PauseLines[LogsTarget]):
     """Stand still, or follow."""
 
     id = "logs.follow"
     tooltip = N_("Pause while lines come in, or follow the newest again.")
 
 
-class Search(lines.Search["LogsScreen"]):
+class SearchLog(SearchLines[LogsTarget]):
     """Search."""
 
     id = "logs.search"
@@ -35,7 +61,7 @@ class Search(lines.Search["LogsScreen"]):
     footer = True
 
 
-class FindNext(lines.FindNext["LogsScreen"]):
+class NextInLog(NextLine[LogsTarget]):
     """The next found line."""
 
     id = "logs.next"
@@ -43,7 +69,7 @@ class FindNext(lines.FindNext["LogsScreen"]):
     tooltip = N_("Go to the next line found.")
 
 
-class FindPrevious(lines.FindPrevious["LogsScreen"]):
+class PreviousInLog(PreviousLine[LogsTarget]):
     """The previous found line."""
 
     id = "logs.previous"
@@ -61,12 +87,12 @@ class OnlyFound(LogsAction):
     tooltip = N_("Leave out the lines that do not hold the text searched for.")
 
     @classmethod
-    def possible(cls, target: LogsScreen) -> bool | None:
+    def possible(cls, target: LogsTarget) -> bool | None:
         """Only with a text to search for."""
         return True if target.pane.view.log_filter.search else None
 
     @classmethod
-    async def run(cls, target: LogsScreen) -> None:
+    async def run(cls, target: LogsTarget) -> None:
         """Do the other of the two."""
         chosen = target.pane.view.log_filter
         target.choose(replace(chosen, only_found=not chosen.only_found))
@@ -83,7 +109,7 @@ class RaiseSeverity(LogsAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: LogsScreen) -> None:
+    async def run(cls, target: LogsTarget) -> None:
         """Take the next one."""
         target.choose(target.pane.view.log_filter.next_minimum())
 
@@ -99,12 +125,12 @@ class ShowNodes(LogsAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: LogsScreen) -> None:
+    async def run(cls, target: LogsTarget) -> None:
         """Open it, or close it where it covers the log."""
         target.toggle_nodes()
 
 
-class Mute(LogsAction):
+class MuteNode(LogsAction):
     """Mute a node, or hear it."""
 
     id = "logs.mute"
@@ -116,18 +142,18 @@ class Mute(LogsAction):
     from_elsewhere = False
 
     @classmethod
-    def possible(cls, target: LogsScreen) -> bool | None:
+    def possible(cls, target: LogsTarget) -> bool | None:
         """Only with a node to mute."""
         return True if target.chosen_node else None
 
     @classmethod
-    async def run(cls, target: LogsScreen) -> None:
+    async def run(cls, target: LogsTarget) -> None:
         """Do the other of the two."""
         if target.chosen_node:
             target.choose(target.pane.view.log_filter.toggled(target.chosen_node))
 
 
-class Alone(LogsAction):
+class HearOneNode(LogsAction):
     """Mute all but one node."""
 
     id = "logs.alone"
@@ -139,18 +165,18 @@ class Alone(LogsAction):
     from_elsewhere = False
 
     @classmethod
-    def possible(cls, target: LogsScreen) -> bool | None:
+    def possible(cls, target: LogsTarget) -> bool | None:
         """Only with a node to listen to."""
         return True if target.chosen_node else None
 
     @classmethod
-    async def run(cls, target: LogsScreen) -> None:
+    async def run(cls, target: LogsTarget) -> None:
         """Listen to it alone."""
         if target.chosen_node:
             target.choose(target.pane.view.log_filter.alone(target.chosen_node))
 
 
-class HearAll(LogsAction):
+class HearAllNodes(LogsAction):
     """Hear every node."""
 
     id = "logs.all"
@@ -160,24 +186,24 @@ class HearAll(LogsAction):
     tooltip = N_("Let every node be heard, at every severity.")
 
     @classmethod
-    async def run(cls, target: LogsScreen) -> None:
+    async def run(cls, target: LogsTarget) -> None:
         """Mute nobody, leave out nothing."""
         target.hear_all()
 
 
-class Fold(lines.Fold["LogsScreen"]):
+class FoldLog(FoldLines[LogsTarget]):
     """Fold long lines, or not."""
 
     id = "logs.fold"
 
 
-class Copy(lines.Copy["LogsScreen"]):
+class CopyLog(CopyLines[LogsTarget]):
     """Copy the lines chosen."""
 
     id = "logs.copy"
 
 
-class CopyAll(LogsAction):
+class CopyWholeLog(LogsAction):
     """Copy all lines shown."""
 
     id = "logs.copy_all"
@@ -187,12 +213,12 @@ class CopyAll(LogsAction):
     from_elsewhere = False
 
     @classmethod
-    async def run(cls, target: LogsScreen) -> None:
+    async def run(cls, target: LogsTarget) -> None:
         """Copy."""
         target.pane.copy_all()
 
 
-class Save(lines.Save["LogsScreen"]):
+class SaveLog(SaveLines[LogsTarget]):
     """Write lines to a file."""
 
     id = "logs.save"
@@ -200,18 +226,18 @@ class Save(lines.Save["LogsScreen"]):
 
 
 LOGS_ACTIONS = (
-    Pause,
-    Search,
-    FindNext,
-    FindPrevious,
+    PauseLog,
+    SearchLog,
+    NextInLog,
+    PreviousInLog,
     OnlyFound,
     RaiseSeverity,
     ShowNodes,
-    Mute,
-    Alone,
-    HearAll,
-    Fold,
-    Copy,
-    CopyAll,
-    Save,
+    MuteNode,
+    HearOneNode,
+    HearAllNodes,
+    FoldLog,
+    CopyLog,
+    CopyWholeLog,
+    SaveLog,
 )

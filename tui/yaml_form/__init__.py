@@ -1,1 +1,5 @@
-"""A message filled in as YAML, for publishing, for calls and for goals."""
+"""A message filled in as YAML, with a verdict below it as one types, and the field for its type.
+
+Screens and dialogs put `form.YamlForm` and `type_field.TypeField` among their widgets, and say why
+something was not sent by `words.reason_words`. The rest is the form's own.
+"""
