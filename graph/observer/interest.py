@@ -19,8 +19,3 @@ class Interest:
     def named(self) -> frozenset[str]:
         """Topics that are wanted whether they exist or not."""
         return self.watched | self.followed
-
-    @property
-    def is_nothing(self) -> bool:
-        """Whether nobody looks."""
-        return not (self.named or self.all_topics)

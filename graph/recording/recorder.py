@@ -188,7 +188,7 @@ class Recorder:
 
         ros = open_ros(self._domain, self._discovery, "recorder")
         try:
-            topics = RecordingTopics(ros.node, ros.name, self._choice, writer)
+            topics = RecordingTopics(ros.node, self._choice, writer)
             self._topics, self._writer = topics, writer
             self._take_turns(topics, writer)
             topics.close()

@@ -45,12 +45,10 @@ class Choice(NamedTuple):
 class RecordingTopics:
     """All subscriptions of a recording; used by the recorder's thread alone."""
 
-    def __init__(self, node: Node, own_name: str, choice: Choice, writer: RecordingWriter) -> None:
-        """`own_name` is that of the node."""
+    def __init__(self, node: Node, choice: Choice, writer: RecordingWriter) -> None:
         self.skipped: dict[str, str] = {}
         """Topic to why it cannot be recorded."""
         self._node = node
-        self._own_name = own_name
         self._choice = choice
         self._writer = writer
         self._taps: dict[str, RecordingTap] = {}

@@ -137,10 +137,6 @@ class Replay:
         """Jump forward by so many seconds, back if negative."""
         self._order(lambda player: self._jump(player, player.position_s + seconds))
 
-    def set_rate(self, rate: float) -> None:
-        """Play so many times as fast as it was, 0.1 to 10."""
-        self._order(lambda _player: self._set(rate=min(max(rate, RATES[0]), RATES[-1])))
-
     def change_rate(self, *, faster: bool) -> None:
         """Take the next rate above or below."""
         self._order(lambda _: self._set(rate=next_rate(self._state.rate, faster=faster)))

@@ -48,10 +48,6 @@ class DeadReckoning:
         for side, speed in enumerate((telemetry.left_rad_s, telemetry.right_rad_s)):
             self._angles[side] += speed * passed_s
 
-    def forget_time(self) -> None:
-        """The clock of the Pico begins anew."""
-        self._uptime_ms = None
-
     def joints(self, telemetry: Telemetry, stamp: Time) -> JointState:
         """For /joint_states: positions and speeds in the order of `DRIVE_JOINTS`."""
         message = JointState(name=list(DRIVE_JOINTS))

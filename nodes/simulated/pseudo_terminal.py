@@ -24,11 +24,6 @@ class PseudoSerial:
         self._ends: tuple[int, int] | None = None
         self.plug()
 
-    @property
-    def plugged(self) -> bool:
-        """Whether it can be opened."""
-        return self._ends is not None
-
     def plug(self) -> None:
         """Be there."""
         if self._ends is not None:

@@ -38,7 +38,6 @@ class LineCounts:
     """What a stream has brought so far."""
 
     octets: int = 0
-    good: int = 0
     bad: int = 0
     """Lines that were none, or whose check was wrong."""
 
@@ -66,6 +65,5 @@ class LineSplitter:
             return None
         start = line.rfind(b"$")
         body = unwrap(line[start:]) if start >= 0 and len(line) - start < LONGEST else None
-        self.counts.good += body is not None
         self.counts.bad += body is None or overlong or start > 0
         return body

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-PAN, TILT = 1, 2
+PAN = 1
 
 
 class Head:

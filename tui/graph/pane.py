@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from textual.containers import Vertical
 from textual.content import Content
@@ -108,7 +108,3 @@ class GraphPane(Vertical, Working):
     def warn(self, words: str) -> None:
         """Say why something was not done."""
         self.notify(plain(words, LONGEST), severity="warning", markup=False)
-
-    def run_aside(self, work: Any) -> None:  # noqa: ANN401 - a coroutine
-        """Do it without holding up keys."""
-        self.run_worker(work, exit_on_error=False)
