@@ -23,10 +23,10 @@ from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.rundir import new_recording
-from launcher.words import say
 from text.i18n import _
 from text.output import BOLD, Paint, json_text, keep_stdout_to_ourselves, table, write
 from text.plain import plain
+from text.sentences import say
 from tui.recording.words import complaints, progress, size_words
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from graph.bag.listing import bags_in
 from launcher.errors import UsageError
-from launcher.profile.tree import did_you_mean
 from launcher.rundir import recordings_path
-from launcher.words import say
 from text.i18n import _, said
 from text.output import BOLD, YELLOW, Paint, table, write
 from text.plain import plain
+from text.sentences import say
+from text.suggestions import did_you_mean
 from tui.recording.words import length_words, size_words
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from cli.recordings import find_recording, list_recordings
 from cli.screen import has_terminal
 from launcher.errors import UsageError
-from launcher.words import say
 from text.i18n import _
 from text.output import say_error
+from text.sentences import say
 from tui.session.orders import Order, ReplayOrder
 
 if TYPE_CHECKING:

@@ -14,12 +14,12 @@ from cli.robot_to_hear import robot_to_hear
 from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
-from launcher.words import say
 from robot.safety.moving_topics import STOPPED_BY_ZEROS, moves
 from robot.topics import EMERGENCY_STOP
 from text.i18n import _, ngettext, said
 from text.output import keep_stdout_to_ourselves, say_error, write
 from text.plain import plain
+from text.sentences import say
 from tui.recording.words import BETWEEN, length_words
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import os
 
 from launcher.domain.domain import choose_domain
 from launcher.errors import UsageError
-from launcher.words import say
+from text.sentences import say
 
 
 def robot_to_hear(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 from cli.arguments import COMMANDS, HELP
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.profile.catalog import find_profile
-from launcher.words import say
 from text.i18n import _
 from text.output import say_error, write
+from text.sentences import say
+from text.suggestions import nearest
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -50,15 +51,13 @@ def profile_or_command(name: str) -> Path:
     try:
         return find_profile(name)
     except ProfileNotFoundError as error:
-        from difflib import get_close_matches  # Rarely needed, and slow to import.
-
-        command = get_close_matches(name, (*COMMANDS, HELP), n=1)
+        command = nearest(name, (*COMMANDS, HELP))
         if not command or error.near:
             raise
         words = say(
             "no profile and no command {name!r}; did you mean `deck {command}`?",
             name=name,
-            command=command[0],
+            command=command,
         )
         raise UsageError(words) from error
 

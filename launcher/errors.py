@@ -25,7 +25,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from launcher.words import Words, say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -51,7 +51,7 @@ class ProfileProblem:
     """One thing that is wrong in a profile.
 
     `line` and `column` count from 1; 0 where there is no place to point at. `message` and `hint`
-    are `launcher.words.Words` wherever they come from this project.
+    are `text.sentences.Words` wherever they come from this project.
     """
 
     file: str

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from launcher.errors import RunDirError
 from launcher.private_files import make_folder
-from launcher.words import say
+from text.os_words import os_reason
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -149,5 +150,4 @@ def _check_own(path: Path) -> None:
 
 
 def _not_made(path: Path, error: OSError) -> RunDirError:
-    reason = say(error.strerror or str(error))
-    return RunDirError(say("{path} cannot be made: {reason}", path=path, reason=reason))
+    return RunDirError(say("{path} cannot be made: {reason}", path=path, reason=os_reason(error)))

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from launcher.words import say
+from text.sentences import say
 
 LASTING = ("/dev/serial/by-id", "/dev/serial/by-path")
 """Folders of names that outlive a plugging, the better one first: by-id goes with the device,

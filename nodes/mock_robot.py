@@ -35,6 +35,7 @@ from robot.world.grid import grid_of
 from robot.world.pico import SimulatedPico
 from robot.world.servos import SimulatedServos
 from robot.world.world import STEP_S, Sonar, World
+from text.os_words import os_reason
 
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
 _BEHIND_S = 0.5
@@ -149,9 +150,7 @@ class MockRobot(LessonNode):
                 for seed, device in enumerate(DEVICES)
             }
         except OSError as error:
-            raise UsageError(
-                _NO_FOLDER, folder=folder, problem=error.strerror or str(error)
-            ) from None
+            raise UsageError(_NO_FOLDER, folder=folder, problem=os_reason(error)) from None
 
     def _tick(self) -> None:
         self._pico.feed(self._lines["pico"].read())

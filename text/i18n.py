@@ -80,7 +80,7 @@ def N_(message: str) -> str:  # noqa: N802 - gettext's own name
 
 
 def said(words: str) -> str:
-    """Return a sentence of the launcher (`launcher.words.say`) in the language spoken now.
+    """Return a sentence of the launcher (`text.sentences.say`) in the language spoken now.
 
     Its values, and a text that is no such sentence, are made harmless.
     """

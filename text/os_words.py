@@ -1,11 +1,13 @@
 """What the operating system says of a file, marked for the catalogue: its words are English.
 
-Whoever tells of an OSError makes a sentence of its `strerror`, which is found there by these.
+Whoever tells of an OSError says `os_reason` of it.
 """
 
 from __future__ import annotations
 
-from text.marks import N_
+from text.i18n import N_
+from text.plain import plain
+from text.sentences import Words, say
 
 REASONS = (
     N_("Permission denied"),
@@ -25,3 +27,9 @@ REASONS = (
     N_("Input/output error"),
     N_("Invalid argument"),
 )
+
+
+def os_reason(error: Exception) -> Words:
+    """Say why something failed, as the system puts it; of an error without words its kind."""
+    words = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    return say(plain(str(words)))

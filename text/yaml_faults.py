@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import yaml
 
-from text.marks import N_
+from text.i18n import N_
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from text.i18n import LANGUAGES, _
+from text.i18n import LANGUAGES, _, said
+from text.os_words import os_reason
 
 
 class SettingsError(Exception):
@@ -74,7 +75,7 @@ def save(path: Path, settings: Settings) -> None:
         beside.write_text(json.dumps(raw, ensure_ascii=False, indent=2) + "\n", encoding="utf-8")
         beside.replace(path)
     except OSError as error:
-        raise SettingsError(f"{path}: {_(error.strerror or str(error))}") from error
+        raise SettingsError(f"{path}: {said(os_reason(error))}") from error
 
 
 def _unreadable(error: OSError | UnicodeDecodeError) -> str:
@@ -86,7 +87,7 @@ def _unreadable(error: OSError | UnicodeDecodeError) -> str:
         return _("expected a file, found a directory (remove or rename it)")
     if isinstance(error, PermissionError):
         return f"{_('no permission to read it')} ({_('chmod u+r it, or ask its owner')})"
-    return _("cannot be read: {reason}").format(reason=_(error.strerror or str(error)))
+    return _("cannot be read: {reason}").format(reason=said(os_reason(error)))
 
 
 def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collection[str]]) -> str:

@@ -11,10 +11,10 @@ from cli.doctor.finding import Level
 from launcher.errors import UsageError
 from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
-from launcher.words import say
 from text.i18n import _, ngettext
 from text.output import Paint, json_text, write
 from text.plain import plain
+from text.sentences import say
 
 if TYPE_CHECKING:
     from argparse import Namespace

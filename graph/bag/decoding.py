@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from graph.bag.errors import BagError
 from graph.messages.fields import BYTES
 from graph.messages.values import DUMMY
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from graph.words import Words, say
+from text.os_words import os_reason
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,13 +26,13 @@ def not_made(folder: Path, error: OSError) -> BagError:
         return BagError(
             say("{path} is there already: choose another folder, or remove it", path=folder)
         )
-    reason = say(error.strerror or str(error))
+    reason = os_reason(error)
     return BagError(say("{path} cannot be made: {reason}", path=folder, reason=reason))
 
 
 def not_written(file: Path, error: OSError) -> Words:
     """Return why a recording has ended before its time."""
-    reason = say(error.strerror or str(error))
+    reason = os_reason(error)
     return say(
         "recording has ended: {path} cannot be written ({reason}); what was recorded till then "
         "can be replayed. Free some space and record again",
@@ -56,11 +57,10 @@ def unreadable(path: Path, error: Exception) -> BagError:
     """Return that a bag is there and cannot be read."""
     if isinstance(error, BagError):
         return error
-    reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
     return BagError(
         say(
             "{path} cannot be read: {reason}. Is it whole? `ros2 bag reindex` repairs many bags",
             path=path,
-            reason=say(str(reason).rstrip(".")),
+            reason=say(os_reason(error).rstrip(".")),
         )
     )

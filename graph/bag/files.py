@@ -9,7 +9,7 @@ from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING, Protocol
 
 from graph.bag.mcap import Lost, SparingMcap, SparingReader, sound_parts
-from graph.words import Words, say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,7 +10,7 @@ from typing import Any
 
 from graph.bag.reading import SUFFIXES, metadata_of
 from graph.bag.unfit import endless, unfit
-from graph.words import say
+from text.sentences import say
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from graph.messages.types import UnknownTypeError, load_message
 from graph.qos import Qos, profile
 from graph.scan.endpoints import full_name
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     import threading

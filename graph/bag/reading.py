@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from graph.bag.decoding import TypeText
 from graph.bag.errors import BagError, no_bag, unreadable
 from graph.bag.unfit import unfit
-from graph.words import Words, say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection

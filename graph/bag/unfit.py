@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.words import Words, say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from graph.calls.goal_life import ANSWER_WITHIN_S, NO_WORD_OF_CANCEL, REFUSED
 from graph.calls.goal_line import ActionLine
 from graph.data import GoalStatus
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from rclpy.node import Node

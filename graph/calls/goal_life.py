@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import Goal, GoalStatus
 from graph.messages.values import to_tree
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from graph.calls.goal_line import ActionLine, Heard

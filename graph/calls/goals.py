@@ -13,7 +13,7 @@ from graph.data import Goal, GoalStatus
 from graph.messages.dated import draft
 from graph.messages.types import UnknownTypeError
 from graph.messages.values import to_tree
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +32,7 @@ class GoalError(Exception):
     """The goal cannot be sent; str() says why, `words` so that it can be translated."""
 
     def __init__(self, words: str) -> None:
-        """Say why, as `graph.words.say` makes it."""
+        """Say why, as `text.sentences.say` makes it."""
         super().__init__(words)
         self.words = words
 

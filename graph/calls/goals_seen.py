@@ -18,7 +18,7 @@ from graph.calls.goal_line import FEEDBACKS, Servers, status_topic
 from graph.data import GoalStatus, SeenGoal
 from graph.messages.types import UnknownTypeError, load_action
 from graph.messages.values import to_tree
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

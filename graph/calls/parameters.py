@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from graph.calls.parameters_talk import SERVICES, read, write
 from graph.data import CallResult, ParameterRow, ParametersResult, SetResult
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from graph.messages.yaml_faults import YamlError, tell_character
 from graph.messages.yaml_reading import Node, read
 from graph.messages.yaml_scalars import quoted, written
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

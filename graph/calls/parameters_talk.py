@@ -10,7 +10,7 @@ from collections.abc import Generator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graph.calls.parameters_values import WrongValueError, carried, row, type_of
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from graph.data import ParameterRow, Value

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from graph.data import ParameterRow
-from graph.words import no_number, say
+from text.sentences import say
+from text.suggestions import no_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -36,7 +37,7 @@ class WrongValueError(ValueError):
     """A value does not fit its parameter; `words`, or str(), say what was expected and given."""
 
     def __init__(self, words: str) -> None:
-        """Say why not, as `graph.words.say` makes it."""
+        """Say why not, as `text.sentences.say` makes it."""
         super().__init__(words)
         self.words = words
 

@@ -13,7 +13,7 @@ from graph.messages.dated import draft
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError, load_service
 from graph.messages.values import to_tree
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

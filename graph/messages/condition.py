@@ -13,7 +13,7 @@ import warnings
 from typing import TYPE_CHECKING
 
 from graph.messages.condition_values import CONSTANTS, FUNCTIONS, RefusalError, evaluate, truth
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from graph.messages.making import no_such_field
-from graph.words import say
+from text.sentences import say
 
 CONSTANTS: dict[str, Any] = {"true": True, "false": False, "inf": math.inf, "nan": math.nan}
 MOST_BYTE = 255
@@ -37,7 +37,7 @@ class RefusalError(Exception):
     """A part of the expression has no value for this message."""
 
     def __init__(self, node: ast.AST, words: str) -> None:
-        """Say which part, and why as `graph.words.say` makes it."""
+        """Say which part, and why as `text.sentences.say` makes it."""
         super().__init__(words)
         self.node = node
         self.words = words

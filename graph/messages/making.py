@@ -5,13 +5,13 @@ from __future__ import annotations
 import array
 import math
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from graph.messages.fields import BYTES, FLOATS, INTEGERS, STRINGS, FieldType, parse
 from graph.messages.types import load_message
 from graph.messages.values import fields_of
-from graph.words import no_number, say
+from text.sentences import say
+from text.suggestions import nearest, no_number
 
 if TYPE_CHECKING:
     from graph.data import Value
@@ -30,7 +30,7 @@ class FieldError(ValueError):
         super().__init__(f"{field}: {message}" if field else message)
         self.field = field
         self.message = message
-        """Made by `graph.words.say`, so that it can be translated."""
+        """Made by `text.sentences.say`, so that it can be translated."""
         self.line: int | None = None
         """Where it stands in a text, counted from 1, as far as there is one. So with the next."""
         self.column: int | None = None
@@ -70,9 +70,8 @@ def _check_comma(before: tuple[str, object], name: object, value: object) -> Non
 
 def no_such_field(name: str, names: list[str]) -> str:
     """Say that there is none of this name among these, or which one may be meant."""
-    near = get_close_matches(name, names, n=1)
-    if near:
-        return say("no such field; did you mean {name}?", name=near[0])
+    if meant := nearest(name, names):
+        return say("no such field; did you mean {name}?", name=meant)
     if not names:
         return say("it has no fields at all")
     return say("no such field; there is {names}", names=", ".join(names))

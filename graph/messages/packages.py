@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from graph.words import Words, say
+from text.sentences import Words, say
 
 ON_PYPI = frozenset(
     {

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from difflib import get_close_matches
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from graph.messages.packages import how_to_install, install_names
-from graph.words import Words, say
+from text.sentences import Words, say
+from text.suggestions import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -124,6 +124,11 @@ def _missing(error: ModuleNotFoundError, package: str, kind: str) -> Words:
     return _broken(package, error)
 
 
+def not_decoded(type_name: str, error: Exception) -> Words:
+    """Say that the bytes of a message are not of its type."""
+    return say("a message of {type} cannot be decoded: {reason}", type=type_name, reason=error)
+
+
 def _broken(package: str, error: Exception) -> Words:
     return say(
         "package {package} is installed and cannot be used: {error}", package=package, error=error
@@ -132,8 +137,8 @@ def _broken(package: str, error: Exception) -> Words:
 
 def _no_such_name(module: object, package: str, kind: str, name: str) -> Words:
     wanted = f"{kind}/{name}"
-    near = get_close_matches(name, [n for n in dir(module) if n[0].isupper()], n=1)
-    if not near:
+    meant = nearest(name, (each for each in dir(module) if each[0].isupper()))
+    if not meant:
         return say(
             "package {package} is installed in a version without {name}",
             package=package,
@@ -143,5 +148,5 @@ def _no_such_name(module: object, package: str, kind: str, name: str) -> Words:
         "package {package} is installed in a version without {name}; did you mean {near}?",
         package=package,
         name=wanted,
-        near=f"{package}/{kind}/{near[0]}",
+        near=f"{package}/{kind}/{meant}",
     )

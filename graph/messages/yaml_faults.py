@@ -6,7 +6,7 @@ from typing import NoReturn
 
 import yaml
 
-from graph.words import say
+from text.sentences import say
 from text.yaml_faults import fault_of
 
 
@@ -19,7 +19,7 @@ class YamlError(ValueError):
         self.line = line
         self.column = column
         self.message = message
-        """Made by `graph.words.say`, so that it can be translated."""
+        """Made by `text.sentences.say`, so that it can be translated."""
 
 
 def tell_syntax(error: yaml.YAMLError, text: str) -> NoReturn:

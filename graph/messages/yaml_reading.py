@@ -12,7 +12,7 @@ import yaml
 
 from graph.messages.yaml_faults import YamlError, tell_character, tell_syntax
 from graph.messages.yaml_scalars import meaning
-from graph.words import Words, say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

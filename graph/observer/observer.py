@@ -26,7 +26,7 @@ from graph.observer.requests import (
     RequestQueue,
 )
 from graph.ros import open_ros
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

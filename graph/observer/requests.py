@@ -24,7 +24,7 @@ class ObserverError(Exception):
     """The observer cannot work, or has been stopped; `words` says why."""
 
     def __init__(self, words: str) -> None:
-        """Say why, as `graph.words.say` makes it."""
+        """Say why, as `text.sentences.say` makes it."""
         super().__init__(words)
         self.words = words
 

@@ -10,12 +10,11 @@ from graph.data import Sample
 from graph.messages.decoding import decoder
 from graph.messages.stamps import delay_reader
 from graph.messages.stand_in import stand_in
-from graph.messages.types import UnknownTypeError, load_message
+from graph.messages.types import UnknownTypeError, load_message, not_decoded
 from graph.observer.losses import Losses
 from graph.observer.rates import RateMeter
 from graph.observer.timing import Arrival
 from graph.qos import Qos, profile
-from graph.words import say
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -164,11 +163,7 @@ class Tap:
             value = self._decode(raw)
         except Exception as error:  # noqa: BLE001
             # Whatever a stranger publishes under this name must not end the observer.
-            self.broken = say(
-                "a message of {type} cannot be decoded: {reason}",
-                type=self.type_name,
-                reason=error,
-            )
+            self.broken = not_decoded(self.type_name, error)
             return None
         self.broken = ""
         age_s = max(0.0, now_s - stamp_s)

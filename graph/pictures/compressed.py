@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.pictures.picture import Picture, numbers_picture, thinned
 from graph.pictures.pixels import ImageError, opencv
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

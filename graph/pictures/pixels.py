@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from graph.data import Value
-    from graph.words import Words
+    from text.sentences import Words
 
     Rgb: TypeAlias = NDArray[np.uint8]
     """Shape (height, width, 3)."""

@@ -12,7 +12,7 @@ from graph.messages.types import load_message
 from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
 from graph.ros import ONLY_LISTENING
 from graph.scan.endpoints import subscriptions
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,7 +38,7 @@ class PublishError(Exception):
     """The message cannot be published; str() says why, `words` so that it can be translated."""
 
     def __init__(self, words: str) -> None:
-        """Say why, as `graph.words.say` makes it."""
+        """Say why, as `text.sentences.say` makes it."""
         super().__init__(words)
         self.words = words
 

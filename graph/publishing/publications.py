@@ -12,7 +12,7 @@ from graph.messages.dated import Draft, draft
 from graph.messages.types import load_message
 from graph.publishing.outbox import PublishError, open_publisher, refuse_other_type
 from graph.qos import Qos, to_be_heard
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

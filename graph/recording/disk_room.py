@@ -7,13 +7,13 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from graph.bag.errors import BagError
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from graph.words import Words
+    from text.sentences import Words
 
 RESERVE_BYTES = 500_000_000
 """Left free: what waits in memory must still fit, and a system without room fails elsewhere."""

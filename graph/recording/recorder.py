@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from graph.recording.disk_room import RESERVE_BYTES, Room
 from graph.recording.topics import Choice, RecordingTopics
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from graph.bag.metadata import BagTopic
     from graph.recording.file import BagFile
-    from graph.words import Words
+    from text.sentences import Words
 
 BUFFER_BYTES = 256_000_000
 FLUSH_S = 1.0

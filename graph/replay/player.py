@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from graph.bag.reading import Bag, TopicInBag
-    from graph.words import Words
+    from text.sentences import Words
 
 BEFORE_NS = int(WINDOW_S / NANOSECONDS)
 """What is read before the place that is jumped to: rates and newest messages are there at once."""

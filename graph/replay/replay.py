@@ -22,7 +22,7 @@ from graph.observer.requests import ObserverError
 from graph.replay.player import Player
 from graph.replay.state import RATES, ReplayState, next_rate
 from graph.replay.topics import NANOSECONDS
-from graph.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 from graph.bag.decoding import bag_decoder
 from graph.bag.errors import BagError
 from graph.data import EndpointInfo, NodeRow, Sample, TopicRow, Trouble
+from graph.messages.types import not_decoded
 from graph.observer.rates import QUIET_S, RateMeter
 from graph.observer.timing import Arrival
 from graph.observer.troubles import quiet
 from graph.qos import TRANSIENT_LOCAL
-from graph.words import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -125,11 +125,7 @@ class ReplayTopic:
             self._broken = error.words
             return None
         except Exception as error:  # noqa: BLE001 - whatever a bag holds must not end the replay
-            self._broken = say(
-                "a message of {type} cannot be decoded: {reason}",
-                type=self._shown.kind.name,
-                reason=error,
-            )
+            self._broken = not_decoded(self._shown.kind.name, error)
             return None
         self._broken = ""
         age_s = max(0.0, (now_ns - message.stamp_ns) * NANOSECONDS)

@@ -36,7 +36,7 @@ from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
 from launcher.supervisor.plan import plan_of
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterable
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from launcher.events import Event
     from launcher.profile.load import Profile
     from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
-    from launcher.words import Words
+    from text.sentences import Words
 
 HELLO_WITHIN_S = 10.0
 HEARD_WITHIN_S = 30.0

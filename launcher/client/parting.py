@@ -11,7 +11,7 @@ from launcher.processes.signal import send
 from launcher.processes.table import Process, processes
 from launcher.run_id import living_supervisor, supervisor_of
 from launcher.supervisor.words import who
-from launcher.words import Words, say
+from text.sentences import Words, say
 
 GONE_WITHIN_S = 3.0
 """All that it has started is gone 2 s after a supervisor that was killed."""

@@ -92,7 +92,7 @@ class StartingSupervisor:
 
         from launcher.control.protocol import unpack_session, unpack_text
         from launcher.errors import AlreadyRunningError, RunDirError, StartError
-        from launcher.words import say
+        from text.sentences import say
 
         stdin = self._process.stdin
         assert stdin is not None
@@ -164,7 +164,7 @@ class StartingSupervisor:
         return answer
 
     def _last_words(self) -> str:
-        from launcher.words import say
+        from text.sentences import say
 
         words = os.pread(self._words, 1 << 16, 0).decode(errors="replace").strip()
         if not words:

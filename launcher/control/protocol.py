@@ -13,7 +13,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity, Stray, Who
-from launcher.words import Words, say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

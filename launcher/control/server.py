@@ -25,7 +25,7 @@ from launcher.control.protocol import (
     unpack_stray,
 )
 from launcher.errors import UnknownNodeError
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence

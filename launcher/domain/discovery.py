@@ -16,12 +16,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, MutableMapping
 
-    from launcher.words import Words
+    from text.sentences import Words
 
 PROFILES = Path(__file__).resolve().parents[2] / "graph" / "fastdds.xml"
 

@@ -11,7 +11,7 @@ import os
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from launcher.errors import DomainError
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

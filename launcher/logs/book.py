@@ -11,8 +11,8 @@ from launcher.logs.reader import PipeReader
 from launcher.logs.ring import LogRing
 from launcher.logs.text import plain_text
 from launcher.status import LogLine, Severity
-from launcher.words import say
 from text.plain import plain
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

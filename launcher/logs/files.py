@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO
 
 from launcher.private_files import make_folder, open_file
+from text.os_words import os_reason
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,7 +72,7 @@ class LogFiles:
             except OSError as problem:
                 if not told:
                     told = True
-                    self._on_error(problem.strerror or str(problem))
+                    self._on_error(os_reason(problem))
         for file in self._files.values():
             file.close()
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from launcher.processes.table import read_environment, stat_fields
 from launcher.status import Who
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
-    from launcher.words import Words
+    from text.sentences import Words
 
 _PTS_MAJORS = range(136, 144)
 _VT_MAJOR = 4

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from launcher.errors import LauncherError, ProfileError, ProfileNotFoundError, UsageError
 from launcher.profile.text import SHIPPED
-from launcher.words import say
+from text.sentences import say
+from text.suggestions import near
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -80,7 +81,7 @@ def find_profile(name: str | Path) -> Path:
         raise UsageError(
             say("{name!r} may be any of: {names}", name=text, names=", ".join(sorted(fits)))
         )
-    raise ProfileNotFoundError(text, _near(text, known))
+    raise ProfileNotFoundError(text, _likely(text, known))
 
 
 def is_path(text: str) -> bool:
@@ -103,16 +104,14 @@ def _files_of(folder: Path) -> list[Path]:
         return []
 
 
-def _near(text: str, known: Iterable[str]) -> list[str]:
+def _likely(text: str, known: Iterable[str]) -> list[str]:
     """Return likely names, by the whole name and by the words that it is made of."""
-    from difflib import get_close_matches  # Rarely needed, and slow to import.
-
     names = list(known)
-    near = get_close_matches(text, names, n=3, cutoff=0.7)
+    found = near(text, names, most=3, cutoff=0.7)
     for stem in names:
-        if get_close_matches(text, stem.split("-"), n=1, cutoff=0.7) and stem not in near:
-            near.append(stem)
-    return near
+        if near(text, stem.split("-"), cutoff=0.7) and stem not in found:
+            found.append(stem)
+    return found
 
 
 def _number(text: str) -> str:

@@ -10,9 +10,10 @@ from launcher.profile.files import file_of, files_beside
 from launcher.profile.model import LONGEST_NODE_NAME, NODE_NAME, is_file
 from launcher.profile.modules import is_installed, likely_names
 from launcher.profile.text import shown
-from launcher.profile.tree import did_you_mean, empty, find, place_of
+from launcher.profile.tree import empty, find, place_of
 from launcher.profile.when import WhenError, holds
-from launcher.words import say
+from text.sentences import say
+from text.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -18,7 +18,7 @@ from launcher.profile.serial_choice import AUTO, KINDS, Unclear, Wanted, choose
 from launcher.profile.tree import Branch, Entry, Listing, Problems, Scalar, find, place_of, plain
 from launcher.profile.when import HARDWARE
 from launcher.profile.yaml_tree import read_value
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

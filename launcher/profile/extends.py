@@ -13,9 +13,10 @@ from launcher.profile.field_marks import Joined, marked
 from launcher.profile.files import with_own_files
 from launcher.profile.model import NodeDocument, ProfileDocument
 from launcher.profile.text import SHIPPED, read_text, shown
-from launcher.profile.tree import Branch, Entry, did_you_mean, empty, plain
+from launcher.profile.tree import Branch, Entry, empty, plain
 from launcher.profile.yaml_tree import read_yaml
-from launcher.words import say
+from text.sentences import say
+from text.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator

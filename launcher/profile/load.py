@@ -25,7 +25,7 @@ from launcher.profile.tree import Branch, Place, Problems, Scalar, find, place_o
 from launcher.profile.validate import validate
 from launcher.profile.when import HARDWARE
 from launcher.rundir import run_path
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

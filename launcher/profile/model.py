@@ -16,7 +16,7 @@ from launcher.domain.domain import LAST_DOMAIN
 from launcher.profile.field_marks import AsText, Joined, PathFromProfile
 from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
-from launcher.words import Words, say
+from text.sentences import Words, say
 
 Restart = Literal["never", "on-failure", "always"]
 

@@ -12,7 +12,7 @@ import sys
 from typing import TYPE_CHECKING, TypeAlias
 
 from launcher.profile.tree import Branch, Listing, Scalar
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

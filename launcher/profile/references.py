@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from launcher.profile.tree import Branch, Entry, Listing, Scalar, did_you_mean
+from launcher.profile.tree import Branch, Entry, Listing, Scalar
 from launcher.profile.when import WhenError, holds
-from launcher.words import say
+from text.sentences import say
+from text.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from launcher.profile.device_variables import variable
 from launcher.serial_ports import BRIDGES, PICO
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

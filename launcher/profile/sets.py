@@ -6,9 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from launcher.profile.params import flatten
-from launcher.profile.tree import Branch, Entry, Place, did_you_mean
+from launcher.profile.tree import Branch, Entry, Place
 from launcher.profile.yaml_tree import read_value
-from launcher.words import say
+from text.sentences import say
+from text.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from launcher.profile.tree import Place
-from launcher.words import say
+from text.os_words import os_reason
+from text.sentences import say
 
 if TYPE_CHECKING:
     from launcher.profile.tree import Problems
@@ -66,7 +67,7 @@ def _unreadable(error: OSError) -> tuple[str, str]:
         return say("no such file"), say("`deck list` shows the profiles there are")
     if isinstance(error, PermissionError):
         return say("no permission to read it"), say("chmod u+r it, or ask its owner")
-    return say("cannot be read: {reason}", reason=say(error.strerror or str(error))), ""
+    return say("cannot be read: {reason}", reason=os_reason(error)), ""
 
 
 def _decoded(data: bytes, file: str, problems: Problems) -> str | None:

@@ -11,10 +11,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from launcher.errors import ProfileProblem
-from launcher.words import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    pass
 
 Where: TypeAlias = "tuple[str | int, ...]"
 """Path of a value: `("nodes", "sonar_front", "needs", 0)`."""
@@ -138,11 +137,3 @@ def place_of(tree: Tree, where: Where, *, key: bool = False) -> Place:
         else:
             break
     return place
-
-
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return the hint that names what was probably meant, empty if nothing comes near."""
-    from difflib import get_close_matches  # Rarely needed, and slow to import.
-
-    near = get_close_matches(word, list(known), n=1, cutoff=0.6)
-    return say("did you mean {word}?", word=near[0]) if near else ""

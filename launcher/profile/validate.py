@@ -10,8 +10,9 @@ from pydantic import ValidationError
 
 from launcher.profile.field_marks import AsText, marked
 from launcher.profile.model import Document, NodeDocument, ProfileDocument, ReadyDocument
-from launcher.profile.tree import Branch, Listing, did_you_mean, empty, find, place_of, plain
-from launcher.words import say
+from launcher.profile.tree import Branch, Listing, empty, find, place_of, plain
+from text.sentences import say
+from text.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails

@@ -9,8 +9,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from launcher.profile.tree import did_you_mean
-from launcher.words import say
+from text.sentences import say
+from text.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

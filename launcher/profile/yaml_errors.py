@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import yaml
 
 from launcher.profile.tree import Place
-from launcher.words import say
+from text.sentences import say
 from text.yaml_faults import fault_of
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import yaml
 
 from launcher.profile.tree import Branch, Entry, Listing, Place, Scalar
 from launcher.profile.yaml_errors import tell_syntax
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from launcher.profile.tree import Problems, Tree

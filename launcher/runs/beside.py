@@ -15,14 +15,14 @@ from launcher.rundir import OWN_RUN_DIR
 from launcher.runs.found import supervisors
 from launcher.runs.record import RunRecord
 from launcher.status import SessionInfo
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from launcher.profile.load import Profile
     from launcher.runs.found import FoundSupervisor
-    from launcher.words import Words
+    from text.sentences import Words
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from launcher.processes.marks import show_mark
 from launcher.processes.table import SUPERVISOR_MARK
 from launcher.rundir import own_folder
 from launcher.runs.record import RECORD_NAME
-from launcher.words import Words, say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     import socket

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from launcher.processes.signal import send
 from launcher.spawn_server.link import SpawnServerLink
 from launcher.spawn_server.start import SpawnServerHandle, start_spawn_server
-from launcher.words import Words, say
+from text.os_words import os_reason
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -122,7 +123,7 @@ class Spawner:
                 link.kill(hung=True)
                 await asyncio.wait([future], timeout=self._answer_within_s)
         except OSError as problem:
-            raise SpawnError(problem.strerror or str(problem)) from problem
+            raise SpawnError(os_reason(problem)) from problem
         except asyncio.CancelledError:
             if future.done() and future.exception() is None:
                 _end(future.result())
@@ -206,8 +207,7 @@ class Spawner:
             self._link = self._linked(start_spawn_server(self._run_id, warm=self._warm))
         except OSError as problem:
             self._link = None
-            reason = problem.strerror or str(problem)
-            self._tell(say("no spawn server can be started: {reason}", reason=reason))
+            self._tell(say("no spawn server can be started: {reason}", reason=os_reason(problem)))
             return
         self._mention("adopt", sorted(self._groups))
         self._mention_packages()

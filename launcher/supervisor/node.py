@@ -26,7 +26,7 @@ from launcher.supervisor.words import (
     what,
     who,
 )
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     import signal

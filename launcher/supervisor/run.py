@@ -36,7 +36,8 @@ from launcher.supervisor.plan import Plan
 from launcher.supervisor.process import ProcessLauncher, ProcessScan
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
-from launcher.words import Words, say
+from text.os_words import os_reason
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -129,8 +130,7 @@ def _refusal(other: Neighbour, free: int) -> dict[str, object]:
 
 
 def _no_room(folder: Path, problem: OSError) -> Words:
-    reason = say(problem.strerror or str(problem))
-    return say("{path} cannot be written: {reason}", path=folder, reason=reason)
+    return say("{path} cannot be written: {reason}", path=folder, reason=os_reason(problem))
 
 
 def _answer(message: Mapping[str, object]) -> None:

@@ -14,7 +14,7 @@ from launcher.supervisor.node import Node
 from launcher.supervisor.order import needed_by, stop_waves
 from launcher.supervisor.readiness import Readiness
 from launcher.supervisor.shared_memory import SharedMemory
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

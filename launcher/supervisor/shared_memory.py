@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from launcher.processes.shared_memory import SHARED_MEMORY
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from launcher.status import Severity
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from launcher.words import Words
+    from text.sentences import Words
 
 
 LEAST_FREE_BYTES = 1 << 20

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from launcher.words import say
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import inspect
 import os
 import sys
@@ -18,6 +17,7 @@ from rclpy.parameter import Parameter
 from nodes.parts.parameters import BadValueError, Setting, Value
 from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase, Speech, language
+from text.suggestions import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -148,9 +148,8 @@ class LessonNode(Node):
             raise UsageError(problem, **self._values)
 
     def _unknown(self, name: str) -> UsageError:
-        near = difflib.get_close_matches(name, self._settings, n=1)
-        if near:
-            return UsageError(_UNKNOWN_NEAR, name=name, near=near[0])
+        if meant := nearest(name, self._settings):
+            return UsageError(_UNKNOWN_NEAR, name=name, near=meant)
         return UsageError(_UNKNOWN, name=name, known=", ".join(self._settings) or "-")
 
     def _complaint(

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from robot.safety.stop_place import stop_place
+from text.os_words import os_reason
 
 _LONGEST = 4096
 
@@ -50,7 +51,7 @@ class StopMemory:
         except (FileNotFoundError, RuntimeError):
             return None
         except OSError as error:
-            return _unreadable(error.strerror or str(error))
+            return _unreadable(os_reason(error))
         return _read(text)
 
     def keep(self, stop: Stop) -> str:
@@ -66,7 +67,7 @@ class StopMemory:
             (folder / self._draft).replace(place)
             _flush(folder)
         except (OSError, RuntimeError) as error:
-            return _reason(error)
+            return os_reason(error)
         return ""
 
     def _place(self) -> Path:
@@ -80,7 +81,7 @@ class StopMemory:
                 place.unlink()
                 _flush(place.parent)
         except (OSError, RuntimeError) as error:
-            return _reason(error)
+            return os_reason(error)
         return ""
 
 
@@ -94,7 +95,7 @@ def _read(text: bytes) -> Stop:
             remembered=True,
         )
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
-        return _unreadable(_reason(error))
+        return _unreadable(os_reason(error))
 
 
 def _unreadable(reason: str) -> Stop:
@@ -116,8 +117,3 @@ def _flush(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
-
-
-def _reason(error: Exception) -> str:
-    strerror = error.strerror if isinstance(error, OSError) else None
-    return strerror or str(error) or type(error).__name__

@@ -6,7 +6,6 @@ Here the `action` decides which model was meant, and only that one is asked.
 
 from __future__ import annotations
 
-import difflib
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from pydantic import BaseModel, ValidationError
 from robot.commands.json_places import Path, PlacedJson, line_column
 from robot.commands.problems import Problem
 from robot.limits import HEAD_ANGLE, MAX_COMMANDS, SPEED, STEERING
+from text.suggestions import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -110,9 +110,8 @@ class Explainer:
 
     def _unknown(self, path: Path, name: str, model: type[BaseModel]) -> Problem:
         place = line_column(self._text, self._found.keys[path])
-        near = difflib.get_close_matches(name[:40], model.model_fields, n=1)
-        if near:
-            return Problem.of("unknown_near", path, place, name=name, near=near[0])
+        if meant := nearest(name, model.model_fields):
+            return Problem.of("unknown_near", path, place, name=name, near=meant)
         return Problem.of("unknown", path, place, name=name)
 
     def _place(self, path: Path) -> tuple[int, int]:

@@ -16,7 +16,6 @@ from graph.data import GraphUpdate, Sample
 from launcher.errors import ProfileError, ProfileProblem, SessionError
 from launcher.events import ClosedEvent, LogEvent, StraysEvent
 from launcher.status import NodeState, Severity, Stray, Who
-from launcher.words import say
 from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
     LINES,
@@ -29,6 +28,7 @@ from tests.tui.recorded import (
     line,
 )
 from tests.tui.snapshots import settle
+from text.sentences import say
 from tui.app import DeckApp
 from tui.deck.actions import StartAll, WriteCommand
 from tui.deck.nodes_table import NodesTable

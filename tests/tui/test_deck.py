@@ -10,7 +10,6 @@ from textual.widgets import Input
 
 from launcher.events import LogEvent
 from launcher.status import NodeState, Severity
-from launcher.words import say
 from tests.tui.app_runs import opened
 from tests.tui.deck_days import llm
 from tests.tui.recorded import (
@@ -24,6 +23,7 @@ from tests.tui.recorded import (
 )
 from tests.tui.snapshots import settle
 from text.i18n import set_language
+from text.sentences import say
 from tui.app import DeckApp
 from tui.composer.outcome import Outcome
 from tui.deck.command_line import CommandLine

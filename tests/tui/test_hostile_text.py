@@ -37,7 +37,6 @@ from graph.data import (
 from launcher.errors import StartError
 from launcher.events import ClosedEvent, StatusEvent, StraysEvent
 from launcher.status import NodeState, Stray
-from launcher.words import say
 from tests.hostile import EVIL, harm_on_screen, poisoned
 from tests.tui import recorded_devices
 from tests.tui.app_runs import LESSON_9
@@ -56,6 +55,7 @@ from tests.tui.recorded import (
 )
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import settle
+from text.sentences import say
 from tui.app import DeckApp
 from tui.composer.json_editor import JsonEditor
 from tui.session.orders import Lesson, Order

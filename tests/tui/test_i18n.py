@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from launcher.words import say
 from text import catalogue
 from text.catalogue import missing, po_path, read_po
 from text.i18n import _, detect, language, ngettext, pick, said, set_language
+from text.sentences import say
 
 
 @pytest.mark.parametrize(

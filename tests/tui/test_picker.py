@@ -12,10 +12,10 @@ from textual.widgets import Static
 
 from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
 from launcher.status import Who
-from launcher.words import say
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from text.sentences import say
 from tui.app import DeckApp
 from tui.picker.domain_taken import DomainTakenScreen
 from tui.picker.refused import RefusedScreen

@@ -12,11 +12,11 @@ import pytest
 from cli.line_writer import MOST_WAITING, LineWriter
 from cli.report import JsonReport, Summary, TextReport
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
-from launcher.words import say
 from tests.waiting import wait_until
 from text.i18n import set_language
 from text.output import Paint, harmless, json_text, table
 from text.plain import is_plain
+from text.sentences import say
 
 
 class Terminal(io.StringIO):

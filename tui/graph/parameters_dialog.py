@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from text.i18n import _, ngettext, said
+from text.os_words import os_reason
 from text.plain import plain
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.graph.path import PathDialog
@@ -134,4 +135,4 @@ def _full(path: str) -> Path:
 
 
 def _not_opened(path: str, error: OSError) -> str:
-    return f"{path}: {_(error.strerror or str(error))}"
+    return f"{path}: {said(os_reason(error))}"

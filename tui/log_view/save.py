@@ -8,7 +8,8 @@ from collections.abc import Iterable
 from datetime import datetime, timezone
 from pathlib import Path
 
-from text.i18n import N_, _
+from text.i18n import N_, _, said
+from text.os_words import os_reason
 
 
 def default_path(folder: str, time_s: float) -> Path:
@@ -56,4 +57,4 @@ def reason(error: OSError | ValueError) -> str:
     if not isinstance(error, OSError):
         return str(error)
     known = _REASONS.get(error.errno or 0)
-    return _(known or error.strerror or str(error))
+    return _(known) if known else said(os_reason(error))

@@ -1,8 +1,8 @@
 """Sentences that can still be translated after they were made.
 
-The launcher knows nothing of languages; the screen and the command line do. A sentence made by
-`say` is its English text, a plain `str` for everyone, and remembers the template and the values
-that it was made of, so that who shows it can look the template up in a catalogue.
+Rooms that know nothing of languages make them; who shows them looks the template up in a catalogue
+(`text.i18n.said`). A sentence made by `say` is its English text, a plain `str` for everyone, and
+remembers the template and the values that it was made of.
 """
 
 from __future__ import annotations
