@@ -74,7 +74,7 @@ def test_an_installed_deck_goes_beside_packages_of_the_same_names(installed: Ins
 
 
 def test_an_installed_deck_uses_its_own_modules(installed: Installed) -> None:
-    program = "import deck; deck.enter(); import launcher.words; print(launcher.words.__file__)"
+    program = "import deck; deck.enter(); import launcher.errors; print(launcher.errors.__file__)"
     assert installed.python("-c", program).startswith(str(installed.site / "deck" / "launcher"))
     assert not installed.imported.exists()
 
