@@ -30,8 +30,8 @@ from tui.session.sessions import Sessions
 from tui.session.strangers import Strangers
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.harmless import Harmless
-from tui.terminal.key_queue import Typed
-from tui.terminal.stall_detector import Nap
+from tui.terminal.key_queue import KeyQueue
+from tui.terminal.stall_detector import KeyStallDetector
 from tui.themes import HIGH_CONTRAST, after, few_colours
 
 if TYPE_CHECKING:
@@ -109,13 +109,13 @@ class DeckApp(App[int], Acting):
         self.brake = Brake(self)
         self.strangers = Strangers()
         self.recording = Recording(self)
-        self.nap = Nap()
+        self.stall_detector = KeyStallDetector()
         self.bandwidth = Bandwidth()
         """What is written to the terminal, and how much of pictures that may be."""
         self.last_lesson = ""
         """The profile that was started last, where the list of lessons begins."""
         self._harmless = Harmless()
-        self._typed = Typed(self)
+        self._key_queue = KeyQueue(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
         self.register_theme(HIGH_CONTRAST)
 
@@ -127,24 +127,24 @@ class DeckApp(App[int], Acting):
 
     def on_mount(self) -> None:
         """Go on when the first frame is out."""
-        self.nap.watch()
+        self.stall_detector.watch()
         # A moment of rest lets the threads that write to the terminal have their turn.
         self.call_after_refresh(self.set_timer, 0.01, self._begin)
 
     def on_unmount(self) -> None:
         """Leave no thread behind."""
-        self.nap.end()
+        self.stall_detector.end()
 
     async def on_event(self, event: Event) -> None:
         """Take keys one after the other; the emergency stop waits for none."""
         if not isinstance(event, (Key, Paste)) or event.is_forwarded:
             await super().on_event(event)
-        elif not self._typed.must_wait(event):
+        elif not self._key_queue.must_wait(event):
             target = self.focused or self.screen
             await super().on_event(event)
-            self._typed.given(event, target)
+            self._key_queue.given(event, target)
         elif not await self._stopped_by(event):
-            self._typed.wait(event)
+            self._key_queue.wait(event)
 
     async def _stopped_by(self, event: Key | Paste) -> bool:
         """Stop the wheels if that is what this key, where it is pressed, is for."""

@@ -9,7 +9,7 @@ import pytest
 
 from tests.waiting import wait_until
 from tui import clock
-from tui.terminal.stall_detector import DRAIN_S, LONGEST_S, Nap
+from tui.terminal.stall_detector import DRAIN_S, LONGEST_S, KeyStallDetector
 
 STARTED_S = 1.0
 WOKE_S = STARTED_S + 6.0
@@ -26,36 +26,41 @@ def move_hand(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
 
 
 @pytest.fixture
-def nap(move_hand: Callable[[float], None]) -> Iterator[Nap]:
+def detector(move_hand: Callable[[float], None]) -> Iterator[KeyStallDetector]:
     move_hand(STARTED_S)
-    made = Nap()
+    made = KeyStallDetector()
     yield made
     made.end()
 
 
 def test_no_stamp_is_believed_for_a_moment_after_it(
-    nap: Nap, move_hand: Callable[[float], None]
+    detector: KeyStallDetector, move_hand: Callable[[float], None]
 ) -> None:
-    assert not nap.may_precede(STARTED_S)
+    assert not detector.may_precede(STARTED_S)
     move_hand(WOKE_S)
-    assert nap.may_precede(WOKE_S)
+    assert detector.may_precede(WOKE_S)
     move_hand(WOKE_S + DRAIN_S)
-    assert nap.may_precede(WOKE_S + DRAIN_S - 0.1)
-    assert not nap.may_precede(WOKE_S + DRAIN_S)
+    assert detector.may_precede(WOKE_S + DRAIN_S - 0.1)
+    assert not detector.may_precede(WOKE_S + DRAIN_S)
 
 
-def test_a_machine_that_is_busy_is_no_nap(nap: Nap, move_hand: Callable[[float], None]) -> None:
+def test_a_machine_that_is_busy_is_no_stall(
+    detector: KeyStallDetector, move_hand: Callable[[float], None]
+) -> None:
     for stall in range(1, 5):
         at_s = STARTED_S + stall * (LONGEST_S - 0.1)
         move_hand(at_s)
-        assert not nap.may_precede(at_s)
+        assert not detector.may_precede(at_s)
 
 
 def test_it_is_noticed_though_nobody_asks_and_no_thread_is_left_behind(
-    nap: Nap, move_hand: Callable[[float], None]
+    detector: KeyStallDetector, move_hand: Callable[[float], None]
 ) -> None:
-    nap.watch()
+    detector.watch()
     move_hand(WOKE_S)
-    wait_until(lambda: nap.woke_s == WOKE_S, "it is noticed")
-    nap.end()
-    wait_until(lambda: "nap" not in [each.name for each in threading.enumerate()], "it has ended")
+    wait_until(lambda: detector.woke_s == WOKE_S, "it is noticed")
+    detector.end()
+    wait_until(
+        lambda: "stall-detector" not in [each.name for each in threading.enumerate()],
+        "it has ended",
+    )

@@ -8,7 +8,7 @@ import pyte
 import pytest
 from rich.cells import set_cell_size
 
-from tui.terminal.terminal_diff import Thrift
+from tui.terminal.terminal_diff import TerminalDiff
 
 WIDTH, HEIGHT = 40, 8
 STYLES = (
@@ -65,41 +65,41 @@ def random_frame(chance: random.Random) -> str:
 @pytest.mark.parametrize("seed", range(30))
 def test_a_terminal_shows_the_same_as_without_sparing(seed: int) -> None:
     chance = random.Random(seed)
-    thrift, plain, spared = Thrift(), Terminal(), Terminal()
-    thrift.forget(WIDTH, HEIGHT)
+    diff, plain, spared = TerminalDiff(), Terminal(), Terminal()
+    diff.forget(WIDTH, HEIGHT)
     for _frame in range(12):
         frame = random_frame(chance)
-        assert spared.shows_after(thrift.spare(frame)) == plain.shows_after(frame)
+        assert spared.shows_after(diff.changes(frame)) == plain.shows_after(frame)
 
 
 def test_a_frame_that_changes_nothing_sends_nothing() -> None:
-    thrift = Thrift()
-    thrift.forget(WIDTH, HEIGHT)
+    diff = TerminalDiff()
+    diff.forget(WIDTH, HEIGHT)
     frame = frame_of([(0, 0, STYLES[1], "Distance 1.29 m")])
-    assert "Distance" in thrift.spare(frame)
-    assert thrift.spare(frame) == ""
+    assert "Distance" in diff.changes(frame)
+    assert diff.changes(frame) == ""
 
 
 def test_of_a_line_that_changes_only_the_new_cells_are_sent() -> None:
-    thrift = Thrift()
-    thrift.forget(WIDTH, HEIGHT)
-    thrift.spare(frame_of([(0, 0, STYLES[1], "Distance 1.29 m")]))
-    sent = thrift.spare(frame_of([(0, 0, STYLES[1], "Distance 1.37 m")]))
+    diff = TerminalDiff()
+    diff.forget(WIDTH, HEIGHT)
+    diff.changes(frame_of([(0, 0, STYLES[1], "Distance 1.29 m")]))
+    sent = diff.changes(frame_of([(0, 0, STYLES[1], "Distance 1.37 m")]))
     assert "37" in sent
     assert "Distance" not in sent
 
 
 def test_after_the_other_screen_everything_is_sent_anew() -> None:
-    thrift = Thrift()
-    thrift.forget(WIDTH, HEIGHT)
+    diff = TerminalDiff()
+    diff.forget(WIDTH, HEIGHT)
     frame = frame_of([(0, 0, "", "Distance 1.29 m")])
-    thrift.spare(frame)
-    thrift.spare("\x1b[?1049h")
-    assert "Distance" in thrift.spare(frame)
+    diff.changes(frame)
+    diff.changes("\x1b[?1049h")
+    assert "Distance" in diff.changes(frame)
 
 
 def test_modes_and_clipboard_pass_unchanged() -> None:
-    thrift = Thrift()
-    thrift.forget(WIDTH, HEIGHT)
+    diff = TerminalDiff()
+    diff.forget(WIDTH, HEIGHT)
     for sequence in ("\x1b[?2026h", "\x1b[?1000h", "\x1b]52;c;0JTQtQ==\a", "\x1b[>13u"):
-        assert thrift.spare(sequence).endswith(sequence)
+        assert diff.changes(sequence).endswith(sequence)

@@ -11,7 +11,7 @@ from textual.widgets import Input, Static
 from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.snapshots import Look, settle
 from tests.waiting import until
-from tui.terminal import key_queue as typed
+from tui.terminal import key_queue
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -69,7 +69,7 @@ async def test_a_key_that_never_arrives_holds_up_the_others_for_a_moment_only(
     app: DeckApp, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as patched:
-        patched.setattr(typed, "PATIENCE_S", 0.05)
-        app._typed.follow(Static())
+        patched.setattr(key_queue, "PATIENCE_S", 0.05)
+        app._key_queue.follow(Static())
     type_at_once(app, "f3", "slash", *"drive")
     await until_filter_is(app, "drive")

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from tui.terminal.bandwidth import MOST_DEBT_S, OVER_SSH, SAVED_S, Bandwidth, Pace, default_limit
+from tui.terminal.bandwidth import (
+    MOST_DEBT_S,
+    OVER_SSH,
+    SAVED_S,
+    Bandwidth,
+    PicturePace,
+    default_limit,
+)
 
 
 class Clock:
@@ -83,7 +90,7 @@ def test_no_picture_goes_to_a_terminal_that_has_not_taken_the_last(limit: int) -
 
 
 def test_the_rate_is_that_of_the_pictures_shown_while_others_are_left_out() -> None:
-    pace = Pace()
+    pace = PicturePace()
     for number in range(20):
         pace.shown(number / 2)
     assert pace.limited_hz(9.5) is None
@@ -93,7 +100,7 @@ def test_the_rate_is_that_of_the_pictures_shown_while_others_are_left_out() -> N
 
 
 def test_a_pause_of_the_stream_does_not_count_as_slowness() -> None:
-    pace = Pace()
+    pace = PicturePace()
     for time_s in (0.0, 1.0, 100.0, 100.5, 101.0):
         pace.shown(time_s)
     pace.left_out(101.0)

@@ -134,7 +134,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         if graph is None or not self._route.topic or deck.brake.state.engaged:
             self.redraw()
             return
-        if deck.nap.may_precede(at_s):
+        if deck.stall_detector.may_precede(at_s):
             return
         self._keys = self._keys.pressed(move, at_s)
         if self._keys.at(now_s) is NOTHING:

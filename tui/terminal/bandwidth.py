@@ -76,7 +76,7 @@ class Bandwidth:
         self._seen_s = now_s
 
 
-class Pace:
+class PicturePace:
     """How often one picture of a stream is shown, and whether others were left out for it."""
 
     def __init__(self) -> None:

@@ -22,7 +22,7 @@ from textual.events import Resize
 from textual.geometry import Size
 
 from tui.terminal.bandwidth import Bandwidth
-from tui.terminal.terminal_diff import Thrift
+from tui.terminal.terminal_diff import TerminalDiff
 
 if TYPE_CHECKING:
     from textual.app import App
@@ -53,7 +53,7 @@ class Terminal:
         """Write to `fd` on a thread of its own, and tell `bandwidth` of all that is written."""
         self._fd = fd
         self._bandwidth = bandwidth or Bandwidth()
-        self._thrift = Thrift()
+        self._diff = TerminalDiff()
         self._terminal_size = (0, 0)
         self._on_caught_up = on_caught_up
         self._lock = threading.Condition()
@@ -72,7 +72,7 @@ class Terminal:
         with self._lock:
             if self.gone or (self._stalled and not self.leaving):
                 return
-            data = self._spared(text).encode("utf-8", "replace")
+            data = self._changes(text).encode("utf-8", "replace")
             self._waiting.append(data)
             self._size += len(data)
             self._bandwidth.written(len(data))
@@ -84,12 +84,12 @@ class Terminal:
                 self._size = 0
             self._lock.notify_all()
 
-    def _spared(self, text: str) -> str:
+    def _changes(self, text: str) -> str:
         size = self.size()
         if size != self._terminal_size:
             self._terminal_size = size
-            self._thrift.forget(*size)
-        return self._thrift.spare(text)
+            self._diff.forget(*size)
+        return self._diff.changes(text)
 
     def forget(self) -> None:
         """Assume nothing of what the terminal shows: somebody else may have written to it."""

@@ -20,7 +20,7 @@ PATIENCE_S = 3.0
 """A key that is on its way for so long holds up no other: its widget may be gone."""
 
 
-class Typed:
+class KeyQueue:
     """What is typed while a key is on its way, and where that key is."""
 
     def __init__(self, app: MessagePump) -> None:

@@ -1,7 +1,7 @@
 """Whether this process was held up, so that keys may have waited longer than their stamps tell.
 
 A key is stamped when it is read from the terminal. What was typed while the process was stopped is
-read when it goes on, and looks as if it had just been pressed. So for a moment after such a nap no
+read when it goes on, and looks as if it had just been pressed. So for a moment after such a stall no
 stamp is believed. A thread of its own looks, for an event loop that is merely busy delays no stamp.
 """
 
@@ -19,20 +19,20 @@ DRAIN_S = 0.5
 """How long it takes to read what has waited, on a machine that is busy besides."""
 
 
-class Nap:
-    """Looks at the clock all the time; a long time between two looks was slept through."""
+class KeyStallDetector:
+    """Looks at the clock all the time; a long time between two looks was a stall."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._last_s = clock.steady()
         self.woke_s = -math.inf
-        """When the newest nap was noticed, on the steady clock."""
+        """When the newest stall was noticed, on the steady clock."""
         self._over = threading.Event()
 
     def watch(self) -> None:
         """Look from now on."""
         self._last_s = clock.steady()
-        threading.Thread(target=self._run, name="nap", daemon=True).start()
+        threading.Thread(target=self._run, name="stall-detector", daemon=True).start()
 
     def end(self) -> None:
         """Look no more."""
@@ -40,7 +40,7 @@ class Nap:
 
     def may_precede(self, at_s: float) -> bool:
         """Whether a key with this stamp may have been typed before the process woke."""
-        # After a nap the key may be here before the thread has had its turn.
+        # After a stall the key may be here before the thread has had its turn.
         self._look()
         return at_s < self.woke_s + DRAIN_S
 

@@ -46,7 +46,7 @@ _PLAIN = frozenset(chr(code) for first, last in _PLAIN_RANGES for code in range(
 """Characters of one cell on every terminal."""
 
 
-class Cell(NamedTuple):
+class ScreenCell(NamedTuple):
     """What one cell shows: a character and its SGR parameters."""
 
     char: str
@@ -61,13 +61,13 @@ class Look(NamedTuple):
     background: str
 
 
-class Thrift:
-    """Knows what the terminal shows; `spare` returns what has to be sent to make it show more."""
+class TerminalDiff:
+    """Knows what the terminal shows; `changes` returns what has to be sent to make it show more."""
 
     def __init__(self) -> None:
         """Know nothing yet."""
         self._width = self._height = 0
-        self._rows: list[list[Cell | None]] = []
+        self._rows: list[list[ScreenCell | None]] = []
         self._at: tuple[int, int] | None = None
         """Column and row of the terminal's cursor, None if not known."""
         self._sgr: str | None = None
@@ -80,7 +80,7 @@ class Thrift:
         self._rows = [[None] * width for _row in range(height)]
         self._at = self._sgr = None
 
-    def spare(self, frame: str) -> str:
+    def changes(self, frame: str) -> str:
         """Return the least that makes the terminal show what `frame` would."""
         if _SYNC.fullmatch(frame):
             return frame
@@ -124,7 +124,7 @@ class Thrift:
         row = self._rows[y]
         first = -1
         for at, char in enumerate(text, x):
-            cell = Cell(char, sgr)
+            cell = ScreenCell(char, sgr)
             if row[at] == cell:
                 if first >= 0:
                     self._send(first, y, text[first - x : at - x], sgr)

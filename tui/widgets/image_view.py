@@ -17,7 +17,7 @@ from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain
 from tui import clock
-from tui.terminal.bandwidth import Pace
+from tui.terminal.bandwidth import PicturePace
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, in_row, word_strips
 
@@ -77,7 +77,7 @@ class ImageView(OneStyle, Widget):
         self._waits = False
         """Whether the newest picture is not drawn yet."""
         self._timer: Timer | None = None
-        self._pace = Pace()
+        self._pace = PicturePace()
         self._shown: Pixels | None = None
         self._caption = ""
         self._scale: Scale | None = None
