@@ -1,8 +1,9 @@
 """Whether this process was held up, so that keys may have waited longer than their stamps tell.
 
 A key is stamped when it is read from the terminal. What was typed while the process was stopped is
-read when it goes on, and looks as if it had just been pressed. So for a moment after such a stall no
-stamp is believed. A thread of its own looks, for an event loop that is merely busy delays no stamp.
+read when it goes on, and looks as if it had just been pressed. So for a moment after such a stall
+no stamp is believed. A thread of its own looks, for an event loop that is merely busy delays no
+stamp.
 """
 
 from __future__ import annotations
