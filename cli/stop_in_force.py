@@ -11,7 +11,7 @@ from text.i18n import _
 def stop_is_kept(domain: int) -> bool:
     """Whether a stop is remembered in this domain, be it of an earlier session."""
     try:
-        return os.path.lexists(stop_place(os.environ, domain))
+        return os.path.lexists(stop_place(domain))
     except (OSError, RuntimeError):
         # Nobody can keep one there; the nodes have words for it.
         return False

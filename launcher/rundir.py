@@ -60,8 +60,9 @@ def log_path() -> Path:
     chosen = os.environ.get("DECK_LOG_DIR")
     if chosen:
         return Path(chosen)
-    state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-    return Path(state) / "deck" / "logs"
+    from platformdirs import user_state_path  # Whoever only looks for runs does without.
+
+    return user_state_path("deck") / "logs"
 
 
 def log_dir() -> Path:
@@ -106,6 +107,7 @@ def run_path(environ: Mapping[str, str]) -> Path:
     chosen = environ.get(OWN_RUN_DIR)
     if chosen:
         return Path(chosen)
+    # Not of platformdirs: without a login's own folder it takes another than /tmp/deck-<uid>.
     runtime = Path(environ.get("XDG_RUNTIME_DIR") or "/nonexistent")
     if runtime.is_dir() and runtime.stat().st_uid == os.getuid():
         return runtime / "deck"

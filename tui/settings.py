@@ -7,10 +7,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
+
+from platformdirs import user_config_path
 
 from text.i18n import LANGUAGES, _, said
 from text.os_words import os_reason
@@ -34,8 +35,7 @@ class Settings:
 
 def settings_path() -> Path:
     """Return where the settings are, or would be."""
-    base = os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config"
-    return Path(base) / "deck" / "settings.json"
+    return user_config_path("deck") / "settings.json"
 
 
 def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[str]]) -> Settings:

@@ -71,7 +71,7 @@ class StopMemory:
         return ""
 
     def _place(self) -> Path:
-        return stop_place(os.environ, self._domain)
+        return stop_place(self._domain)
 
     def forget(self) -> str:
         """Remember no stop any more; return why that failed."""

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from platformdirs import user_state_path
 
 STATE_DIR = "DECK_STATE_DIR"
 """Environment variable with the folder of what Deck remembers."""
 
 
-def stop_place(environ: Mapping[str, str], domain: int) -> Path:
+def stop_place(domain: int) -> Path:
     """Return a file of `$DECK_STATE_DIR`, `$XDG_STATE_HOME/deck` or `~/.local/state/deck`.
 
     Raises:
         RuntimeError: if this user has no home.
     """
-    chosen = environ.get(STATE_DIR)
-    if chosen:
-        return Path(chosen, "stops", str(domain))
-    state = environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-    return Path(state, "deck", "stops", str(domain))
+    chosen = os.environ.get(STATE_DIR)
+    state = Path(chosen) if chosen else user_state_path("deck")
+    return state / "stops" / str(domain)

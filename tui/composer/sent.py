@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 from pathlib import Path
+
+from platformdirs import user_state_path
 
 KEPT = 50
 LONGEST = 64 * 1024
@@ -17,8 +18,7 @@ LONGEST = 64 * 1024
 
 def sent_path() -> Path:
     """Return where the texts are kept."""
-    base = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-    return Path(base) / "deck" / "composer.json"
+    return user_state_path("deck") / "composer.json"
 
 
 class Sent:
