@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import time
 
-from robot.safety.distance import Zone
+from robot.safety.distance import SafetyZone
 from robot.world.room import LIVING_ROOM
 from robot.world.world import World
 from tests.unit.random_driver import RandomDriver
 
 HOUR_S = 3600.0
 GATES = {
-    "the robot's gate: stop at 0.5 m, slower from 1.0 m": Zone(0.5, 1.0, 0.5),
-    "a later one: stop at 0.3 m, no slowing down": Zone(0.3, 0.0, 0.3),
+    "the robot's gate: stop at 0.5 m, slower from 1.0 m": SafetyZone(0.5, 1.0, 0.5),
+    "a later one: stop at 0.3 m, no slowing down": SafetyZone(0.3, 0.0, 0.3),
     "no gate": None,
 }
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from argparse import Namespace
     from pathlib import Path
 
-    from graph.bag.publishing import BagPublisher, Progress
+    from graph.bag.publishing import BagPublisher, PublishingProgress
     from graph.bag.reading import Bag, TopicInBag
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -76,7 +76,7 @@ def _publish(
             say_error(_("nothing is left to publish"))
             return 1
 
-        def tell(progress: Progress) -> None:
+        def tell(progress: PublishingProgress) -> None:
             told.update(_tell_left_out(progress, told))
             write(_words(progress, bag))
 
@@ -112,7 +112,7 @@ def _tell(sentence: str | None) -> None:
         write(plain(said(sentence), 400))
 
 
-def _tell_left_out(progress: Progress, told: set[str]) -> set[str]:
+def _tell_left_out(progress: PublishingProgress, told: set[str]) -> set[str]:
     """Say of each topic that is newly left out why; return the names of all that are."""
     for name, reason in sorted(progress.left_out.items()):
         if name not in told:
@@ -121,7 +121,7 @@ def _tell_left_out(progress: Progress, told: set[str]) -> set[str]:
     return set(progress.left_out)
 
 
-def _words(progress: Progress, bag: Bag) -> str:
+def _words(progress: PublishingProgress, bag: Bag) -> str:
     place = _("{now} of {length}").format(
         now=length_words(progress.seconds), length=length_words(bag.length_s)
     )

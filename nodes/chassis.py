@@ -35,14 +35,14 @@ from nodes.drivers.chassis_words import (
 )
 from nodes.drivers.pico import PicoClient
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.emergency import PICO, EmergencyStop
+from nodes.parts.emergency import PICO, EmergencyStopListener
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode
-from nodes.parts.pace import Pace
+from nodes.parts.pace import PeriodicThread
 from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.qos import DEPTH
-from nodes.parts.refusals import MAX_WHEEL_SPEED, Refusals
-from nodes.parts.stall_detector import Nap
+from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
+from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 from robot.limits import STEERING, wheel_limits
@@ -63,7 +63,7 @@ _AWAY_S = 0.5
 """Who was stopped for longer believes no command that has waited meanwhile."""
 
 
-class Chassis(LessonNode):
+class ChassisNode(LessonNode):
     """Sends at a pace of its own and at each command, publishes from the reader's thread."""
 
     NAME = "chassis"
@@ -100,8 +100,8 @@ class Chassis(LessonNode):
         self._standing = Standing(self.say)
         self._release_wanted = False
         self._released_s = -math.inf
-        self._nap = Nap()
-        self._refusals = Refusals(self)
+        self._nap = StallDetector()
+        self._refusals = CommandRefusals(self)
         self._wheel_limits = wheel_limits(self.number("wheel_radius"))
         self._sending = threading.Lock()
         self._reckoning = DeadReckoning(self.number("wheelbase"), self.number("wheel_radius"))
@@ -110,11 +110,11 @@ class Chassis(LessonNode):
         self._odometry = self.quick_publisher(Odometry, ODOMETRY)
         self._transforms = self.quick_publisher(TFMessage, TF)
         self._battery = self.quick_publisher(BatteryState, BATTERY)
-        self._emergency = EmergencyStop(self, self._emergency_changed)
+        self._emergency = EmergencyStopListener(self, self._emergency_changed)
         # Heard even if this node never saw the stop: the Pico may have kept it.
         self.create_subscription(Bool, EMERGENCY_STOP, self._hear_release, DEPTH)
         self.create_subscription(JointState, WHEEL_COMMANDS, self._obey, DEPTH)
-        self._pace = Pace(1.0 / self.number("rate"), self._drive)
+        self._pace = PeriodicThread(1.0 / self.number("rate"), self._drive)
         self.every(_BATTERY_EVERY_S, self._publish_battery)
         tell_every_second(self, self._status)
         self.say.info(STARTED, port=self._pico.link.port, topic=WHEEL_COMMANDS)
@@ -262,7 +262,7 @@ class Chassis(LessonNode):
 
 def main(args: list[str] | None = None) -> int:
     """Run the node until it is asked to end."""
-    return run(Chassis, args)
+    return run(ChassisNode, args)
 
 
 if __name__ == "__main__":

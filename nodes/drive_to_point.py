@@ -30,7 +30,7 @@ from nodes.driving import words
 from nodes.driving.goal import DriveGoal
 from nodes.driving.goal_pose import GoalPose
 from nodes.parts.drive import to_message
-from nodes.parts.emergency import EmergencyStop
+from nodes.parts.emergency import EmergencyStopListener
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.odometry import OdometryListener
@@ -39,7 +39,7 @@ from nodes.parts.qos import DEPTH
 from nodes.simulated.base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
 from robot.kinematics import WHEELBASE_M
 from robot.limits import SPEED, STEERING
-from robot.motion.approach import Approach, Chassis
+from robot.motion.approach import Approach, ApproachLimits
 from robot.motion.odometry import Point, Pose
 from robot.topics import DRIVE, DRIVE_TO_POINT, ODOMETRY
 from robot.words import STOP
@@ -119,7 +119,7 @@ class DriveToPointNode(LessonNode):
         """Results to come, of goals whose clients have not been told yet."""
         self._publisher = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
         self._goal_pose = GoalPose(self)
-        self._emergency = EmergencyStop(self, self._emergency_changed)
+        self._emergency = EmergencyStopListener(self, self._emergency_changed)
         self._odometry = OdometryListener(self)
         self._base = SimulatedBase(
             self,
@@ -196,7 +196,7 @@ class DriveToPointNode(LessonNode):
     def _begin(self, handle: ServerGoalHandle) -> None:
         self._finish(words.REPLACED)
         wanted = handle.request
-        chassis = Chassis(
+        chassis = ApproachLimits(
             self.number("max_speed"), self.number("max_steering"), self.number("wheelbase")
         )
         tolerance_m = wanted.tolerance or self.number("tolerance")

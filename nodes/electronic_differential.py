@@ -20,15 +20,15 @@ from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 
 from nodes.parts.drive import FRAME, from_message
-from nodes.parts.emergency import EmergencyStop
+from nodes.parts.emergency import EmergencyStopListener
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
-from nodes.parts.refusals import MAX_WHEEL_SPEED, Refusals
+from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
 from nodes.parts.sole_publisher import SolePublisher
 from nodes.parts.speech import Phrase
-from nodes.parts.stall_detector import Nap
+from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import (
     STRAIGHT_BELOW_RAD,
@@ -129,14 +129,14 @@ class ElectronicDifferential(LessonNode):
     def __init__(self) -> None:
         super().__init__()
         self._command = STOP
-        self._nap = Nap()
-        self._refusals = Refusals(self)
+        self._nap = StallDetector()
+        self._refusals = CommandRefusals(self)
         self._heard = False
         self._told: DriveSetpoint | None = None
         topic = self.text("drive_topic")
         self._publisher = self.create_publisher(JointState, WHEEL_COMMANDS, DEPTH)
         SolePublisher(self, self._publisher)
-        self._emergency = EmergencyStop(self, self._emergency_changed)
+        self._emergency = EmergencyStopListener(self, self._emergency_changed)
         self.create_subscription(AckermannDriveStamped, topic, self._hear, DEPTH)
         self._timer = self.every(1.0 / self.number("rate"), self._repeat)
         self._deadline = self.every(1.0, self._too_late)

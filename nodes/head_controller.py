@@ -47,15 +47,15 @@ _SETTLE_S = 0.1
 
 
 @dataclass(frozen=True)
-class Pose:
+class HeadPose:
     """Where the head looks, in degrees."""
 
     pan: float
     tilt: float
 
-    def towards(self, goal: Pose, share: float) -> Pose:
+    def towards(self, goal: HeadPose, share: float) -> HeadPose:
         """The pose at a share (0..1) of the way to another one."""
-        return Pose(
+        return HeadPose(
             self.pan + (goal.pan - self.pan) * share, self.tilt + (goal.tilt - self.tilt) * share
         )
 
@@ -75,12 +75,12 @@ class HeadController(LessonNode):
     def __init__(self) -> None:
         super().__init__()
         self._servos = ServoClient(self) if self.text("port") else None
-        self._pose = self._from = Pose(0, 0) if self._servos is None else None
+        self._pose = self._from = HeadPose(0, 0) if self._servos is None else None
         """None: nobody knows."""
         self._pulses_us: tuple[int, int] | None = None
         """What the servos were told last."""
         self._began_s = self._length_s = 0.0
-        self._turns: deque[tuple[Pose, Future]] = deque()
+        self._turns: deque[tuple[HeadPose, Future]] = deque()
         """The first one is being moved to."""
         self._read_joints()
         self._publisher = self.create_publisher(JointState, HEAD_STATE, DEPTH)
@@ -122,7 +122,7 @@ class HeadController(LessonNode):
         self, request: AddTwoInts.Request, response: AddTwoInts.Response
     ) -> AddTwoInts.Response:
         response.sum = 0
-        asked = Pose(request.a, request.b)
+        asked = HeadPose(request.a, request.b)
         if not self._reaches(asked):
             return response
         if self._servos is not None:
@@ -143,7 +143,7 @@ class HeadController(LessonNode):
         response.sum = int(await arrival)
         return response
 
-    def _reaches(self, asked: Pose) -> bool:
+    def _reaches(self, asked: HeadPose) -> bool:
         pan, tilt = self._pan.reach, self._tilt.reach
         if asked.pan in pan and asked.tilt in tilt:
             return True
@@ -157,7 +157,7 @@ class HeadController(LessonNode):
         )
         return False
 
-    def _refuse(self, phrase: Phrase, asked: Pose, **values: object) -> None:
+    def _refuse(self, phrase: Phrase, asked: HeadPose, **values: object) -> None:
         self.say.warn(phrase, every_s=0.0, pan=asked.pan, tilt=asked.tilt, **values)
 
     # ---------------------------------------------------------------- movements
@@ -179,7 +179,7 @@ class HeadController(LessonNode):
             return
         self.say.info(words.TURNING, pan=goal.pan, tilt=goal.tilt)
 
-    def _command(self, servos: ServoClient, goal: Pose) -> bool:
+    def _command(self, servos: ServoClient, goal: HeadPose) -> bool:
         pan, tilt = self._pan, self._tilt
         pan_us, tilt_us = self._pulses_us or (None, None)
         way_deg = max(pan.way_deg(pan_us, goal.pan), tilt.way_deg(tilt_us, goal.tilt))

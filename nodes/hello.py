@@ -13,7 +13,7 @@ _AWAKE = Phrase("Hello! The first node is awake.", "Привет! Первый �
 _COUNT = Phrase("{seconds:g} s passed, all is well.", "Прошло {seconds:g} с, всё хорошо.")
 
 
-class Hello(LessonNode):
+class HelloNode(LessonNode):
     """Says how long it has been running."""
 
     NAME = "hello_node"
@@ -36,7 +36,7 @@ class Hello(LessonNode):
 
 def main(args: list[str] | None = None) -> int:
     """Run the node until it is asked to end."""
-    return run(Hello, args)
+    return run(HelloNode, args)
 
 
 if __name__ == "__main__":

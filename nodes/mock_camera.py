@@ -21,7 +21,7 @@ from nodes.parts.parameters import Choice, Number, Text, Whole
 from nodes.parts.qos import NEWEST
 from nodes.parts.speech import Phrase
 from nodes.simulated.room_scene import RoomScene
-from nodes.simulated.scene import Scene
+from nodes.simulated.scene import MovingScene
 from robot.topics import CAMERA
 
 FILM, ROOM = "film", "room"
@@ -69,10 +69,10 @@ class MockCamera(LessonNode):
         """Keep the new rate."""
         change_period(self._timer, 1.0 / self.number("rate"))
 
-    def _make_scene(self, height: int, width: int, *, blue_first: bool) -> Scene | RoomScene:
+    def _make_scene(self, height: int, width: int, *, blue_first: bool) -> MovingScene | RoomScene:
         if self.text("scene") == ROOM:
             return RoomScene(self, height, width, blue_first=blue_first)
-        return Scene(height, width, blue_first=blue_first)
+        return MovingScene(height, width, blue_first=blue_first)
 
     def _tick(self) -> None:
         self._scene.draw(self._picture, self._number)

@@ -20,7 +20,7 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
 
 from nodes.parts.life import run
-from nodes.parts.node import LessonNode, UsageError
+from nodes.parts.node import LessonNode, NodeUsageError
 from nodes.parts.parameters import Choice, Number, Setting, Text, Whole
 from nodes.parts.qos import DEPTH, LATCHED
 from nodes.parts.speech import Phrase
@@ -34,7 +34,7 @@ from robot.wire.tfluna import TofFrame, encode
 from robot.world.grid import grid_of
 from robot.world.pico import SimulatedPico
 from robot.world.servos import SimulatedServos
-from robot.world.world import STEP_S, Sonar, World
+from robot.world.world import STEP_S, SimulatedSonar, World
 from text.os_words import os_reason
 
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
@@ -103,8 +103,8 @@ class MockRobot(LessonNode):
         noise_m, dropout = self.number("noise"), self.number("dropout")
         self._world = World(
             seed=int(self.number("seed")),
-            front=Sonar(noise_m=noise_m, dropout=dropout),
-            rear=Sonar(forward=False, noise_m=noise_m, dropout=dropout),
+            front=SimulatedSonar(noise_m=noise_m, dropout=dropout),
+            rear=SimulatedSonar(forward=False, noise_m=noise_m, dropout=dropout),
         )
         self._pico, self._servos = SimulatedPico(self._world), SimulatedServos()
         folder = Path(self.text("folder") or default_folder()).expanduser()
@@ -150,7 +150,7 @@ class MockRobot(LessonNode):
                 for seed, device in enumerate(DEVICES)
             }
         except OSError as error:
-            raise UsageError(_NO_FOLDER, folder=folder, problem=os_reason(error)) from None
+            raise NodeUsageError(_NO_FOLDER, folder=folder, problem=os_reason(error)) from None
 
     def _tick(self) -> None:
         self._pico.feed(self._lines["pico"].read())

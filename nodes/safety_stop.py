@@ -27,17 +27,17 @@ from typing import TYPE_CHECKING
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32
 
-from nodes.parts.emergency import EmergencyStop
+from nodes.parts.emergency import EmergencyStopListener
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Switch, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.sensor import SensorListener
 from nodes.safety.eyes import Eyes, shares
-from nodes.safety.gate import Gate
+from nodes.safety.gate import CommandGate
 from nodes.safety.moment import Moment
 from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
-from robot.safety.distance import Sight, Verdict, Zone, allowed, where
+from robot.safety.distance import SafetyZone, Sight, Verdict, allowed, where
 from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
 
 if TYPE_CHECKING:
@@ -92,11 +92,11 @@ class SafetyStop(LessonNode):
         self._told_s = 0.0
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
         # In this order, which is that of their callbacks: of all that waits a stop comes first.
-        self._emergency = EmergencyStop(self, self._emergency_changed)
+        self._emergency = EmergencyStopListener(self, self._emergency_changed)
         SensorListener(self, Float32, self.text("front_topic"), self._see_front)
         if self._eyes.rear is not None:
             SensorListener(self, Float32, self.text("rear_topic"), self._see_rear)
-        self._gate = Gate(self, self._judge, self._reason) if self.switch("gate") else None
+        self._gate = CommandGate(self, self._judge, self._reason) if self.switch("gate") else None
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
         self.say.info(STARTED, metres=self.number("critical_distance"))
 
@@ -149,9 +149,9 @@ class SafetyStop(LessonNode):
     # ---------------------------------------------------------------- what follows from it
 
     @property
-    def _zone(self) -> Zone:
+    def _zone(self) -> SafetyZone:
         slow_m = self.number("slow_distance") if self.switch("gate") else 0.0
-        return Zone(self.number("critical_distance"), slow_m, self.number("stale_after_s"))
+        return SafetyZone(self.number("critical_distance"), slow_m, self.number("stale_after_s"))
 
     def _held_up(self) -> bool:
         return self._gate is not None and self._gate.held_up()

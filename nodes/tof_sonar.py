@@ -21,7 +21,7 @@ from nodes.drivers.serial_link import SerialLink
 from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.life import run
 from nodes.parts.node import LessonNode
-from nodes.parts.pace import Pace
+from nodes.parts.pace import PeriodicThread
 from nodes.parts.parameters import Choice, Number, Text, Whole
 from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
@@ -85,7 +85,7 @@ class TofSonar(LessonNode):
             partial(TofReader, model=self._model),
         )
         tell_every_second(self, self._status)
-        self._pace = Pace(_LOOK_EVERY_S, self._look)
+        self._pace = PeriodicThread(_LOOK_EVERY_S, self._look)
         self.say.info(_STARTED, port=self._link.port, topic=topic)
         self._link.start()
         self._pace.start()

@@ -17,7 +17,7 @@ from launcher.serial_ports import serial_ports
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from cli.preflight.answers import Answer
+    from cli.preflight.answers import DeviceAnswer
     from launcher.profile.load import Profile
     from launcher.serial_ports import SerialPort
 
@@ -31,7 +31,7 @@ def examine(
     """Look at every device that the profile's nodes name, all at the same time."""
     said = profile.document.devices
     devices = {name: said[name] for name in profile.used if name in said}
-    questions: dict[str, Callable[[], tuple[str, Answer]]] = {
+    questions: dict[str, Callable[[], tuple[str, DeviceAnswer]]] = {
         **ask_ports(devices, look),
         **{
             name: partial(MEDIA[settings["kind"]], name, settings)
@@ -46,6 +46,6 @@ def examine(
         return [_finding(name, *answers[name].result()) for name in devices if name in answers]
 
 
-def _finding(device: str, where: str, answer: Answer) -> Finding:
+def _finding(device: str, where: str, answer: DeviceAnswer) -> Finding:
     name = f"{device} {where}".rstrip()
     return Finding(f"device.{device}", answer.level, f"{name}: {answer.text}", answer.mend)

@@ -21,7 +21,7 @@ from text.i18n import Prose, _
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cli.preflight.line import Line
+    from cli.preflight.line import OpenPort
 
 NAMES = {"pico": "Pico", "tf_luna": "TF-Luna", "tfmini_s": "TFmini-S", "lsc16": "LSC-16"}
 """Kind of device to what it is called."""
@@ -33,7 +33,7 @@ ENOUGH_FRAMES = 3
 """Of a sonar that is looked for elsewhere: fewer may be chance."""
 
 
-class Answer(NamedTuple):
+class DeviceAnswer(NamedTuple):
     """What came of asking."""
 
     level: Level
@@ -41,7 +41,7 @@ class Answer(NamedTuple):
     mend: str = ""
 
 
-def ask(kind: str, line: Line) -> Answer:
+def ask(kind: str, line: OpenPort) -> DeviceAnswer:
     """Ask the device at a port; raises OSError if it goes meanwhile."""
     if kind == "pico":
         return _pico(line)
@@ -49,7 +49,7 @@ def ask(kind: str, line: Line) -> Answer:
         return _servos(line)
     if kind in ("tf_luna", "tfmini_s"):
         return _sonar(kind, line)
-    return Answer(Level.OK, _("it can be opened; what it should say is not known"))
+    return DeviceAnswer(Level.OK, _("it can be opened; what it should say is not known"))
 
 
 def recognised(heard: bytes) -> str:
@@ -63,7 +63,7 @@ def recognised(heard: bytes) -> str:
     return ""
 
 
-def _pico(line: Line) -> Answer:
+def _pico(line: OpenPort) -> DeviceAnswer:
     decoder = PicoDecoder()
     told: list[Telemetry | Welcome] = []
 
@@ -82,18 +82,20 @@ def _pico(line: Line) -> Answer:
     # One may have been cut by the opening of the port.
     garbled = decoder.errors > 1
     if welcome is None and garbled:
-        return Answer(Level.FAIL, _("some lines arrive garbled"), _better_cable())
+        return DeviceAnswer(Level.FAIL, _("some lines arrive garbled"), _better_cable())
     if welcome is None:
         text = _("telemetry comes, but no answer: what is sent does not arrive")
-        return Answer(Level.FAIL, text, _("check the cable; unplug the Pico and plug it in again"))
+        return DeviceAnswer(
+            Level.FAIL, text, _("check the cable; unplug the Pico and plug it in again")
+        )
     if welcome.protocol != PROTOCOL:
         text = _("the firmware speaks protocol {theirs}, this program {ours}")
         text = text.format(theirs=welcome.protocol, ours=PROTOCOL)
-        return Answer(Level.FAIL, text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
+        return DeviceAnswer(Level.FAIL, text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
     return _well_pico(welcome, telemetry, garbled=garbled)
 
 
-def _greet(line: Line, answered: Callable[[bytes], bool]) -> bytes:
+def _greet(line: OpenPort, answered: Callable[[bytes], bool]) -> bytes:
     """Say hello until that is answered, then hear for a while how well lines come."""
     heard = b""
     for _greeting in range(GREETINGS):
@@ -104,7 +106,7 @@ def _greet(line: Line, answered: Callable[[bytes], bool]) -> bytes:
     return heard
 
 
-def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) -> Answer:
+def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) -> DeviceAnswer:
     text = _("firmware {firmware}").format(firmware=welcome.firmware)
     if telemetry is not None and telemetry.battery_v is not None:
         text += ", " + _("battery {volts:.1f} V").format(volts=Prose(telemetry.battery_v))
@@ -122,19 +124,19 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) 
     if garbled:
         found.append((_("some lines arrive garbled"), _better_cable()))
     if not found:
-        return Answer(Level.OK, text)
+        return DeviceAnswer(Level.OK, text)
     text = ", ".join([text, *(words for words, _mend in found)])
-    return Answer(Level.WARN, text, "; ".join(dict.fromkeys(mend for _words, mend in found)))
+    return DeviceAnswer(Level.WARN, text, "; ".join(dict.fromkeys(mend for _words, mend in found)))
 
 
-def _python_prompt(heard: bytes) -> Answer | None:
+def _python_prompt(heard: bytes) -> DeviceAnswer | None:
     if b">>>" not in heard and b"MicroPython" not in heard and b"Traceback" not in heard:
         return None
     text = _("a Pico answers, but not with Deck's firmware")
-    return Answer(Level.FAIL, text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
+    return DeviceAnswer(Level.FAIL, text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
 
 
-def _sonar(kind: str, line: Line) -> Answer:
+def _sonar(kind: str, line: OpenPort) -> DeviceAnswer:
     decoder = TofDecoder()
     model = Model(kind)
     heard = line.hear(ANSWER_S, lambda data: len(decoder.feed(data)) > 0)
@@ -155,8 +157,8 @@ def _sonar(kind: str, line: Line) -> Answer:
     text = _("{distance}, {rate:.0f} readings a second").format(distance=_far(metres), rate=rate)
     if decoder.errors > before:
         garbled = _("{text}, many of them garbled").format(text=text)
-        return Answer(Level.WARN, garbled, _better_cable())
-    return Answer(Level.OK, text)
+        return DeviceAnswer(Level.WARN, garbled, _better_cable())
+    return DeviceAnswer(Level.OK, text)
 
 
 def _far(metres: float) -> str:
@@ -171,7 +173,7 @@ def _better_cable() -> str:
     return _("check the cable: keep it short, away from the motors', with a common ground")
 
 
-def _servos(line: Line) -> Answer:
+def _servos(line: OpenPort) -> DeviceAnswer:
     decoder = ServoDecoder()
     told: list[Battery] = []
 
@@ -186,21 +188,21 @@ def _servos(line: Line) -> Answer:
     heard += line.hear(ANSWER_S, take)
     if not told:
         return _nothing("lsc16", heard, line.baud)
-    return Answer(
+    return DeviceAnswer(
         Level.OK, _("battery {volts:.1f} V").format(volts=Prose(told[0].millivolts / 1000))
     )
 
 
-def _another(kind: str, heard: bytes) -> Answer:
+def _another(kind: str, heard: bytes) -> DeviceAnswer:
     text = _("{found} is talking here, not the {wanted}")
-    return Answer(
+    return DeviceAnswer(
         Level.FAIL,
         text.format(found=recognised(heard), wanted=NAMES[kind]),
         _("give each device its own port; ls -l /dev/serial/by-id tells which is which"),
     )
 
 
-def _nothing(kind: str, heard: bytes, baud: int) -> Answer:
+def _nothing(kind: str, heard: bytes, baud: int) -> DeviceAnswer:
     """Say that nothing of use came: garbage, or not a byte."""
     name = NAMES[kind]
     if heard:
@@ -208,12 +210,12 @@ def _nothing(kind: str, heard: bytes, baud: int) -> Answer:
             count=len(heard), name=name
         )
         mend = _("wrong baud (this is {baud}), another device, or a bad cable")
-        return Answer(Level.FAIL, text, mend.format(baud=baud))
+        return DeviceAnswer(Level.FAIL, text, mend.format(baud=baud))
     mends = {
         "pico": _("flash firmware/pico2 (docs/pico-firmware.md), or try another cable"),
         "lsc16": _("switch the board on; cross TX and RX, join the grounds; baud 9600"),
     }
     sonar = _("check its supply (5 V), its wiring and its mode: serial, not I2C; baud 115200")
-    return Answer(
+    return DeviceAnswer(
         Level.FAIL, _("the port is silent: no {name}").format(name=name), mends.get(kind, sonar)
     )

@@ -18,7 +18,7 @@ _READ_S, _WRITE_S = 0.05, 0.3
 _MOST = 4096
 
 
-class Line:
+class OpenPort:
     """An open port, to be closed."""
 
     def __init__(self, path: str, baud: int) -> None:

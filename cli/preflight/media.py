@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from cli.child_python import python
 from cli.doctor.finding import Level
 from cli.doctor.serial_ports import permission_mend
-from cli.preflight.answers import Answer
+from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
 from launcher.profile.device_variables import variable
 from text.i18n import _
@@ -42,7 +42,7 @@ print(json.dumps([[d["name"], d["max_input_channels"], d["max_output_channels"]]
 """
 
 
-def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
+def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnswer]:
     """Ask a camera for a picture; its name goes before the answer."""
     source = str(settings.get("source", "0"))
     name = f"/dev/video{int(source)}" if source.isdecimal() else source
@@ -53,32 +53,34 @@ def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
         there = ", ".join(map(str, sorted(Path("/dev").glob("video[0-9]*")))) or _("none")
         text = _("there is no such camera; cameras: {cameras}").format(cameras=there)
         mend = _("plug it in, or choose with {variable}=/dev/v4l/by-id/...")
-        return name, Answer(Level.FAIL, text, mend.format(variable=variable(device, "source")))
+        return name, DeviceAnswer(
+            Level.FAIL, text, mend.format(variable=variable(device, "source"))
+        )
     if not os.access(path, os.R_OK):
-        return name, Answer(Level.FAIL, _("no permission"), permission_mend(str(path)))
+        return name, DeviceAnswer(Level.FAIL, _("no permission"), permission_mend(str(path)))
     return name, _picture(str(path))
 
 
-def _picture(name: str) -> Answer:
+def _picture(name: str) -> DeviceAnswer:
     size = _run(PICTURE, name).strip()
     if size:
-        return Answer(Level.OK, _("a picture of {size}").format(size=size))
+        return DeviceAnswer(Level.OK, _("a picture of {size}").format(size=size))
     others = holders(name)
     if others:
         text = _("{names} has it open").format(names=", ".join(map(str, others)))
-        return Answer(Level.FAIL, text, _("close it; if it is a running robot: deck down"))
+        return DeviceAnswer(Level.FAIL, text, _("close it; if it is a running robot: deck down"))
     mend = _("is it a video, and does it answer?")
     if name.startswith("/dev/"):
         mend = _("it may be another device of the same camera: v4l2-ctl --list-devices")
-    return Answer(Level.FAIL, _("it gives no picture"), mend)
+    return DeviceAnswer(Level.FAIL, _("it gives no picture"), mend)
 
 
-def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
+def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnswer]:
     """Look for microphone and loudspeaker."""
     wanted = [(setting, str(settings.get(setting, ""))) for setting in ("microphone", "speaker")]
     wanted = [(setting, name) for setting, name in wanted if name != OFF]
     if not wanted:
-        return "", Answer(Level.OK, _("switched off"))
+        return "", DeviceAnswer(Level.OK, _("switched off"))
     try:
         there = json.loads(_run(SOUND) or "[]")
     except ValueError:
@@ -97,11 +99,13 @@ def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, Answer]:
         else:
             missing.append((setting, name))
     if not missing:
-        return "", Answer(Level.OK, ", ".join(dict.fromkeys(found)))
+        return "", DeviceAnswer(Level.OK, ", ".join(dict.fromkeys(found)))
     return "", _no_sound(device, missing, [str(each[0]) for each in there])
 
 
-def _no_sound(device: str, missing: Sequence[tuple[str, str]], there: Sequence[str]) -> Answer:
+def _no_sound(
+    device: str, missing: Sequence[tuple[str, str]], there: Sequence[str]
+) -> DeviceAnswer:
     titles = {"microphone": _("microphone"), "speaker": _("loudspeaker")}
     wishes = [f"{titles[setting]} {name}".rstrip() for setting, name in missing]
     text = _("not found: {missing}; sound devices: {names}").format(
@@ -109,7 +113,7 @@ def _no_sound(device: str, missing: Sequence[tuple[str, str]], there: Sequence[s
     )
     mend = _("plug it in, or give a part of its name to {variables}; `none` goes without")
     variables = ", ".join(variable(device, setting) for setting, _name in missing)
-    return Answer(Level.FAIL, text, mend.format(variables=variables))
+    return DeviceAnswer(Level.FAIL, text, mend.format(variables=variables))
 
 
 def _is(wanted: str, index: int, name: str) -> bool:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from cli.doctor.finding import Level
 from cli.doctor.serial_ports import permission_mend
-from cli.preflight.answers import Answer
+from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
-from cli.preflight.line import Line
+from cli.preflight.line import OpenPort
 from launcher.profile.serial_choice import how_to_choose
 from launcher.serial_ports import lasting_names
 from text.i18n import _, said
@@ -32,8 +32,8 @@ def opened(
     path: str,
     baud: int,
     ports: Sequence[SerialPort],
-    opening: Callable[[str, int], Line] = Line,
-) -> Line | Answer:
+    opening: Callable[[str, int], OpenPort] = OpenPort,
+) -> OpenPort | DeviceAnswer:
     """Return the open port of a device, or why there is none; `ports`: what there is instead."""
     if not os.path.lexists(path):
         return _missing(device, path, ports)
@@ -55,37 +55,39 @@ def advice(path: str) -> str:
     return ""
 
 
-def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPort]) -> Answer:
+def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPort]) -> DeviceAnswer:
     number = _number(error)
     if number in TAKEN:
         return _taken(path, holders(path))
     if number in DENIED:
-        return Answer(Level.FAIL, _("no permission"), permission_mend(path))
+        return DeviceAnswer(Level.FAIL, _("no permission"), permission_mend(path))
     if number in GONE:
         return _missing(device, path, ports)
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
-        return Answer(Level.FAIL, _("it is not a serial port"), str(said(how_to_choose(device))))
+        return DeviceAnswer(
+            Level.FAIL, _("it is not a serial port"), str(said(how_to_choose(device)))
+        )
     words = str(error).splitlines()[0] if str(error) else type(error).__name__
     mend = _("unplug the device, plug it in again, and look at: dmesg | tail")
-    return Answer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), mend)
+    return DeviceAnswer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), mend)
 
 
-def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> Answer:
+def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswer:
     dangling = os.path.islink(path)  # noqa: PTH114 - a device, not a file
     text = _("it has gone, only its name is left") if dangling else _("there is no such port")
     there = "; ".join(map(str, ports)) or _("none")
     text = _("{text}; ports: {ports}").format(text=text, ports=there)
     mend = _("plug it in, try another cable; or {choose}")
-    return Answer(Level.FAIL, text, mend.format(choose=said(how_to_choose(device))))
+    return DeviceAnswer(Level.FAIL, text, mend.format(choose=said(how_to_choose(device))))
 
 
-def _taken(path: str, others: Sequence[Holder]) -> Answer:
+def _taken(path: str, others: Sequence[Holder]) -> DeviceAnswer:
     if not others:
         mend = _("close that program; sudo fuser -v {path} tells which it is").format(path=path)
-        return Answer(Level.FAIL, _("another program is using it"), mend)
+        return DeviceAnswer(Level.FAIL, _("another program is using it"), mend)
     names = ", ".join(map(str, others))
     mend = _("close it; if it is a running robot: deck down")
-    return Answer(Level.FAIL, _("{names} has it open").format(names=names), mend)
+    return DeviceAnswer(Level.FAIL, _("{names} has it open").format(names=names), mend)
 
 
 def _number(error: Exception) -> int | None:

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cli.doctor.finding import Level
-from cli.preflight.answers import Answer, ask
+from cli.preflight.answers import DeviceAnswer, ask
 from cli.preflight.opening import advice, opened
 from launcher.profile.devices import wanted
 from launcher.profile.serial_choice import AUTO, Unclear, choose
@@ -24,7 +24,7 @@ BAUD = 115_200
 
 def ask_ports(
     devices: Mapping[str, Mapping[str, Any]], look: Callable[[], Sequence[SerialPort]]
-) -> dict[str, Callable[[], tuple[str, Answer]]]:
+) -> dict[str, Callable[[], tuple[str, DeviceAnswer]]]:
     """Return, for each device with a port, how to ask it: the port's name and the answer."""
     serial = wanted(devices)
     if not serial:
@@ -48,9 +48,9 @@ def _ask(
     paths: Mapping[str, str],
     chosen: SerialPort | Unclear | None,
     ports: Sequence[SerialPort],
-) -> tuple[str, Answer]:
+) -> tuple[str, DeviceAnswer]:
     if isinstance(chosen, Unclear):
-        return "", Answer(Level.FAIL, str(said(chosen.message)), str(said(chosen.hint)))
+        return "", DeviceAnswer(Level.FAIL, str(said(chosen.message)), str(said(chosen.hint)))
     return paths[device], _one(device, settings, paths, ports)
 
 
@@ -59,7 +59,7 @@ def _one(
     settings: Mapping[str, Any],
     paths: Mapping[str, str],
     ports: Sequence[SerialPort],
-) -> Answer:
+) -> DeviceAnswer:
     path = paths[device]
     twins = [
         other
@@ -69,22 +69,22 @@ def _one(
     if twins:
         text = _("the same port as {others}").format(others=", ".join(twins))
         mend = _("give each device its own port; ls -l /dev/serial/by-id tells which is which")
-        return Answer(Level.FAIL, text, mend)
+        return DeviceAnswer(Level.FAIL, text, mend)
     baud = settings.get("baud", BAUD)
     line = opened(device, path, baud if isinstance(baud, int) else BAUD, ports)
-    if isinstance(line, Answer):
+    if isinstance(line, DeviceAnswer):
         return line
     with closing(line):
         try:
             answer = ask(str(settings.get("kind", "")), line)
         except OSError as error:
             mend = _("check the cable and the supply")
-            return Answer(
+            return DeviceAnswer(
                 Level.FAIL, _("it disappeared while being asked: {error}").format(error=error), mend
             )
     lasting = advice(path)
     if answer.level is Level.OK and lasting:
         text = _("{text}; its name may belong to another device after it is plugged in again")
         mend = _("write {path}").format(path=lasting)
-        return Answer(Level.WARN, text.format(text=answer.text), mend)
+        return DeviceAnswer(Level.WARN, text.format(text=answer.text), mend)
     return answer

@@ -37,7 +37,7 @@ SHARED = frozenset({"/rosout"})
 
 
 @dataclass
-class Progress:
+class PublishingProgress:
     """How far it is."""
 
     seconds: float = 0.0
@@ -61,7 +61,7 @@ class BagPublisher:
 
         `stopped_by_zeros`: types of which an empty message is sent at the end.
         """
-        self.progress = Progress()
+        self.progress = PublishingProgress()
         self._bag = bag
         self._ros = ros
         self._stopped_by_zeros = frozenset(stopped_by_zeros)
@@ -86,7 +86,7 @@ class BagPublisher:
     def play(
         self,
         stop: threading.Event,
-        tell: Callable[[Progress], None],
+        tell: Callable[[PublishingProgress], None],
         *,
         rate: float = 1.0,
         start_s: float = 0.0,
@@ -104,7 +104,11 @@ class BagPublisher:
             self._end()
 
     def _once(
-        self, stop: threading.Event, tell: Callable[[Progress], None], rate: float, start_s: float
+        self,
+        stop: threading.Event,
+        tell: Callable[[PublishingProgress], None],
+        rate: float,
+        start_s: float,
     ) -> None:
         bag = self._bag
         begin_ns = bag.start_ns + round(start_s * 1e9)

@@ -11,7 +11,7 @@ from graph.messages.values import to_tree
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from graph.calls.goal_line import ActionLine, Heard
+    from graph.calls.goal_line import ActionLine, GoalAnswers
     from graph.messages.dated import Draft
 
 ANSWER_WITHIN_S = 5.0
@@ -87,7 +87,7 @@ class GoalLife:
         if self._result is not None or self._accepted is None:
             self._wants_cancel = True
 
-    def hear(self, heard: Heard) -> None:
+    def hear(self, heard: GoalAnswers) -> None:
         """Take in what has come."""
         if self._request in heard.accepted and self._accepted is None:
             self._answered(accepted=heard.accepted[self._request])

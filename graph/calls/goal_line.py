@@ -21,7 +21,7 @@ LOOK_AT_SERVERS_S = 0.25
 
 
 @dataclass
-class Heard:
+class GoalAnswers:
     """What came since the look before; responses by the number of their request."""
 
     accepted: dict[int, bool] = field(default_factory=dict)
@@ -113,9 +113,9 @@ class ActionLine:
         number: int = self._handle.send_cancel_request(request)
         return number
 
-    def take(self) -> Heard:
+    def take(self) -> GoalAnswers:
         """Take all that has come."""
-        heard = Heard()
+        heard = GoalAnswers()
         impl, handle = self.type.Impl, self._handle
         for number, response in _all(handle.take_goal_response, impl.SendGoalService.Response):
             heard.accepted[number] = response.accepted

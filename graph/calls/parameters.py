@@ -39,7 +39,7 @@ class _Talking:
     was_there: bool = False
 
 
-class Parameters:
+class ParameterCalls:
     """The talks that are under way."""
 
     def __init__(

@@ -35,7 +35,7 @@ underscore are the halves of services and actions."""
 
 
 @dataclass(frozen=True)
-class Field:
+class MessageField:
     """One field of a message."""
 
     name: str
@@ -69,7 +69,7 @@ class Part:
 
     name: str
     """`message`; `request`, `response`; `goal`, `result`, `feedback`."""
-    fields: tuple[Field, ...]
+    fields: tuple[MessageField, ...]
     constants: tuple[Constant, ...] = ()
 
 
@@ -135,10 +135,10 @@ def _part(name: str, cls: type[Any]) -> Part:
     return Part(name, tuple(fields), tuple(_constants(cls)))
 
 
-def _field(name: str, text: str, default: Value) -> Field:
+def _field(name: str, text: str, default: Value) -> MessageField:
     kind = parse(text)
     least, greatest = INTEGERS.get(kind.element, (None, None))
-    return Field(
+    return MessageField(
         name,
         ros_name(text),
         default,

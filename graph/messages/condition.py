@@ -51,7 +51,7 @@ class ConditionError(ValueError):
         super().__init__(str(self.words))
 
 
-class Condition:
+class MessageFilter:
     """An expression over a message that is called `m`."""
 
     def __init__(self, text: str) -> None:

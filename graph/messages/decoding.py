@@ -46,7 +46,7 @@ def read_image(raw: bytes) -> dict[str, Value] | None:
     if raw[:2] != LITTLE_ENDIAN_CDR:
         return None
     try:
-        reader = _Reader(raw)
+        reader = _CdrCursor(raw)
         tree: dict[str, Value] = {
             "header": {
                 "stamp": {"sec": reader.number("<i"), "nanosec": reader.number("<I")},
@@ -64,7 +64,7 @@ def read_image(raw: bytes) -> dict[str, Value] | None:
     return tree
 
 
-class _Reader:
+class _CdrCursor:
     """A place in plain CDR."""
 
     def __init__(self, raw: bytes) -> None:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from graph.calls.goals import Goals
 from graph.calls.goals_seen import SeenGoals
-from graph.calls.parameters import Parameters
+from graph.calls.parameters import ParameterCalls
 from graph.calls.services import Calls
 from graph.data import GraphUpdate
 from graph.observer.interest import Interest
 from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import Held
 from graph.publishing.outbox import Outbox
-from graph.publishing.publications import Publications
+from graph.publishing.publications import RepeatedPublications
 from graph.scan.scan import Scan, Signature, is_complete, scan, signature
 
 if TYPE_CHECKING:
@@ -39,9 +39,9 @@ class ObserverNode:
         self.outbox = Outbox(ros.node)
         self.goals = Goals(ros.node)
         self.seen_goals = SeenGoals(ros.node, self.goals.has_sent)
-        self.publications = Publications(ros.node)
+        self.publications = RepeatedPublications(ros.node)
         self.held = Held(ros.node)
-        self.parameters = Parameters(self.calls, self._known_node, self._known_service)
+        self.parameters = ParameterCalls(self.calls, self._known_node, self._known_service)
         self.breathe: Callable[[], object] = _nothing
         """Called again and again by what takes its time, for what cannot wait."""
         self._ros = ros

@@ -112,7 +112,7 @@ class Grip:
 
 
 @dataclass
-class _Line:
+class _HeldTopic:
     """One topic with its publisher."""
 
     publisher: Publisher
@@ -127,7 +127,7 @@ class Held:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._lines: dict[str, _Line] = {}
+        self._lines: dict[str, _HeldTopic] = {}
 
     def knows(self, topic: str) -> bool:
         """Whether there is a publisher already."""
@@ -142,7 +142,7 @@ class Held:
         qos = to_be_heard(ends.subscribers if ends else ())
         publisher = open_publisher(self._node, topic, cls, qos, DEPTH)
         grip = Grip(lambda value: self._send(topic, value))
-        self._lines[topic] = _Line(publisher, type_name, cls, qos, grip)
+        self._lines[topic] = _HeldTopic(publisher, type_name, cls, qos, grip)
 
     def hold(self, topic: str, word: Holding) -> int:
         """Publish until the word is good no more; return how many are matched now.
@@ -175,7 +175,7 @@ class Held:
         dues_s = [self._step(line) for line in self._lines.values()]
         return min((due_s for due_s in dues_s if due_s is not None), default=None)
 
-    def _step(self, line: _Line) -> float | None:
+    def _step(self, line: _HeldTopic) -> float | None:
         try:
             return line.grip.step(time.monotonic())
         except Exception:

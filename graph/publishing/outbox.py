@@ -44,7 +44,7 @@ class PublishError(Exception):
 
 
 @dataclass
-class _Line:
+class _PendingPublisher:
     """One publisher and what waits for its subscribers."""
 
     node: Node
@@ -104,7 +104,7 @@ class Outbox:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._born_s = time.monotonic()
-        self._lines: dict[tuple[str, str, bool], _Line] = {}
+        self._lines: dict[tuple[str, str, bool], _PendingPublisher] = {}
 
     def knows_latched(self, topic: str, type_name: str) -> bool:
         """Whether there is a latched publisher already."""
@@ -154,7 +154,9 @@ class Outbox:
             while line.waiting:
                 line.waiting.popleft()[1].set_exception(error)
 
-    def _line(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> _Line:
+    def _line(
+        self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool
+    ) -> _PendingPublisher:
         refuse_other_type(topic, type_name, ends)
         subscribers = ends.subscribers if ends else ()
         qos = Qos(RELIABLE, TRANSIENT_LOCAL) if latched else to_be_heard(subscribers)
@@ -168,12 +170,12 @@ class Outbox:
             self._lines[key] = line
         return line
 
-    def _open(self, topic: str, type_name: str, qos: Qos, expected: int) -> _Line:
+    def _open(self, topic: str, type_name: str, qos: Qos, expected: int) -> _PendingPublisher:
         cls = load_message(type_name)
         publisher = open_publisher(self._node, topic, cls, qos)
         now_s = time.monotonic()
         patience_ends_s = max(now_s + MATCH_WITHIN_S, self._born_s + DISCOVERY_S)
-        return _Line(self._node, publisher, cls, qos, expected, patience_ends_s)
+        return _PendingPublisher(self._node, publisher, cls, qos, expected, patience_ends_s)
 
 
 def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> None:

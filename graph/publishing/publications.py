@@ -72,7 +72,7 @@ class _Repeated:
         )
 
 
-class Publications:
+class RepeatedPublications:
     """Everything that is being published, each with a publisher of its own."""
 
     def __init__(self, node: Node) -> None:

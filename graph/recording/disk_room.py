@@ -30,7 +30,7 @@ def free_bytes(folder: Path) -> int:
     return found.f_bavail * found.f_frsize
 
 
-class Room:
+class DiskRoom:
     """Watches the disk below a folder while a recording goes on."""
 
     def __init__(

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.recording.disk_room import RESERVE_BYTES, Room
-from graph.recording.topics import Choice, RecordingTopics
+from graph.recording.disk_room import RESERVE_BYTES, DiskRoom
+from graph.recording.topics import RecordingTopics, TopicChoice
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -99,8 +99,8 @@ class Recorder:
         self._domain = domain
         self._discovery = discovery
         self._folder = folder
-        self._choice = Choice(None if topics is None else frozenset(topics), hidden, images)
-        self._room = Room(folder, reserve_bytes)
+        self._choice = TopicChoice(None if topics is None else frozenset(topics), hidden, images)
+        self._room = DiskRoom(folder, reserve_bytes)
         self._error = ""
         self._since_s = time.time()
         self._begun_s = time.monotonic()

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 IMAGES = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"})
 
 
-class Choice(NamedTuple):
+class TopicChoice(NamedTuple):
     """Which topics are to be recorded."""
 
     topics: frozenset[str] | None = None
@@ -45,7 +45,7 @@ class Choice(NamedTuple):
 class RecordingTopics:
     """All subscriptions of a recording; used by the recorder's thread alone."""
 
-    def __init__(self, node: Node, choice: Choice, writer: RecordingWriter) -> None:
+    def __init__(self, node: Node, choice: TopicChoice, writer: RecordingWriter) -> None:
         self.skipped: dict[str, str] = {}
         """Topic to why it cannot be recorded."""
         self._node = node

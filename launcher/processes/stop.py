@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Pace:
+class StopTimeouts:
     """How long each stage is given."""
 
     interrupt_s: float
@@ -28,8 +28,8 @@ class Pace:
         return (elapsed_s >= self.interrupt_s) + (elapsed_s >= self.interrupt_s + self.terminate_s)
 
 
-PATIENT = Pace(5.0, 5.0)
-QUICK = Pace(0.7, 0.4)
+PATIENT = StopTimeouts(5.0, 5.0)
+QUICK = StopTimeouts(0.7, 0.4)
 """For whoever asks twice, and for a robot whose owner is gone: over well within 2 s."""
 
 STAGES = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
@@ -47,7 +47,7 @@ class Target(Protocol):
         """Send one of them a signal."""
 
 
-class Stop:
+class StagedStop:
     """One stop under way."""
 
     def __init__(
@@ -55,7 +55,7 @@ class Stop:
         target: Target,
         clock: Clock,
         on_holdup: Callable[[Sequence[Process], signal.Signals], None],
-        pace: Pace = PATIENT,
+        pace: StopTimeouts = PATIENT,
     ) -> None:
         """`on_holdup` hears who is left, and the last signal, whenever that has changed."""
         self._target = target
@@ -104,7 +104,7 @@ async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Pro
 
     async def end() -> None:
         while True:
-            await Stop(target, clock, _say_nothing, QUICK).run()
+            await StagedStop(target, clock, _say_nothing, QUICK).run()
             if not target.left():
                 return
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.profile.device_variables import variable
 from launcher.profile.references import Filler, used_devices
-from launcher.profile.serial_choice import AUTO, KINDS, Unclear, Wanted, choose
+from launcher.profile.serial_choice import AUTO, KINDS, Unclear, WantedPort, choose
 from launcher.profile.tree import Branch, Entry, Listing, Problems, Scalar, find, place_of, plain
 from launcher.profile.when import HARDWARE
 from launcher.profile.yaml_tree import read_value
@@ -69,9 +69,9 @@ def with_devices(
     return _replaced(tree, "nodes", Filler(settings, places, problems).nodes(nodes.value))
 
 
-def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, Wanted]:
+def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, WantedPort]:
     """Return what is known of the ports of devices, {"pico": {"port": "auto", "kind": "pico"}}."""
-    found: dict[str, Wanted] = {}
+    found: dict[str, WantedPort] = {}
     for device, settings in devices.items():
         port = settings.get("port") if isinstance(settings, dict) else None
         if not isinstance(port, str):
@@ -79,7 +79,7 @@ def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, Wanted]:
         ids = settings.get(LISTED) or KINDS.get(str(settings.get("kind", "")), ())
         ids = (ids,) if isinstance(ids, str) else ids
         path = port if port == AUTO else os.path.realpath(port)
-        found[device] = Wanted(path, tuple(str(each).lower() for each in ids))
+        found[device] = WantedPort(path, tuple(str(each).lower() for each in ids))
     return found
 
 

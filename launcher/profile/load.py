@@ -73,7 +73,7 @@ def load_profile(
     used = used_devices(tree, hardware)
     tree = with_devices(tree, hardware, places, env, problems, ports)
     document, valid = validate(tree, problems)
-    reader = _Reader(path.absolute(), tree, problems, used)
+    reader = _SpecBuilder(path.absolute(), tree, problems, used)
     nodes = reader.nodes(valid, hardware)
     nodes = read_sets(overrides, nodes, set(valid) - set(nodes), problems)
     if problems.found or document is None:
@@ -93,7 +93,7 @@ def _early_domain(tree: Branch, asked: int | None, environ: Mapping[str, str]) -
 
 
 @dataclass
-class _Reader:
+class _SpecBuilder:
     """Turns validated documents into what is started."""
 
     path: Path

@@ -29,7 +29,7 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True)
-class Wanted:
+class WantedPort:
     """What is known of a device's port."""
 
     port: str = AUTO
@@ -47,7 +47,7 @@ class Unclear:
 
 
 def choose(
-    wanted: Mapping[str, Wanted], ports: Sequence[SerialPort]
+    wanted: Mapping[str, WantedPort], ports: Sequence[SerialPort]
 ) -> dict[str, SerialPort | Unclear]:
     """Return for each device with `auto` its port, or why there is none.
 
@@ -75,7 +75,7 @@ def how_to_choose(device: str) -> str:
 
 def _one(
     device: str,
-    wanted: Wanted,
+    wanted: WantedPort,
     fitting: Mapping[str, Sequence[SerialPort]],
     ports: Sequence[SerialPort],
 ) -> SerialPort | Unclear:

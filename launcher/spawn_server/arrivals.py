@@ -46,7 +46,7 @@ class _Counter:
         return (self._stamps[-1] - self._stamps[0]) / (COUNTED - 1)
 
 
-class Arrivals:
+class MessageRates:
     """Counts the messages of topics from the first time that is asked for."""
 
     def __init__(self, node: Node) -> None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-    from launcher.spawn_server.arrivals import Arrivals
+    from launcher.spawn_server.arrivals import MessageRates
 
 EAGER_S = 10.0
 """For so long it looks often: a start is under way."""
@@ -56,7 +56,7 @@ def probe(argv: Sequence[str]) -> None:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    from launcher.spawn_server.arrivals import Arrivals
+    from launcher.spawn_server.arrivals import MessageRates
 
     conditions = [_Wanted(*fields) for fields in json.loads(argv[0])]
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
@@ -68,13 +68,13 @@ def probe(argv: Sequence[str]) -> None:
         start_parameter_services=False,
     )
     try:
-        _watch(node, conditions, Arrivals(node))
+        _watch(node, conditions, MessageRates(node))
     finally:
         node.destroy_node()
         rclpy.shutdown()
 
 
-def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: Arrivals) -> None:
+def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates) -> None:
     started = time.monotonic()
     told: _Report | None = None
     told_at = 0.0
@@ -91,7 +91,7 @@ def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: Arrivals) -> Non
             return
 
 
-def _look(node: Node, conditions: Sequence[_Wanted], arrivals: Arrivals) -> _Report:
+def _look(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates) -> _Report:
     names = {f"{space.rstrip('/')}/{name}" for name, space in node.get_node_names_and_namespaces()}
     report = _Report()
     for position, wanted in enumerate(conditions):

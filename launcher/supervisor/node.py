@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from launcher.processes.exit import Exit
-from launcher.processes.stop import PATIENT, QUICK, Stop
+from launcher.processes.stop import PATIENT, QUICK, StagedStop
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeState, NodeStatus, Severity
 from launcher.supervisor.readiness import UnwatchableError
@@ -54,10 +54,10 @@ class _Now:
 
     process: RunningProcess
     started: float
-    stop: Stop | None = None
+    stop: StagedStop | None = None
 
 
-class Node:
+class SupervisedNode:
     """One node of the session."""
 
     def __init__(self, plan: NodePlan, around: Surroundings) -> None:
@@ -248,7 +248,7 @@ class Node:
 
     async def _end_all_of_it(self, now: _Now) -> None:
         """Stop what is left: all of it if it is to go down, else what its end has left behind."""
-        now.stop = Stop(
+        now.stop = StagedStop(
             now.process, self._around.clock, self._held_up, QUICK if self._hurried else PATIENT
         )
         if now.process.ended.done() and not self._down:

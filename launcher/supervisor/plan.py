@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
 from launcher.profile.driving import drives
-from launcher.supervisor.readiness import Condition
+from launcher.supervisor.readiness import ReadyCondition
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,7 +43,7 @@ class NodePlan:
     """What differs from the supervisor's environment; None unsets."""
     cwd: str = "/"
     needs: tuple[str, ...] = ()
-    ready: Condition | None = None
+    ready: ReadyCondition | None = None
     within_s: float = 10.0
     restart: str = "never"
     optional: bool = False
@@ -108,7 +108,7 @@ def _node_from(fields: dict[str, Any]) -> NodePlan:
     for key in ("argv", "module", "needs"):
         fields[key] = tuple(fields[key])
     if fields["ready"] is not None:
-        fields["ready"] = Condition(**fields["ready"])
+        fields["ready"] = ReadyCondition(**fields["ready"])
     return NodePlan(**fields)
 
 
@@ -171,7 +171,7 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         needs=tuple(node.needs),
         ready=None
         if ready is None
-        else Condition(ready.kind, ready.name, ready.type, ready.rate_hz),
+        else ReadyCondition(ready.kind, ready.name, ready.type, ready.rate_hz),
         within_s=10.0 if ready is None else ready.within_s,
         restart=said.restart,
         optional=said.optional,

@@ -30,7 +30,7 @@ LINGER_S = 5.0
 
 
 @dataclass(frozen=True)
-class Condition:
+class ReadyCondition:
     """What must be in the ROS graph."""
 
     kind: str
@@ -61,7 +61,7 @@ class Readiness:
 
     def __init__(
         self,
-        conditions: Sequence[Condition],
+        conditions: Sequence[ReadyCondition],
         spawner: Spawner,
         reaper: Reaper,
         env: Mapping[str, str | None],
@@ -71,9 +71,11 @@ class Readiness:
         self._spawner = spawner
         self._reaper = reaper
         self._env = env
-        self._waiters: dict[asyncio.Future[None], tuple[Condition, Callable[[Seen], None]]] = {}
-        self._holding: frozenset[Condition] = frozenset()
-        self._seen: dict[Condition, Seen] = {}
+        self._waiters: dict[
+            asyncio.Future[None], tuple[ReadyCondition, Callable[[Seen], None]]
+        ] = {}
+        self._holding: frozenset[ReadyCondition] = frozenset()
+        self._seen: dict[ReadyCondition, Seen] = {}
         self._task: asyncio.Task[None] | None = None
         self._linger: asyncio.TimerHandle | None = None
 
@@ -83,7 +85,7 @@ class Readiness:
             self._task = asyncio.create_task(self._watch())
             self._stop_later()
 
-    async def until(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+    async def until(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
         """Return once `condition` holds; `tell` what is there instead whenever that changes.
 
         Raises:
@@ -171,7 +173,7 @@ class Readiness:
         finally:
             transport.close()
 
-    def _learn(self, holding: frozenset[Condition], seen: dict[Condition, Seen]) -> None:
+    def _learn(self, holding: frozenset[ReadyCondition], seen: dict[ReadyCondition, Seen]) -> None:
         before, self._holding, self._seen = self._seen, holding, seen
         for future, (condition, tell) in self._waiters.items():
             if future.done():

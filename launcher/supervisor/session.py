@@ -10,7 +10,7 @@ from launcher.errors import UnknownNodeError
 from launcher.logs.book import DECK
 from launcher.processes.usage import UsageMeter
 from launcher.status import NodeState, Severity
-from launcher.supervisor.node import Node
+from launcher.supervisor.node import SupervisedNode
 from launcher.supervisor.order import needed_by, stop_waves
 from launcher.supervisor.readiness import Readiness
 from launcher.supervisor.shared_memory import SharedMemory
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from launcher.logs.book import LogBook
     from launcher.supervisor.plan import NodePlan, Plan
     from launcher.supervisor.process import NodeProcess, ProcessLauncher
-    from launcher.supervisor.readiness import Condition, Seen
+    from launcher.supervisor.readiness import ReadyCondition, Seen
 
 USAGE_EVERY_S = 2.0
 
@@ -42,7 +42,7 @@ class Session:
         self.clock: Clock = MonotonicClock()
         self.plan = plan
         self.book = book
-        self.nodes = {node.name: Node(node, self) for node in plan.nodes}
+        self.nodes = {node.name: SupervisedNode(node, self) for node in plan.nodes}
         self._launcher = launcher
         self._on_change = on_change
         self._meter = UsageMeter()
@@ -144,7 +144,7 @@ class Session:
         self.processes[plan.name] = (process.pid, process.started_ticks)
         return process
 
-    async def ready(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+    async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
         """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
         await self._readiness.until(condition, tell)
 
@@ -175,7 +175,7 @@ class Session:
                 other.needs_changed()
 
 
-def _with_state(node: Node) -> str:
+def _with_state(node: SupervisedNode) -> str:
     if node.state in (NodeState.STARTING, NodeState.WAITING):
         return node.plan.name
     if node.state is NodeState.RUNNING:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from launcher.processes.exit import Exit
     from launcher.status import NodeState, Severity
     from launcher.supervisor.plan import NodePlan
-    from launcher.supervisor.readiness import Condition, Seen
+    from launcher.supervisor.readiness import ReadyCondition, Seen
 
 
 class RunningProcess(Target, Protocol):
@@ -35,7 +35,7 @@ class Surroundings(Protocol):
     async def launch(self, plan: NodePlan) -> RunningProcess:
         """Start the node's process; raises `SpawnError`."""
 
-    async def ready(self, condition: Condition, tell: Callable[[Seen], None]) -> None:
+    async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
         """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
 
     def missing(self, plan: NodePlan) -> str:

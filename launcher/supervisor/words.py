@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from launcher.processes.exit import Exit
     from launcher.processes.table import Process
     from launcher.supervisor.plan import NodePlan
-    from launcher.supervisor.readiness import Condition, Seen
+    from launcher.supervisor.readiness import ReadyCondition, Seen
 
 NOT_EXECUTABLE, NOT_FOUND = 126, 127
 NOT_FOUND_WORDS = "deck: command not found"
@@ -47,7 +47,7 @@ def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
     return say("{how}: {last}", how=how, last=_short(last)) if told else how
 
 
-def what(condition: Condition) -> str:
+def what(condition: ReadyCondition) -> str:
     """What is waited for."""
     if condition.kind == "topic":
         if condition.type:
@@ -58,7 +58,7 @@ def what(condition: Condition) -> str:
     return say("node {name} in the graph", name=condition.name)
 
 
-def instead(condition: Condition, seen: Seen) -> str:
+def instead(condition: ReadyCondition, seen: Seen) -> str:
     """What there is in place of what is waited for: another type, or too few messages."""
     if condition.type and condition.type not in seen.types:
         return say(
@@ -81,13 +81,13 @@ def instead(condition: Condition, seen: Seen) -> str:
     )
 
 
-def late(condition: Condition, seen: Seen | None, within_s: float) -> str:
+def late(condition: ReadyCondition, seen: Seen | None, within_s: float) -> str:
     """That the time to become ready is up, and why."""
     why = lack(condition) if seen is None else instead(condition, seen)
     return say("not ready within {seconds:g} s: {why}", seconds=within_s, why=why)
 
 
-def lack(condition: Condition) -> str:
+def lack(condition: ReadyCondition) -> str:
     """What is missing, where it was waited for in vain."""
     if condition.kind == "topic":
         return say("nobody publishes {name}", name=condition.name)
@@ -96,7 +96,7 @@ def lack(condition: Condition) -> str:
     return say("node {name} is not in the graph", name=condition.name)
 
 
-def left_undone(condition: Condition) -> str:
+def left_undone(condition: ReadyCondition) -> str:
     """What goes undone when a node ends, however well; empty if it need only have been there."""
     if condition.kind == "topic":
         return say("ended by itself; it was to publish {name}", name=condition.name)

@@ -46,7 +46,7 @@ _NO_ANSWER = Phrase(
 )
 
 
-class Kind(Enum):
+class SourceKind(Enum):
     """What a source is."""
 
     DEVICE = "device"
@@ -61,11 +61,11 @@ class CameraSource:
     name: str
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> SourceKind:
         """Told by its name alone."""
         if self.name.isdecimal() or self.name.startswith("/dev/"):
-            return Kind.DEVICE
-        return Kind.STREAM if "://" in self.name else Kind.FILE
+            return SourceKind.DEVICE
+        return SourceKind.STREAM if "://" in self.name else SourceKind.FILE
 
     @property
     def path(self) -> Path:
@@ -76,7 +76,7 @@ class CameraSource:
 
     def __str__(self) -> str:
         """To be shown: without the password of a URL."""
-        if self.kind is Kind.STREAM:
+        if self.kind is SourceKind.STREAM:
             return re.sub(r"(://[^/@\s:]*):[^/@\s]*@", r"\1:***@", self.name)
         return str(self.path)
 
@@ -86,7 +86,7 @@ class CameraSource:
         if not capture.isOpened():
             capture.release()
             return None
-        if self.kind is Kind.DEVICE:
+        if self.kind is SourceKind.DEVICE:
             import cv2
 
             capture.set(cv2.CAP_PROP_FRAME_WIDTH, width)
@@ -95,10 +95,10 @@ class CameraSource:
 
     def why_not(self) -> Phrase:
         """Why it does not open, or gives no picture, and the mend; for `source` and `others`."""
-        if self.kind is Kind.STREAM:
+        if self.kind is SourceKind.STREAM:
             return _NO_ANSWER
         there = self.path.exists()
-        if self.kind is Kind.DEVICE:
+        if self.kind is SourceKind.DEVICE:
             if not there:
                 return _NO_CAMERA
             if not self.path.is_char_device():
@@ -111,9 +111,9 @@ class CameraSource:
     def _open(self) -> cv2.VideoCapture:
         import cv2
 
-        if self.kind is Kind.DEVICE:
+        if self.kind is SourceKind.DEVICE:
             return cv2.VideoCapture(str(self.path), cv2.CAP_V4L2)
-        if self.kind is Kind.FILE:
+        if self.kind is SourceKind.FILE:
             return cv2.VideoCapture(str(self.path), cv2.CAP_FFMPEG)
         patience = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, _TIMEOUT_MS]
         patience += [cv2.CAP_PROP_READ_TIMEOUT_MSEC, _TIMEOUT_MS]

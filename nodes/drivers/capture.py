@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
-from nodes.drivers.camera_source import Kind, cameras
+from nodes.drivers.camera_source import SourceKind, cameras
 from nodes.parts.speech import Phrase
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class Capture:
         wait_s = _FIRST_WAIT_S
         while not self._ending.is_set():
             count = self._show()
-            if count and self.source.kind is Kind.FILE:
+            if count and self.source.kind is SourceKind.FILE:
                 if self._loop:
                     wait_s = _FIRST_WAIT_S
                     continue
@@ -132,7 +132,7 @@ class Capture:
         finally:
             film.release()
         count = self.pictures.came - before
-        if not self._ending.is_set() and not (count and self.source.kind is Kind.FILE):
+        if not self._ending.is_set() and not (count and self.source.kind is SourceKind.FILE):
             self._lose(count)
         return count
 
@@ -161,7 +161,7 @@ class Capture:
         """Seconds between two pictures of a file, 0 for what has a pace of its own."""
         import cv2
 
-        if self.source.kind is not Kind.FILE:
+        if self.source.kind is not SourceKind.FILE:
             return 0.0
         fps = film.get(cv2.CAP_PROP_FPS)
         return 1.0 / fps if 0.0 < fps <= _MOST_FPS else 1.0 / self._rate_hz()

@@ -76,7 +76,7 @@ def choose(
     return next(iter(same or [at for at, name in names.items() if asked in name]), None)
 
 
-class Line:
+class AudioPipe:
     """Moves the bytes between PortAudio's thread and a pipe."""
 
     def __init__(self) -> None:
@@ -162,7 +162,7 @@ def load() -> ModuleType:
 
 
 def open_stream(
-    sound: ModuleType, way: str, wanted: str, rate_hz: int, block_ms: int, line: Line
+    sound: ModuleType, way: str, wanted: str, rate_hz: int, block_ms: int, line: AudioPipe
 ) -> Stream:
     """Open and start the device, at its own rate if it cannot do the one that is asked for."""
     devices = sound.query_devices()
@@ -194,7 +194,7 @@ def open_stream(
 
 def run(way: str, wanted: str, rate_hz: int, block_ms: int) -> NoReturn:
     """Move sound until the node is gone or the device is."""
-    line = Line()
+    line = AudioPipe()
     stream = open_stream(load(), way, wanted, rate_hz, block_ms, line)
     most = int(stream.samplerate) * block_ms // 1000 * SAMPLE
     told_s = line.stirred_s = time.monotonic()

@@ -16,7 +16,7 @@ from diagnostic_msgs.msg import KeyValue
 from nodes.drivers.serial_link import SerialLink
 from nodes.parts.speech import Phrase
 from robot.frames.lsc16 import ServoReader
-from robot.wire.lsc16 import Battery, BatteryRequest, Move, ServoDecoder, encode
+from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder, ServoMove, encode
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -78,7 +78,7 @@ class ServoClient:
 
     def move(self, pulses_us: tuple[tuple[int, int], ...], time_ms: int) -> bool:
         """Send servos to pulses; False if there is nobody to send it to."""
-        return self.trouble() is None and self.link.write(encode(Move(time_ms, pulses_us)))
+        return self.trouble() is None and self.link.write(encode(ServoMove(time_ms, pulses_us)))
 
     def trouble(self) -> str | None:
         """Why nobody would obey a move now, None if somebody would."""

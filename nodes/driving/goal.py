@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from deck_interfaces.action import DriveToPoint
 from rclpy.task import Future
 
-from robot.motion.approach import Progress
+from robot.motion.approach import ApproachProgress
 
 if TYPE_CHECKING:
     from rclpy.action.server import ServerGoalHandle
@@ -29,7 +29,7 @@ class DriveGoal:
         self.over = Future()
         """Gets the result of the action."""
         self._patience_s = patience_s
-        self._progress: Progress | None = None
+        self._progress: ApproachProgress | None = None
         self._began_s = time.monotonic()
         self._told_s = 0.0
 
@@ -42,12 +42,12 @@ class DriveGoal:
         """Metres still to go; nan if it is not known where the robot is."""
         return math.nan if pose is None else pose.distance_to(self.approach.goal)
 
-    def watch(self, pose: Pose) -> Progress:
+    def watch(self, pose: Pose) -> ApproachProgress:
         """How it gets on, with the newest pose taken into account."""
         now_s = time.monotonic()
         if self._progress is None:
             longest_m = self.approach.longest_way_m(pose)
-            self._progress = Progress(longest_m, self._patience_s, pose, now_s)
+            self._progress = ApproachProgress(longest_m, self._patience_s, pose, now_s)
         self._progress.take(pose, now_s)
         return self._progress
 

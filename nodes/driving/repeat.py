@@ -13,7 +13,7 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 
 from nodes.parts.drive import to_message
-from nodes.parts.emergency import EmergencyStop
+from nodes.parts.emergency import EmergencyStopListener
 from nodes.parts.parameters import Number
 from nodes.parts.qos import DEPTH
 from nodes.parts.speech import Phrase
@@ -48,7 +48,7 @@ class DriveVoice:
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
         self._setpoint, self._until_s = STOP, 0.0
         if self._for_s:
-            self._emergency = EmergencyStop(node, self._emergency_changed)
+            self._emergency = EmergencyStopListener(node, self._emergency_changed)
             self._timer = node.every(_EVERY_S, self._again)
             self._timer.cancel()
 

@@ -13,7 +13,7 @@ _WATCH_S = 5.0
 """Who is heard for the first time later than this after the start came later too."""
 
 
-class Arrivals:
+class FirstHeard:
     """Watches who is heard for the first time after the start."""
 
     def __init__(self) -> None:

@@ -15,7 +15,7 @@ from std_msgs.msg import Bool
 
 from nodes.parts.qos import DEPTH, LATCHED
 from nodes.parts.speech import Phrase
-from nodes.parts.stop_memory import Stop, StopMemory
+from nodes.parts.stop_memory import KeptStop, StopMemory
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ _HELD = Phrase("emergency stop until it is released", "аварийный сто
 _FREE = Phrase("no emergency stop", "аварийного стопа нет")
 
 
-class EmergencyStop:
+class EmergencyStopListener:
     """Listens to /emergency_stop, and remembers what was heard.
 
     Listens twice: the latched subscription learns of a stop that came before this node, but ROS
@@ -92,7 +92,7 @@ class EmergencyStop:
         """Stop until it is released, whoever has asked for it; for the node's own thread."""
         if self._stop is not None:
             return
-        self._stop = Stop(time.time(), by)
+        self._stop = KeptStop(time.time(), by)
         self._changed(True)
         if by == TOPIC:
             self._suspects = {bytes(one.endpoint_gid) for one in self._publishers()}
@@ -129,7 +129,7 @@ class EmergencyStop:
         if self._stop is not None and not self._stop.unreadable:
             self._keep(self._stop)
 
-    def _name_suspects(self, stop: Stop) -> None:
+    def _name_suspects(self, stop: KeptStop) -> None:
         """Tell who may have said it; the name of a new publisher is known a little later."""
         names = set(stop.publishers.split())
         unnamed = set()
@@ -145,12 +145,12 @@ class EmergencyStop:
     def _publishers(self) -> list[TopicEndpointInfo]:
         return list(self._node.get_publishers_info_by_topic(EMERGENCY_STOP))
 
-    def _keep(self, stop: Stop) -> None:
+    def _keep(self, stop: KeptStop) -> None:
         problem = self._memory.keep(stop)
         if problem:
             self._node.say.error(_NOT_KEPT, every_s=10.0, problem=problem)
 
-    def _tell_remembered(self, stop: Stop) -> None:
+    def _tell_remembered(self, stop: KeptStop) -> None:
         if stop.unreadable:
             self._node.say.error(_UNREADABLE, problem=stop.unreadable)
         else:
@@ -172,7 +172,7 @@ def _free(since_s: float) -> dict[str, str]:
     return {"engaged": "false", "since": f"{since_s:.3f}"}
 
 
-def _held(stop: Stop) -> dict[str, str]:
+def _held(stop: KeptStop) -> dict[str, str]:
     return {
         "engaged": "true",
         "since": f"{stop.since_s:.3f}",

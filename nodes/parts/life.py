@@ -23,7 +23,7 @@ from rclpy.logging import get_logger
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
-from nodes.parts.node import LessonNode, UsageError
+from nodes.parts.node import LessonNode, NodeUsageError
 from nodes.parts.speech import Phrase, Speech, language
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
     ending = Ending()
     try:
         return _live(node_type, arguments, ending)
-    except UsageError as error:
+    except NodeUsageError as error:
         speech = Speech(get_logger(node_type.NAME), language(os.environ))
         speech.fatal(error.phrase, **error.values)
         return USAGE
@@ -73,14 +73,14 @@ def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> 
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
         # rclpy's own error types are not public; the tail of the message is a place in C code.
-        raise UsageError(_FAILED, problem=str(error).split(", at /")[0]) from None
+        raise NodeUsageError(_FAILED, problem=str(error).split(", at /")[0]) from None
     extra = [word for word in remove_ros_args(arguments) if word]
     if extra:
-        raise UsageError(_NO_ARGUMENTS, extra=" ".join(extra))
+        raise NodeUsageError(_NO_ARGUMENTS, extra=" ".join(extra))
     try:
         node = node_type()
     except NameValidationException as error:
-        raise UsageError(_FAILED, problem=" ".join(str(error).split())) from None
+        raise NodeUsageError(_FAILED, problem=" ".join(str(error).split())) from None
     # What is there by now stays: to look through it for garbage would hold up a callback.
     gc.freeze()
     executor = SingleThreadedExecutor()

@@ -41,7 +41,7 @@ _OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.
 """Beginnings of names that rclpy sees to by itself."""
 
 
-class UsageError(Exception):
+class NodeUsageError(Exception):
     """The node cannot start as it was asked to; nothing is wrong with its code."""
 
     def __init__(self, phrase: Phrase, **values: object) -> None:
@@ -57,7 +57,7 @@ def change_period(timer: Timer, period_s: float) -> None:
 
 
 class LessonNode(Node):
-    """Base of the lesson nodes; raises `UsageError` for parameters that make no sense."""
+    """Base of the lesson nodes; raises `NodeUsageError` for parameters that make no sense."""
 
     NAME: ClassVar[str]
     """Name in the graph, unless it is remapped."""
@@ -139,18 +139,18 @@ class LessonNode(Node):
             try:
                 self._values[name] = setting.accept(value)
             except BadValueError as error:
-                raise UsageError(_BAD_VALUE, **self._complaint(setting, value, error)) from None
+                raise NodeUsageError(_BAD_VALUE, **self._complaint(setting, value, error)) from None
             self.declare_parameter(
                 name, self._values[name], setting.descriptor(), ignore_override=True
             )
         problem = self.contradiction(self._values)
         if problem is not None:
-            raise UsageError(problem, **self._values)
+            raise NodeUsageError(problem, **self._values)
 
-    def _unknown(self, name: str) -> UsageError:
+    def _unknown(self, name: str) -> NodeUsageError:
         if meant := nearest(name, self._settings):
-            return UsageError(_UNKNOWN_NEAR, name=name, near=meant)
-        return UsageError(_UNKNOWN, name=name, known=", ".join(self._settings) or "-")
+            return NodeUsageError(_UNKNOWN_NEAR, name=name, near=meant)
+        return NodeUsageError(_UNKNOWN, name=name, known=", ".join(self._settings) or "-")
 
     def _complaint(
         self, setting: Setting, value: object, error: BadValueError

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-class Pace:
+class PeriodicThread:
     """Calls back every `period_s` seconds, which may be changed at any time."""
 
     def __init__(self, period_s: float, call: Callable[[], None]) -> None:

@@ -78,7 +78,7 @@ class Refusal(NamedTuple):
     """For people."""
 
 
-class Refusals:
+class CommandRefusals:
     """What this node has refused lately."""
 
     def __init__(self, node: LessonNode) -> None:

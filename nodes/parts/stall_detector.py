@@ -23,7 +23,7 @@ _ANOTHER_CLOCK_S = 30.0
 """A difference of more than that is one of clocks, and tells nothing of how long it waited."""
 
 
-class Nap:
+class StallDetector:
     """To be asked in every callback, and by a timer: the time between two is the time asleep."""
 
     def __init__(self) -> None:

@@ -20,7 +20,7 @@ from text.os_words import os_reason
 _LONGEST = 4096
 
 
-class Stop(NamedTuple):
+class KeptStop(NamedTuple):
     """An emergency stop that is on."""
 
     since_s: float
@@ -43,7 +43,7 @@ class StopMemory:
         self._domain = domain
         self._draft = f".{domain}{writer.replace('/', '.')}"
 
-    def recall(self) -> Stop | None:
+    def recall(self) -> KeptStop | None:
         """Return the stop that is remembered, None if none is."""
         try:
             with self._place().open("rb") as file:
@@ -54,7 +54,7 @@ class StopMemory:
             return _unreadable(os_reason(error))
         return _read(text)
 
-    def keep(self, stop: Stop) -> str:
+    def keep(self, stop: KeptStop) -> str:
         """Write it down, unless a stop is remembered already; return why that failed."""
         document = {"since": stop.since_s, "by": stop.by, "publishers": stop.publishers}
         try:
@@ -85,10 +85,10 @@ class StopMemory:
         return ""
 
 
-def _read(text: bytes) -> Stop:
+def _read(text: bytes) -> KeptStop:
     try:
         document = json.loads(text)
-        return Stop(
+        return KeptStop(
             float(document["since"]),
             str(document["by"]),
             str(document.get("publishers", "")),
@@ -98,8 +98,8 @@ def _read(text: bytes) -> Stop:
         return _unreadable(os_reason(error))
 
 
-def _unreadable(reason: str) -> Stop:
-    return Stop(time.time(), "", remembered=True, unreadable=reason)
+def _unreadable(reason: str) -> KeptStop:
+    return KeptStop(time.time(), "", remembered=True, unreadable=reason)
 
 
 def _write(path: Path, data: bytes) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import NamedTuple
 
-from robot.safety.distance import Reading, Shares, Sight, Zone, look, share
+from robot.safety.distance import Reading, SafetyZone, Shares, Sight, look, share
 
 
 class View(NamedTuple):
@@ -19,7 +19,7 @@ class View(NamedTuple):
     """How much of the asked speed is allowed that way, 0 to 1."""
 
 
-class Eye:
+class DistanceSensor:
     """One distance sensor, as it is now."""
 
     def __init__(self, place: str) -> None:
@@ -37,7 +37,7 @@ class Eye:
         """The newest reading and its age."""
         return Reading(self._distance_m, time.monotonic() - self._seen_s)
 
-    def view(self, zone: Zone) -> View:
+    def view(self, zone: SafetyZone) -> View:
         """What it shows now."""
         reading = self.reading
         sight = look(reading, zone.critical_m, zone.stale_after_s)
@@ -52,10 +52,10 @@ class Eyes:
     """The sensor in front, and the one behind if there is one."""
 
     def __init__(self, *, rear: bool) -> None:
-        self.front = Eye("front")
-        self.rear = Eye("rear") if rear else None
+        self.front = DistanceSensor("front")
+        self.rear = DistanceSensor("rear") if rear else None
 
-    def views(self, zone: Zone) -> tuple[View, ...]:
+    def views(self, zone: SafetyZone) -> tuple[View, ...]:
         """What each of them shows now, the front first."""
         return tuple(eye.view(zone) for eye in (self.front, self.rear) if eye is not None)
 

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 
-from nodes.parts.arrivals import Arrivals
+from nodes.parts.arrivals import FirstHeard
 from nodes.parts.drive import from_message, to_message
 from nodes.parts.qos import DEPTH
-from nodes.parts.refusals import Refusals
+from nodes.parts.refusals import CommandRefusals
 from nodes.parts.sole_publisher import SolePublisher
-from nodes.parts.stall_detector import Nap
+from nodes.parts.stall_detector import StallDetector
 from nodes.safety import words
 from nodes.safety.moment import Moment
 from robot.limits import SPEED, STEERING
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nodes.parts.node import LessonNode
-    from robot.safety.sources import Order
+    from robot.safety.sources import SourceCommand
 
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach everybody."""
@@ -43,7 +43,7 @@ _HOLDING = (Verdict.EMERGENCY_STOP, Verdict.STARTING)
 """After these everybody has to ask anew."""
 
 
-class Gate:
+class CommandGate:
     """Hears the sources of `node`, and says what passes."""
 
     def __init__(
@@ -60,11 +60,11 @@ class Gate:
         self._driver = self._ignored = ""
         self._ignored_s = -math.inf
         self._sent = STOP
-        self._nap = Nap()
-        self._refusals = Refusals(node)
+        self._nap = StallDetector()
+        self._refusals = CommandRefusals(node)
         self._publisher = node.create_publisher(AckermannDriveStamped, DRIVE_SAFE, DEPTH)
         SolePublisher(node, self._publisher)
-        self._arrivals = Arrivals()
+        self._arrivals = FirstHeard()
         for name in names:
             hear = functools.partial(self._hear, name)
             node.create_subscription(AckermannDriveStamped, name, hear, DEPTH)
@@ -144,10 +144,10 @@ class Gate:
         ) or self._refusals.untimely(source, message.header.stamp, self._sources.limit_s(source))
         return STOP if refused else asked
 
-    def _passed(self, order: Order | None) -> DriveSetpoint:
+    def _passed(self, order: SourceCommand | None) -> DriveSetpoint:
         return gate(order.setpoint if order else STOP, self._verdict, self._shares)
 
-    def _pass_on(self, order: Order | None) -> None:
+    def _pass_on(self, order: SourceCommand | None) -> None:
         passed = self._passed(order)
         if order is None and self._sent.speed_m_s and self._verdict not in _HOLDING:
             seconds = self._sources.limit_s(self._driver)

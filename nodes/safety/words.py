@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes.parts.speech import Phrase, Speech
-from robot.safety.distance import Sight, Verdict, Zone
+from robot.safety.distance import SafetyZone, Sight, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -123,7 +123,7 @@ def _percent(share: float) -> int:
 
 
 def diagnosis(
-    say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment, zone: Zone
+    say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment, zone: SafetyZone
 ) -> DiagnosticStatus:
     """The state of safety: level, a sentence, and key-values for programs.
 
@@ -173,7 +173,7 @@ def _phrase(
 
 
 def _values(
-    verdict: Verdict, views: Sequence[View], moment: Moment, zone: Zone
+    verdict: Verdict, views: Sequence[View], moment: Moment, zone: SafetyZone
 ) -> Iterator[tuple[str, str]]:
     yield "verdict", verdict.value
     for view in views:

@@ -10,13 +10,13 @@ from nav_msgs.msg import OccupancyGrid
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
 
-    from robot.world.grid import Grid
+    from robot.world.grid import CellMap
 
 FRAME = "odom"
 """The simulated robot starts where its odometry does, so one frame is enough."""
 
 
-def occupancy_grid(grid: Grid, stamp: Time) -> OccupancyGrid:
+def occupancy_grid(grid: CellMap, stamp: Time) -> OccupancyGrid:
     """Put a grid into a message, with its time."""
     message = OccupancyGrid()
     message.header.frame_id = FRAME

@@ -15,7 +15,7 @@ from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.motion.odometry import Pose, yaw_from_quaternion
 from robot.topics import HEAD_STATE, MOCK_POSE
 from robot.world.room import LIVING_ROOM
-from robot.world.view import Eye, RoomView
+from robot.world.view import CameraPose, RoomView
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,7 +37,7 @@ class RoomScene:
         self._say = node.say
         self._view = RoomView(LIVING_ROOM, height, width, blue_first=blue_first)
         self._pose, self._pan_rad, self._tilt_rad = Pose(), 0.0, 0.0
-        self._drawn: Eye | None = None
+        self._drawn: CameraPose | None = None
         self._waits_since_s: float | None = time.monotonic()
         node.create_subscription(PoseStamped, MOCK_POSE, self._take_pose, DEPTH)
         node.create_subscription(JointState, HEAD_STATE, self._take_head, DEPTH)
@@ -47,7 +47,7 @@ class RoomScene:
         since_s = self._waits_since_s
         if since_s is not None and time.monotonic() - since_s > _PATIENCE_S:
             self._say.warn(_NO_POSE, every_s=30.0, topic=MOCK_POSE)
-        eye = Eye.on(self._pose, self._pan_rad, self._tilt_rad)
+        eye = CameraPose.on(self._pose, self._pan_rad, self._tilt_rad)
         if eye != self._drawn:
             # A robot that stands sees what it saw.
             self._view.draw(picture, eye)

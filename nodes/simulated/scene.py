@@ -52,7 +52,7 @@ _GLYPHS = {
 }
 
 
-class Scene:
+class MovingScene:
     """Draws the n-th picture of the film; the same n gives the same picture."""
 
     def __init__(self, height: int, width: int, *, blue_first: bool) -> None:

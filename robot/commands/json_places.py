@@ -55,7 +55,7 @@ class PlacedJson:
 
 def read(text: str) -> PlacedJson:
     """Parse a whole JSON text; raises `JsonError`."""
-    reader = _Reader(text)
+    reader = _JsonScanner(text)
     value, end = reader.value(reader.blank(0), ())
     end = reader.blank(end)
     if end != len(text):
@@ -69,7 +69,7 @@ def line_column(text: str, offset: int) -> tuple[int, int]:
     return before.count("\n") + 1, offset - (before.rfind("\n") + 1) + 1
 
 
-class _Reader:
+class _JsonScanner:
     """Recursive descent: each method takes an offset and returns what it read and where it ends."""
 
     def __init__(self, text: str) -> None:

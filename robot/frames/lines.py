@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robot.frames.protocols import Kind
+from robot.frames.protocols import FrameKind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,7 +32,7 @@ class FrameLine:
     time_s: float
     way: str
     """`in` from the device, or `out` to it."""
-    kind: Kind
+    kind: FrameKind
     octets: bytes
     text: str
     count: int = 0
@@ -52,7 +52,7 @@ def _encoded(line: FrameLine) -> str:
         "hex": line.octets[:MOST_OCTETS].hex(),
         "text": line.text,
     }
-    if line.kind is Kind.MORE:
+    if line.kind is FrameKind.MORE:
         fields["count"] = line.count
     return json.dumps(fields, ensure_ascii=False, separators=(",", ":"))
 
@@ -73,7 +73,7 @@ def _decoded(line: str) -> FrameLine | None:
         fields = json.loads(line[:10_000])
         time_s, way, text = float(fields["t"]), fields["way"], fields["text"]
         octets = bytes.fromhex(fields.get("hex", ""))
-        kind, count = Kind(fields.get("kind", "frame")), int(fields.get("count", 0))
+        kind, count = FrameKind(fields.get("kind", "frame")), int(fields.get("count", 0))
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         return None
     if way not in WAYS or not isinstance(text, str) or not math.isfinite(time_s):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from robot.frames.protocols import HeadedReader, Kind, Piece, Words
+from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, HeadedReader
 from robot.wire.lsc16 import (
     ActionComplete,
     ActionRun,
     ActionStop,
     Battery,
-    Move,
     ServoFrame,
+    ServoMove,
     decode,
 )
 
@@ -35,18 +35,18 @@ class ServoReader(HeadedReader):
     """Reads what is said to the controller, or what it says."""
 
     def __init__(self, language: str) -> None:
-        self._words = Words(language, _PHRASES)
+        self._words = FramePhrases(language, _PHRASES)
         super().__init__(language, _HEAD, _length, self._read)
 
-    def _read(self, octets: bytes) -> Piece:
+    def _read(self, octets: bytes) -> FramePiece:
         frame = decode(octets)
         if frame is None:
-            return Piece(octets, self._words("bad"), Kind.BAD)
-        return Piece(octets, self._said(frame))
+            return FramePiece(octets, self._words("bad"), FrameKind.BAD)
+        return FramePiece(octets, self._said(frame))
 
     def _said(self, frame: ServoFrame) -> str:
         words = self._words
-        if isinstance(frame, Move):
+        if isinstance(frame, ServoMove):
             pairs = frame.pulses_us
             servos = ", ".join(words("servo", servo=servo, pulse=pulse) for servo, pulse in pairs)
             return words("move", time=frame.time_ms, servos=servos)

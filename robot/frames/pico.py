@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from robot.frames.protocols import Kind, Piece, Words, noise
+from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, noise
 from robot.wire.crc import crc16
 from robot.wire.line import LONGEST, unwrap
 from robot.wire.pico import (
@@ -69,26 +69,26 @@ class PicoReader:
     """Reads what is said to the Pico, or what it says."""
 
     def __init__(self, language: str) -> None:
-        self._language, self._words = language, Words(language, _PHRASES)
+        self._language, self._words = language, FramePhrases(language, _PHRASES)
         self._flags = _FLAGS_RU if language == "ru" else FLAGS
         self._rest = b""
 
-    def feed(self, data: bytes) -> list[Piece]:
+    def feed(self, data: bytes) -> list[FramePiece]:
         """The pieces that these bytes complete, oldest first."""
         stream, at = self._rest + data, 0
-        found: list[Piece] = []
+        found: list[FramePiece] = []
         for match in _LINE.finditer(stream):
             found += self._line(match[0], match[1])
             at = match.end()
         self._rest = stream[at:]
         return found + (self.flush() if len(self._rest) >= LONGEST else [])
 
-    def flush(self) -> list[Piece]:
+    def flush(self) -> list[FramePiece]:
         """What is left of a line that nobody goes on with."""
         rest, self._rest = self._rest, b""
         return [noise(rest, self._language)] if rest else []
 
-    def _line(self, octets: bytes, line: bytes) -> list[Piece]:
+    def _line(self, octets: bytes, line: bytes) -> list[FramePiece]:
         """The pieces of a line, with its end and without."""
         start = line.rfind(b"$")
         if start < 0:
@@ -96,14 +96,14 @@ class PicoReader:
         loose = [noise(octets[:start], self._language)] if start else []
         return [*loose, self._piece(octets[start:], line[start:])]
 
-    def _piece(self, octets: bytes, line: bytes) -> Piece:
+    def _piece(self, octets: bytes, line: bytes) -> FramePiece:
         body = unwrap(line) if len(line) < LONGEST else None
         if body is None:
-            return Piece(octets, self._complaint(line), Kind.BAD)
+            return FramePiece(octets, self._complaint(line), FrameKind.BAD)
         message = parse(body)
         if message is None:
-            return Piece(octets, self._words("unknown"), Kind.BAD)
-        return Piece(octets, self._said(message) + self._words("end", seq=message.seq))
+            return FramePiece(octets, self._words("unknown"), FrameKind.BAD)
+        return FramePiece(octets, self._said(message) + self._words("end", seq=message.seq))
 
     def _complaint(self, line: bytes) -> str:
         checked = _CHECKED.fullmatch(line)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 
-class Kind(str, Enum):
+class FrameKind(str, Enum):
     """What a piece of a stream is."""
 
     FRAME = "frame"
@@ -29,25 +29,25 @@ class Kind(str, Enum):
 
 
 @dataclass(frozen=True)
-class Piece:
+class FramePiece:
     """Some bytes of a stream, and what they say in one line."""
 
     octets: bytes
     text: str
-    kind: Kind = Kind.FRAME
+    kind: FrameKind = FrameKind.FRAME
 
 
 class FrameReader(Protocol):
     """Cuts one direction of a wire into pieces; keeps less than one frame."""
 
-    def feed(self, data: bytes) -> list[Piece]:
+    def feed(self, data: bytes) -> list[FramePiece]:
         """The pieces that these bytes complete, oldest first."""
 
-    def flush(self) -> list[Piece]:
+    def flush(self) -> list[FramePiece]:
         """What is left of a frame that nobody goes on with."""
 
 
-class Words:
+class FramePhrases:
     """Phrases of one language."""
 
     def __init__(self, language: str, phrases: Mapping[str, tuple[str, str]]) -> None:
@@ -67,10 +67,12 @@ _NOISE = {
 }
 
 
-def noise(octets: bytes, language: str) -> Piece:
+def noise(octets: bytes, language: str) -> FramePiece:
     """Bytes that belong to no frame."""
     key = "one" if len(octets) == 1 else "many"
-    return Piece(octets, Words(language, _NOISE)(key, count=len(octets)), Kind.NOISE)
+    return FramePiece(
+        octets, FramePhrases(language, _NOISE)(key, count=len(octets)), FrameKind.NOISE
+    )
 
 
 _ENOUGH = 4
@@ -85,7 +87,7 @@ class HeadedReader:
         language: str,
         head: bytes,
         length: Callable[[bytes], int],
-        piece: Callable[[bytes], Piece],
+        piece: Callable[[bytes], FramePiece],
     ) -> None:
         """`length`: how long a frame is that begins so, 0 if that cannot be told yet.
 
@@ -95,10 +97,10 @@ class HeadedReader:
         self._language, self._head, self._length, self._piece = language, head, length, piece
         self._rest = b""
 
-    def feed(self, data: bytes) -> list[Piece]:
+    def feed(self, data: bytes) -> list[FramePiece]:
         """The pieces that these bytes complete, oldest first."""
         stream, at = self._rest + data, 0
-        found: list[Piece] = []
+        found: list[FramePiece] = []
         while True:
             start = _find(stream, self._head, at)
             if start > at:
@@ -111,14 +113,14 @@ class HeadedReader:
         self._rest = stream[start:]
         return found
 
-    def flush(self) -> list[Piece]:
+    def flush(self) -> list[FramePiece]:
         """What is left of a frame that nobody goes on with."""
         rest, self._rest = self._rest, b""
         return [noise(rest, self._language)] if rest else []
 
-    def _at(self, stream: bytes, start: int, size: int) -> Piece:
+    def _at(self, stream: bytes, start: int, size: int) -> FramePiece:
         piece = self._piece(stream[start : start + size])
-        if piece.kind is Kind.FRAME:
+        if piece.kind is FrameKind.FRAME:
             return piece
         # With a head inside of it, the frame has lost its end, and the next one may be whole.
         inner = stream.find(self._head, start + 1, start + size + 1)
@@ -141,12 +143,12 @@ class RawReader:
     _PHRASES = {"raw": ("bytes: {count}", "байт: {count}")}  # noqa: RUF012
 
     def __init__(self, language: str) -> None:
-        self._words = Words(language, self._PHRASES)
+        self._words = FramePhrases(language, self._PHRASES)
 
-    def feed(self, data: bytes) -> list[Piece]:
+    def feed(self, data: bytes) -> list[FramePiece]:
         """One piece."""
-        return [Piece(data, self._words("raw", count=len(data)))] if data else []
+        return [FramePiece(data, self._words("raw", count=len(data)))] if data else []
 
-    def flush(self) -> list[Piece]:
+    def flush(self) -> list[FramePiece]:
         """Nothing: nothing was kept."""
         return []

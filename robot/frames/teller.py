@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from robot.frames.lines import MOST, WAYS, FrameLine
-from robot.frames.protocols import Kind, Words, noise
+from robot.frames.protocols import FrameKind, FramePhrases, noise
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from robot.frames.protocols import FrameReader, Piece
+    from robot.frames.protocols import FramePiece, FrameReader
 
 GIVE_UP_S = 0.3
 """The rest of a frame that has not come after this long does not come any more."""
@@ -36,7 +36,7 @@ class FrameTeller:
     def __init__(self, make: Callable[[str], FrameReader], language: str) -> None:
         """`make` makes a reader that speaks a language (en or ru)."""
         self._make, self._language = make, language
-        self._words = Words(language, _PHRASES)
+        self._words = FramePhrases(language, _PHRASES)
         self.restart()
 
     def restart(self) -> None:
@@ -64,21 +64,21 @@ class FrameTeller:
             self.restart()
         return lines
 
-    def _read(self, way: str, octets: bytes) -> list[Piece]:
+    def _read(self, way: str, octets: bytes) -> list[FramePiece]:
         pieces = self._readers[way].feed(octets)
         if pieces and way in self._fresh:
             self._fresh.discard(way)
-            if pieces[0].kind is not Kind.FRAME:
+            if pieces[0].kind is not FrameKind.FRAME:
                 # Most likely the end of a frame whose beginning nobody was there to see.
                 return pieces[1:]
         return pieces
 
     def _add(
-        self, lines: list[FrameLine], more: Counter[str], chunk: Chunk, pieces: list[Piece]
+        self, lines: list[FrameLine], more: Counter[str], chunk: Chunk, pieces: list[FramePiece]
     ) -> None:
         for piece in pieces:
             last = lines[-1] if lines else None
-            if last and piece.kind is Kind.NOISE is last.kind and last.way == chunk.way:
+            if last and piece.kind is FrameKind.NOISE is last.kind and last.way == chunk.way:
                 octets = last.octets + piece.octets
                 lines[-1] = replace(last, octets=octets, text=noise(octets, self._language).text)
             elif len(lines) >= MOST:
@@ -90,4 +90,4 @@ class FrameTeller:
 
     def _mark(self, time_s: float, way: str, key: str, count: int) -> FrameLine:
         said = self._words(key, count=count)
-        return FrameLine(time_s, way, Kind.MORE, b"", said, count)
+        return FrameLine(time_s, way, FrameKind.MORE, b"", said, count)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from robot.frames.protocols import HeadedReader, Kind, Piece, Words
+from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, HeadedReader
 from robot.wire.crc import sum8
 from robot.wire.tfluna import SIZE, Model, TofFrame, decode
 
@@ -26,15 +26,15 @@ class TofReader(HeadedReader):
     """Reads what a sonar says; what is said to it is shown as noise."""
 
     def __init__(self, language: str, model: Model = Model.LUNA) -> None:
-        self._words, self._model = Words(language, _PHRASES), model
+        self._words, self._model = FramePhrases(language, _PHRASES), model
         super().__init__(language, _HEAD, _length, self._read)
 
-    def _read(self, octets: bytes) -> Piece:
+    def _read(self, octets: bytes) -> FramePiece:
         frame = decode(octets)
         if frame is not None:
-            return Piece(octets, self._said(frame))
+            return FramePiece(octets, self._said(frame))
         said = self._words("bad", told=octets[-1], counted=sum8(octets[:-1]))
-        return Piece(octets, said, Kind.BAD)
+        return FramePiece(octets, said, FrameKind.BAD)
 
     def _said(self, frame: TofFrame) -> str:
         metres = frame.distance_m(self._model)

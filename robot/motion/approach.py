@@ -33,7 +33,7 @@ _REVERSE_WITHIN_CIRCLES = 2.5
 
 
 @dataclass(frozen=True)
-class Chassis:
+class ApproachLimits:
     """What the law must know of the robot and may ask of it."""
 
     max_speed_m_s: float = 0.3
@@ -59,7 +59,7 @@ class Chassis:
 class Approach:
     """One way to one point; asked again with every new pose."""
 
-    def __init__(self, goal: Point, tolerance_m: float, chassis: Chassis) -> None:
+    def __init__(self, goal: Point, tolerance_m: float, chassis: ApproachLimits) -> None:
         self.goal = goal
         self.tolerance_m = tolerance_m
         self._chassis = chassis
@@ -116,7 +116,7 @@ class Approach:
         return 2.0 * start.distance_to(self.goal) + 3.0 * circle_m + 1.0
 
 
-class Progress:
+class ApproachProgress:
     """Sees that a robot stands although it should drive, or drives and does not arrive."""
 
     def __init__(self, longest_way_m: float, patience_s: float, pose: Pose, now_s: float) -> None:

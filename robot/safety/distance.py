@@ -53,7 +53,7 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Zone:
+class SafetyZone:
     """How near is near, and how long is too long."""
 
     critical_m: float = 0.5
@@ -85,7 +85,7 @@ def look(reading: Reading, critical_m: float, stale_after_s: float) -> Sight:
     return Sight.CLOSE if reading.distance_m < critical_m else Sight.FREE
 
 
-def share(reading: Reading, zone: Zone) -> float:
+def share(reading: Reading, zone: SafetyZone) -> float:
     """How much of a speed towards that sensor's side is allowed, 0 to 1.
 
     0 wherever `look` sees no free way, 1 from the slow distance on, a straight line between 0 at

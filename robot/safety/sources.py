@@ -26,7 +26,7 @@ HELD_AGE_S = 0.5
 
 
 @dataclass(frozen=True)
-class Order:
+class SourceCommand:
     """The newest command of one source."""
 
     source: str
@@ -47,7 +47,7 @@ class Sources:
         self._ranked = tuple(ranked)
         self._held = frozenset(held)
         self._max_age_s = max_age_s
-        self._orders: dict[str, Order] = {}
+        self._orders: dict[str, SourceCommand] = {}
         self._newest = ""
 
     def let_age(self, max_age_s: float, now_s: float) -> None:
@@ -56,9 +56,9 @@ class Sources:
             self._drop_old(now_s)
             self._max_age_s = max_age_s
 
-    def hear(self, source: str, setpoint: DriveSetpoint, now_s: float) -> Order:
+    def hear(self, source: str, setpoint: DriveSetpoint, now_s: float) -> SourceCommand:
         """Take in a command; return the order that drives now, which may be one above it."""
-        order = self._orders[source] = Order(source, setpoint, now_s)
+        order = self._orders[source] = SourceCommand(source, setpoint, now_s)
         self._newest = source
         driving = self.driving(now_s) or order
         if self._max_age_s == 0:
@@ -66,12 +66,12 @@ class Sources:
             self._orders = {driving.source: driving}
         return driving
 
-    def driving(self, now_s: float) -> Order | None:
+    def driving(self, now_s: float) -> SourceCommand | None:
         """The order that drives; None if nobody's counts."""
         self._drop_old(now_s)
         return next((self._orders[name] for name in self._ranked if name in self._orders), None)
 
-    def correct(self, order: Order, setpoint: DriveSetpoint) -> None:
+    def correct(self, order: SourceCommand, setpoint: DriveSetpoint) -> None:
         """Remember less than was asked for, for as long as the order itself would have counted."""
         if self._orders.get(order.source) is order:
             self._orders[order.source] = replace(order, setpoint=setpoint)
@@ -91,7 +91,7 @@ class Sources:
             name: order for name, order in self._orders.items() if self._counts(order, now_s)
         }
 
-    def _counts(self, order: Order, now_s: float) -> bool:
+    def _counts(self, order: SourceCommand, now_s: float) -> bool:
         limit_s = self.limit_s(order.source)
         if limit_s == 0:
             return order.setpoint.speed_m_s != 0 or order.source == self._newest

@@ -26,7 +26,7 @@ _LENGTHS = {_RUN: (5,), _STOP: (2,), _COMPLETE: (5,), _BATTERY: (2, 4)}
 
 
 @dataclass(frozen=True)
-class Move:
+class ServoMove:
     """Servos to pulse widths (us), within `time_ms`."""
 
     time_ms: int
@@ -67,7 +67,7 @@ class Battery:
     millivolts: int
 
 
-ServoFrame = Move | ActionRun | ActionStop | ActionComplete | BatteryRequest | Battery
+ServoFrame = ServoMove | ActionRun | ActionStop | ActionComplete | BatteryRequest | Battery
 
 
 def encode(frame: ServoFrame) -> bytes:
@@ -100,7 +100,7 @@ def decode(data: bytes) -> ServoFrame | None:
 
 
 def _params(frame: ServoFrame) -> tuple[int, bytes]:
-    if isinstance(frame, Move):
+    if isinstance(frame, ServoMove):
         head = struct.pack("<BH", len(frame.pulses_us), frame.time_ms)
         return _MOVE, head + b"".join(struct.pack("<BH", *pair) for pair in frame.pulses_us)
     if isinstance(frame, (ActionRun, ActionComplete)):
@@ -111,7 +111,7 @@ def _params(frame: ServoFrame) -> tuple[int, bytes]:
     return (_STOP, b"") if isinstance(frame, ActionStop) else (_BATTERY, b"")
 
 
-def _move(params: bytes) -> Move | None:
+def _move(params: bytes) -> ServoMove | None:
     if len(params) < 6 or len(params) != 3 + 3 * params[0]:
         return None
     _count, time_ms = struct.unpack_from("<BH", params)
@@ -123,7 +123,7 @@ def _move(params: bytes) -> Move | None:
         or not all(servo in SERVO and pulse in PULSE for servo, pulse in pairs)
     ):
         return None
-    return Move(time_ms, pairs)
+    return ServoMove(time_ms, pairs)
 
 
 def _battery(params: bytes) -> BatteryRequest | Battery | None:

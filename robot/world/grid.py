@@ -23,7 +23,7 @@ _SAMPLES = 4
 
 
 @dataclass(frozen=True)
-class Grid:
+class CellMap:
     """Cells of a side of `cell_m`, the first at the corner with the least x and y."""
 
     x_m: float
@@ -43,7 +43,7 @@ class Grid:
         return UNKNOWN
 
 
-def grid_of(room: Room, cell_m: float = CELL_M) -> Grid:
+def grid_of(room: Room, cell_m: float = CELL_M) -> CellMap:
     """Draw a room: its walls and boxes are occupied, the floor between them is free."""
     corners = np.array(room.walls.corners())
     # Half a cell more: a wall parallel to the axes runs through the middle of its cells.
@@ -63,7 +63,7 @@ def grid_of(room: Room, cell_m: float = CELL_M) -> Grid:
             np.floor((up - least[1]) / cell_m).astype(int),
             np.floor((across - least[0]) / cell_m).astype(int),
         ] = OCCUPIED
-    return Grid(float(least[0]), float(least[1]), cell_m, cells)
+    return CellMap(float(least[0]), float(least[1]), cell_m, cells)
 
 
 def _within(box: Box, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -47,7 +47,7 @@ _SHARES = {ALONG: 0.86, ACROSS: 0.68, TOP: 1.0}
 
 
 @dataclass(frozen=True)
-class Paint:
+class SurfaceTextures:
     """Surfaces, one after the other, row by row."""
 
     colours: NDArray[np.uint8]
@@ -58,7 +58,7 @@ class Paint:
     rows: NDArray[np.int32]
 
     @classmethod
-    def of(cls, canvases: Sequence[Canvas]) -> Paint:
+    def of(cls, canvases: Sequence[Canvas]) -> SurfaceTextures:
         """Put surfaces together, in their order."""
         sizes = [len(canvas) * canvas.shape[1] for canvas in canvases]
         return cls(
@@ -74,7 +74,7 @@ def box_height_m(number: int) -> float:
     return _BOXES[number % len(_BOXES)][1]
 
 
-def paint_room(walls: Box) -> Paint:
+def paint_room(walls: Box) -> SurfaceTextures:
     """The four walls, the floor and the ceiling of a room."""
     east, west = (_wall(walls.width_m, colour) for colour in (_EAST, _WEST))
     north, south = (_wall(walls.length_m, colour) for colour in (_NORTH, _SOUTH))
@@ -86,10 +86,10 @@ def paint_room(walls: Box) -> Paint:
     floor = _floor(walls.length_m, walls.width_m)
     ceiling = _canvas(walls.length_m, walls.width_m, _CEILING)
     _fill(ceiling, (walls.length_m / 2 - 0.3, walls.length_m / 2 + 0.3), (0.5, 1.1), _LAMP)
-    return Paint.of([east, north, west, south, floor, ceiling])
+    return SurfaceTextures.of([east, north, west, south, floor, ceiling])
 
 
-def paint_box(number: int, box: Box) -> Paint:
+def paint_box(number: int, box: Box) -> SurfaceTextures:
     """The sides of a box: edges that are darker, and a stripe as of tape."""
     colour, height_m = _BOXES[number % len(_BOXES)]
     sizes = {
@@ -97,7 +97,7 @@ def paint_box(number: int, box: Box) -> Paint:
         ACROSS: (box.length_m, height_m),
         TOP: (box.length_m, box.width_m),
     }
-    return Paint.of([_side(sizes[side], colour, _SHARES[side]) for side in sizes])
+    return SurfaceTextures.of([_side(sizes[side], colour, _SHARES[side]) for side in sizes])
 
 
 def _side(size_m: tuple[float, float], colour: Colour, share: float) -> Canvas:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robot.wire.lsc16 import CENTRE_US, Battery, BatteryRequest, Move, ServoDecoder, encode
+from robot.wire.lsc16 import CENTRE_US, Battery, BatteryRequest, ServoDecoder, ServoMove, encode
 
 
 class SimulatedServos:
@@ -19,7 +19,7 @@ class SimulatedServos:
         """Take bytes of the computer's; the answer comes back, most often an empty one."""
         answer = b""
         for frame in self._decoder.feed(data):
-            if isinstance(frame, Move):
+            if isinstance(frame, ServoMove):
                 for servo, pulse_us in frame.pulses_us:
                     start = self.pulse_us(servo)
                     self._moves[servo] = (start, pulse_us, self._now_s, frame.time_ms / 1000)

@@ -24,7 +24,7 @@ from robot.world.paint import (
     SOUTH,
     TOP,
     WEST,
-    Paint,
+    SurfaceTextures,
     box_height_m,
     paint_box,
     paint_room,
@@ -52,7 +52,7 @@ _DARKEST, _DARK_PER_M = 130, 20
 
 
 @dataclass(frozen=True)
-class Eye:
+class CameraPose:
     """Where a camera is and where it looks."""
 
     x_m: float
@@ -63,7 +63,7 @@ class Eye:
     """+ is up."""
 
     @classmethod
-    def on(cls, pose: Pose, pan_rad: float = 0.0, tilt_rad: float = 0.0) -> Eye:
+    def on(cls, pose: Pose, pan_rad: float = 0.0, tilt_rad: float = 0.0) -> CameraPose:
         """The camera of a robot that stands at a pose and has turned its head."""
         x_m = pose.x_m + AHEAD_M * math.cos(pose.heading_rad)
         y_m = pose.y_m + AHEAD_M * math.sin(pose.heading_rad)
@@ -107,7 +107,7 @@ class RoomView:
         self._colours = np.concatenate([paint.colours for paint in paints])[:, order].copy()
         self._begins = np.cumsum([0, *(len(paint.colours) for paint in paints)]).tolist()
 
-    def draw(self, picture: NDArray[np.uint8], eye: Eye) -> None:
+    def draw(self, picture: NDArray[np.uint8], eye: CameraPose) -> None:
         """Draw into an array of shape (height, width, 3)."""
         rays = self._rays(eye)
         # A ray along a wall never meets it, which is as good a number as any.
@@ -130,7 +130,7 @@ class RoomView:
             every = picture[row::_COARSE]
             every[:] = rows[: len(every)]
 
-    def _part_with(self, box: Box, number: int, eye: Eye) -> tuple[slice, slice] | None:
+    def _part_with(self, box: Box, number: int, eye: CameraPose) -> tuple[slice, slice] | None:
         """Rows and columns of the picture that a box may be seen in, None if there are none."""
         cos, sin = math.cos(eye.tilt_rad), math.sin(eye.tilt_rad)
         floor = [
@@ -157,14 +157,14 @@ class RoomView:
             _between(left / depth / self._most_left, columns),
         )
 
-    def _rays(self, eye: Eye) -> _Rays:
+    def _rays(self, eye: CameraPose) -> _Rays:
         cos, sin = math.cos(eye.tilt_rad), math.sin(eye.tilt_rad)
         ahead, up = cos - sin * self._up, sin + cos * self._up
         along, across = _turned(ahead, self._left, eye.heading_rad)
         return _Rays((eye.x_m, eye.y_m, eye.z_m), along, across, up)
 
 
-def _see_walls(rays: _Rays, walls: Box, paint: Paint) -> tuple[Floats, Whole]:
+def _see_walls(rays: _Rays, walls: Box, paint: SurfaceTextures) -> tuple[Floats, Whole]:
     """How far each ray goes inside the room, and which spot of its paint it meets."""
     half, wide = walls.length_m / 2, walls.width_m / 2
     (x_m, y_m, z_m), along, across, up = rays
@@ -194,7 +194,7 @@ def _see_walls(rays: _Rays, walls: Box, paint: Paint) -> tuple[Floats, Whole]:
 def _see_box(
     rays: _Rays,
     sides_m: tuple[float, float, float],
-    paint: Paint,
+    paint: SurfaceTextures,
     begin: int,
     reach: Floats,
     spots: Whole,
@@ -227,7 +227,7 @@ def _see_box(
     spots[met] = begin + _spots(paint, surface, column, row)
 
 
-def _spots(paint: Paint, surface: Whole | int, column_m: Floats, row_m: Floats) -> Whole:
+def _spots(paint: SurfaceTextures, surface: Whole | int, column_m: Floats, row_m: Floats) -> Whole:
     columns, rows = paint.columns[surface], paint.rows[surface]
     column = np.clip((column_m / PIXEL_M).astype(np.int32), 0, columns - 1)
     row = np.clip((row_m / PIXEL_M).astype(np.int32), 0, rows - 1)

@@ -57,7 +57,7 @@ class Wheels:
 
 
 @dataclass(frozen=True)
-class Sonar:
+class SimulatedSonar:
     """A distance sensor at a bumper: it looks forward, or backward."""
 
     forward: bool = True
@@ -97,8 +97,8 @@ class World:
     body: Body = Body()
     pose: Pose = field(default_factory=Pose)
     seed: int = 0
-    front: Sonar = Sonar()
-    rear: Sonar = Sonar(forward=False)
+    front: SimulatedSonar = SimulatedSonar()
+    rear: SimulatedSonar = SimulatedSonar(forward=False)
     asked: Wheels = field(default_factory=Wheels)
     """What the wheels shall do; to be set from outside."""
     stalled: tuple[bool, bool] = (False, False)

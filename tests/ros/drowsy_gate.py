@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING
 
 from nodes.parts.life import run
-from nodes.safety.gate import Gate
+from nodes.safety.gate import CommandGate
 from nodes.safety_stop import SafetyStop
 
 if TYPE_CHECKING:
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from robot.words import DriveSetpoint
 
 NAP_S = 1.0
-granted = Gate._granted
+granted = CommandGate._granted
 
 
-def slowly_granted(self: Gate, source: str, message: AckermannDriveStamped) -> DriveSetpoint:
+def slowly_granted(self: CommandGate, source: str, message: AckermannDriveStamped) -> DriveSetpoint:
     """Stand still, and judge only then."""
     time.sleep(NAP_S)
     return granted(self, source, message)
 
 
 if __name__ == "__main__":
-    Gate._granted = slowly_granted  # type: ignore[method-assign]
+    CommandGate._granted = slowly_granted  # type: ignore[method-assign]
     sys.exit(run(SafetyStop))

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from launcher.client.client import running
-from nodes.parts.stop_memory import Stop, StopMemory
+from nodes.parts.stop_memory import KeptStop, StopMemory
 from tests.deck_process import DeckProcess, alive, deck
 from tests.ros.supervised import end_sessions
 from tests.unit.profile_files import written
@@ -75,7 +75,7 @@ def test_a_stop_that_is_remembered_is_told_with_the_way_to_release_it(
         f" released; `deck watch --domain {ros_domain}`, then Ctrl+R"
     )
     memory = StopMemory(ros_domain, "/safety_stop")
-    assert memory.keep(Stop(1.0, "topic")) == ""
+    assert memory.keep(KeptStop(1.0, "topic")) == ""
     assert told in deck("run", path, "--for", "0").errors
     assert told in deck("up", path).errors
     assert told in deck("ps").lines

@@ -16,7 +16,7 @@ from example_interfaces.srv import AddTwoInts
 from sensor_msgs.msg import JointState
 
 from nodes.simulated.device_fault import FINE, NOISE, SILENT, UNPLUGGED
-from robot.wire.lsc16 import Move, ServoDecoder
+from robot.wire.lsc16 import ServoDecoder, ServoMove
 from robot.wire.tfluna import TofFrame, encode
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.node_process import NodeProcess
@@ -132,8 +132,8 @@ def head(lasting: tuple[Head, ServoBench]) -> tuple[Head, ServoBench]:
     return lasting
 
 
-def moves_of(bench: ServoBench) -> list[Move]:
-    return [frame for frame in ServoDecoder().feed(bench.taken) if isinstance(frame, Move)]
+def moves_of(bench: ServoBench) -> list[ServoMove]:
+    return [frame for frame in ServoDecoder().feed(bench.taken) if isinstance(frame, ServoMove)]
 
 
 def wait_at(bench: ServoBench, pulses_us: dict[int, int]) -> None:

@@ -12,10 +12,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, Float32
 
 from nodes.parts.speech import Speech
-from nodes.safety.eyes import Eye
+from nodes.safety.eyes import DistanceSensor
 from nodes.safety.moment import Moment
 from nodes.safety.words import diagnosis, tell_front
-from robot.safety.distance import Sight, Verdict, Zone
+from robot.safety.distance import SafetyZone, Sight, Verdict
 from tests.ros.gate import FRONT, REAR, Gate, drive, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
@@ -195,9 +195,9 @@ def test_what_is_out_of_range_is_told_in_words(
 ) -> None:
     log = Log()
     say = Speech(log, lang)  # type: ignore[arg-type]
-    eye = Eye("front")
+    eye = DistanceSensor("front")
     eye.see(metres)
-    zone = Zone(0.5, 1.0, 60.0)
+    zone = SafetyZone(0.5, 1.0, 60.0)
     view = eye.view(zone)
     tell_front(say, view)
     assert log.lines[-1].endswith(logged)
@@ -222,17 +222,17 @@ def test_a_way_on_which_it_is_slowed_is_not_called_free(
     lang: str, metres: float, logged: str
 ) -> None:
     log = Log()
-    eye = Eye("front")
+    eye = DistanceSensor("front")
     eye.see(metres)
-    tell_front(Speech(log, lang), eye.view(Zone(0.5, 1.0, 60.0)))  # type: ignore[arg-type]
+    tell_front(Speech(log, lang), eye.view(SafetyZone(0.5, 1.0, 60.0)))  # type: ignore[arg-type]
     assert log.lines[-1].endswith(logged)
 
 
 @pytest.mark.parametrize(("slow_m", "sight"), [(1.0, Sight.CLOSE), (0.0, Sight.FREE)])
 def test_where_slowing_has_come_to_nothing_the_way_is_not_free(slow_m: float, sight: Sight) -> None:
-    eye = Eye("front")
+    eye = DistanceSensor("front")
     eye.see(0.5)
-    assert eye.view(Zone(0.5, slow_m, 60.0)).sight == sight
+    assert eye.view(SafetyZone(0.5, slow_m, 60.0)).sight == sight
 
 
 # ---------------------------------------------------------------- the sonar

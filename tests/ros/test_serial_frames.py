@@ -13,7 +13,7 @@ from std_msgs.msg import String
 from nodes.drivers.serial_frames import SerialFrames
 from nodes.parts.speech import Speech
 from robot.frames.lines import decode
-from robot.frames.protocols import Kind, RawReader
+from robot.frames.protocols import FrameKind, RawReader
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
@@ -66,8 +66,8 @@ def test_the_chassis_tells_both_ways_to_whoever_listens(
         assert all(line.time_s >= began_s for line in found), "it kept what nobody wanted"
         assert {line.way for line in found if line.text.startswith("drive left 0.00")} == {"out"}
         assert {line.way for line in found if line.text.startswith("wheels left")} == {"in"}
-        assert all(line.octets.startswith(b"$") for line in found if line.kind is Kind.FRAME)
-        assert [line.kind for line in found].count(Kind.FRAME) == len(found)
+        assert all(line.octets.startswith(b"$") for line in found if line.kind is FrameKind.FRAME)
+        assert [line.kind for line in found].count(FrameKind.FRAME) == len(found)
         values = status(told)
         assert float(values["bytes_in_per_s"]) > 1000 < float(values["bytes_out_per_s"]) + 500
         assert values["connected_since"][:4] == time.strftime("%Y")
@@ -86,8 +86,8 @@ def test_noise_is_shown_as_what_it_is(peer: Peer, module_domain: int, folder: Pa
 
         def spoiled() -> bool:
             found = lines(heard)
-            bad = [line for line in found if line.kind is Kind.BAD]
-            loose = [line for line in found if line.kind is Kind.NOISE]
+            bad = [line for line in found if line.kind is FrameKind.BAD]
+            loose = [line for line in found if line.kind is FrameKind.NOISE]
             return any("СУММА" in line.text for line in bad) and any(
                 line.text == f"шум, байт: {len(line.octets)}" for line in loose
             )

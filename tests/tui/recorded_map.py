@@ -12,7 +12,7 @@ from graph.data import GraphUpdate, Sample, TopicRow, Trouble
 from robot.kinematics import wheel_speeds
 from robot.motion.odometry import Pose
 from robot.world.grid import grid_of
-from robot.world.world import Sonar, Wheels, World
+from robot.world.world import SimulatedSonar, Wheels, World
 from tests.tui.recorded_lesson import NOW_S, SESSION, lesson_update, sample, topic
 
 GRID, POSE = "nav_msgs/msg/OccupancyGrid", "geometry_msgs/msg/PoseStamped"
@@ -73,7 +73,10 @@ def room(frame: str = "odom") -> Sample:
 @lru_cache
 def driven() -> tuple[World, tuple[Pose, ...]]:
     """The robot after some curves, and where it was on the way, ten times a second."""
-    world, path = World(front=Sonar(noise_m=0.0), rear=Sonar(forward=False, noise_m=0.0)), []
+    world, path = (
+        World(front=SimulatedSonar(noise_m=0.0), rear=SimulatedSonar(forward=False, noise_m=0.0)),
+        [],
+    )
     radius = world.body.wheel_radius_m
     for seconds, steering in ((2.0, 0.0), (3.0, 0.5), (3.0, -0.5), (1.2, -0.2)):
         speeds = wheel_speeds(0.3, steering)

@@ -14,7 +14,7 @@ from textual.widgets import Static
 
 from graph.data import Sample
 from robot.frames.lines import FrameLine
-from robot.frames.protocols import Kind
+from robot.frames.protocols import FrameKind
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, sample
 from tests.tui.recorded_devices import (
     AT_S,
@@ -219,7 +219,7 @@ async def test_why_there_is_no_driver(monkeypatch: pytest.MonkeyPatch) -> None:
 
 async def test_what_others_put_into_it_does_no_harm() -> None:
     async with stage() as at:
-        bad = FrameLine(AT_S, "in", Kind.FRAME, ESCAPE.encode(), ESCAPE)
+        bad = FrameLine(AT_S, "in", FrameKind.FRAME, ESCAPE.encode(), ESCAPE)
         await at.show(
             status(ESCAPE, 7, ESCAPE, port=ESCAPE, errors="nan", bytes_in_per_s="x" * 9999),
             foreign("", "x"),
@@ -234,7 +234,7 @@ async def test_what_others_put_into_it_does_no_harm() -> None:
         await at.press("end", "w", "b", "v", "b", "b")
         at.screen.table.choose("chassis")
         await at.pilot.pause()
-        many = [FrameLine(AT_S, "in", Kind.FRAME, b"x" * 9, "x") for _ in range(200)]
+        many = [FrameLine(AT_S, "in", FrameKind.FRAME, b"x" * 9, "x") for _ in range(200)]
         for _batch in range(40):
             at.graph.show(update(frames("chassis", many)))
             await at.pilot.pause()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robot.kinematics import wheel_speeds
 from robot.motion.odometry import Point, Pose
-from robot.safety.distance import Reading, Shares, Zone, gate, look, share, where
+from robot.safety.distance import Reading, SafetyZone, Shares, gate, look, share, where
 from robot.words import STOP, DriveSetpoint
 from robot.world.world import STEP_S, Wheels
 
@@ -34,7 +34,7 @@ class RandomDriver:
     Sonars fall silent for a while, motors stall, commands are noisy and now and then no numbers.
     """
 
-    def __init__(self, world: World, seed: int, zone: Zone | None) -> None:
+    def __init__(self, world: World, seed: int, zone: SafetyZone | None) -> None:
         """`zone` is what the gate goes by; None: there is no gate."""
         self.world, self.dice, self.zone = world, random.Random(seed), zone
         self.avoidable = 0
@@ -79,7 +79,7 @@ class RandomDriver:
         if now_s >= self._stalled_until_s:
             self.world.stalled = (False, False)
 
-    def _gated(self, command: DriveSetpoint, zone: Zone) -> DriveSetpoint:
+    def _gated(self, command: DriveSetpoint, zone: SafetyZone) -> DriveSetpoint:
         front, rear = (Reading(m, self.world.now_s - then) for m, then in self._readings)
         sights = (look(one, zone.critical_m, zone.stale_after_s) for one in (front, rear))
         shares = Shares(share(front, zone), share(rear, zone))

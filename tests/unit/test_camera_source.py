@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from nodes.drivers import camera_source as _camera_source
-from nodes.drivers.camera_source import CameraSource, Kind, SourceSetting
+from nodes.drivers.camera_source import CameraSource, SourceKind, SourceSetting
 from nodes.parts.parameters import BadValueError
 from nodes.parts.pictures import fit
 
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 @pytest.mark.parametrize(
     ("name", "kind", "shown"),
     [
-        ("0", Kind.DEVICE, "/dev/video0"),
-        ("12", Kind.DEVICE, "/dev/video12"),
-        ("/dev/v4l/by-id/usb-x", Kind.DEVICE, "/dev/v4l/by-id/usb-x"),
-        ("film.avi", Kind.FILE, "film.avi"),
-        ("http://pi:8080/x?a=b@c", Kind.STREAM, "http://pi:8080/x?a=b@c"),
-        ("rtsp://me:secret@pi/x", Kind.STREAM, "rtsp://me:***@pi/x"),
-        ("rtsp://me:a:b@pi/x", Kind.STREAM, "rtsp://me:***@pi/x"),
+        ("0", SourceKind.DEVICE, "/dev/video0"),
+        ("12", SourceKind.DEVICE, "/dev/video12"),
+        ("/dev/v4l/by-id/usb-x", SourceKind.DEVICE, "/dev/v4l/by-id/usb-x"),
+        ("film.avi", SourceKind.FILE, "film.avi"),
+        ("http://pi:8080/x?a=b@c", SourceKind.STREAM, "http://pi:8080/x?a=b@c"),
+        ("rtsp://me:secret@pi/x", SourceKind.STREAM, "rtsp://me:***@pi/x"),
+        ("rtsp://me:a:b@pi/x", SourceKind.STREAM, "rtsp://me:***@pi/x"),
     ],
 )
-def test_a_source_is_known_by_its_name(name: str, kind: Kind, shown: str) -> None:
+def test_a_source_is_known_by_its_name(name: str, kind: SourceKind, shown: str) -> None:
     source = CameraSource(name)
     assert (source.kind, str(source)) == (kind, shown)
 

@@ -8,7 +8,7 @@ import pytest
 
 from cli.health import over, settled, well
 from launcher.status import NodeState, NodeStatus
-from launcher.supervisor.readiness import Condition, Seen
+from launcher.supervisor.readiness import ReadyCondition, Seen
 from launcher.supervisor.words import instead, what
 
 
@@ -19,7 +19,7 @@ def node(name: str, state: NodeState, **more: object) -> NodeStatus:
 
 READY, RUNNING, FAILED = NodeState.READY, NodeState.RUNNING, NodeState.FAILED
 STARTING, WAITING, EXITED = NodeState.STARTING, NodeState.WAITING, NodeState.EXITED
-TOPIC = Condition("topic", "/scan", "std_msgs/msg/Float32", 5.0)
+TOPIC = ReadyCondition("topic", "/scan", "std_msgs/msg/Float32", 5.0)
 LATE = "not ready within 10 s: nobody publishes /scan"
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from graph.messages.condition import Condition, ConditionError
+from graph.messages.condition import ConditionError, MessageFilter
 
 SCAN: dict[str, Any] = {
     "header": {"stamp": {"sec": 12, "nanosec": 500}, "frame_id": "laser"},
@@ -61,7 +61,7 @@ SCAN: dict[str, Any] = {
     ],
 )
 def test_an_expression_holds_or_does_not(text: str, fits: bool) -> None:
-    assert Condition(text).holds(SCAN) is fits
+    assert MessageFilter(text).holds(SCAN) is fits
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_an_expression_holds_or_does_not(text: str, fits: bool) -> None:
 )
 def test_what_is_no_expression_is_told_with_its_place(text: str, told: str) -> None:
     with pytest.raises(ConditionError) as error:
-        Condition(text)
+        MessageFilter(text)
     assert told in str(error.value)
 
 
@@ -122,7 +122,7 @@ def test_what_is_no_expression_is_told_with_its_place(text: str, told: str) -> N
 )
 def test_nothing_else_of_python_is_understood(text: str) -> None:
     with pytest.raises(ConditionError):
-        Condition(text).holds(SCAN)
+        MessageFilter(text).holds(SCAN)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_nothing_else_of_python_is_understood(text: str) -> None:
     ],
 )
 def test_what_a_message_cannot_answer_is_told_with_its_place(text: str, told: str) -> None:
-    condition = Condition(text)
+    condition = MessageFilter(text)
     with pytest.raises(ConditionError) as error:
         condition.holds(SCAN)
     assert told in str(error.value)

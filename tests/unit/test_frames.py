@@ -13,20 +13,20 @@ from hypothesis import strategies as st
 from robot.frames.lines import MOST, FrameLine, decode, encode
 from robot.frames.lsc16 import ServoReader
 from robot.frames.pico import PicoReader
-from robot.frames.protocols import Kind, RawReader
+from robot.frames.protocols import FrameKind, RawReader
 from robot.frames.teller import Chunk, FrameTeller
 from robot.frames.tof import TofReader
 from robot.wire import lsc16 as wire_lsc16
 from robot.wire import pico as wire_pico
 from robot.wire import tfluna as wire_tfluna
 from robot.wire.line import wrap
-from robot.wire.lsc16 import Battery, BatteryRequest, Move
+from robot.wire.lsc16 import Battery, BatteryRequest, ServoMove
 from robot.wire.pico import Drive, Halt, Hello, Release, Telemetry, Welcome
 from robot.wire.tfluna import TofFrame
 from tests.unit.streams import cut
 
 if TYPE_CHECKING:
-    from robot.frames.protocols import FrameReader, Piece
+    from robot.frames.protocols import FramePiece, FrameReader
 
 READERS = (PicoReader, TofReader, ServoReader, RawReader)
 TELEMETRY = Telemetry(3, 61250, 2, 6.18, -6.15, 0.35, 7.42, 0.81, None, 0, frozenset("EN"))
@@ -138,7 +138,7 @@ def test_bad_frames_of_a_sonar_and_what_is_between() -> None:
     ("octets", "found"),
     [
         (
-            wire_lsc16.encode(Move(500, ((1, 1500), (2, 1700)))),
+            wire_lsc16.encode(ServoMove(500, ((1, 1500), (2, 1700)))),
             ("frame", "move in 500 ms: servo 1 to 1500 us, servo 2 to 1700 us"),
         ),
         (wire_lsc16.encode(Battery(7400)), ("frame", "battery 7.40 V")),
@@ -162,7 +162,7 @@ def test_no_byte_of_noise_is_lost_or_said_twice(
     chunks = cut(stream, places)
     for make in (TofReader, ServoReader):
         reader: FrameReader = make(language)
-        pieces: list[Piece] = [piece for chunk in chunks for piece in reader.feed(chunk)]
+        pieces: list[FramePiece] = [piece for chunk in chunks for piece in reader.feed(chunk)]
         assert b"".join(piece.octets for piece in [*pieces, *reader.flush()]) == stream
     reader = PicoReader(language)
     pieces = [piece for chunk in chunks for piece in reader.feed(chunk)]
@@ -183,16 +183,16 @@ def test_a_batch_is_bounded_and_tells_what_it_left_out() -> None:
     teller = FrameTeller(TofReader, "en")
     lines = teller.tell([Chunk(1.0, "in", NEAR * (MOST + 12))], 1.0, missed=500)
     assert [line.text for line in lines[-2:]] == ["12 more", "500 more bytes"]
-    assert (len(lines), lines[-2].kind, lines[-2].count) == (MOST + 2, Kind.MORE, 12)
+    assert (len(lines), lines[-2].kind, lines[-2].count) == (MOST + 2, FrameKind.MORE, 12)
     assert FrameTeller(TofReader, "ru").tell([], 0.0, 7)[0].text == "ещё байт: 7"
 
 
 def test_who_comes_in_the_middle_of_a_frame_sees_no_noise() -> None:
     teller = FrameTeller(TofReader, "en")
     lines = teller.tell([Chunk(1.0, "in", NEAR[4:] + NEAR)], 1.0)
-    assert [line.kind for line in lines] == [Kind.FRAME]
+    assert [line.kind for line in lines] == [FrameKind.FRAME]
     lines = teller.tell([Chunk(1.1, "in", NEAR[4:])], 1.1)
-    assert [line.kind for line in lines] == [Kind.NOISE]
+    assert [line.kind for line in lines] == [FrameKind.NOISE]
 
 
 def test_noise_in_drips_is_one_line_and_both_ways_keep_their_order() -> None:
@@ -218,8 +218,8 @@ def test_a_frame_that_does_not_end_is_given_up() -> None:
 
 def test_lines_are_told_and_read_again() -> None:
     lines = [
-        FrameLine(1.5, "in", Kind.FRAME, NEAR, "distance 1.23 m\u2028"),
-        FrameLine(1.6, "out", Kind.MORE, b"", "ещё 3", 3),
+        FrameLine(1.5, "in", FrameKind.FRAME, NEAR, "distance 1.23 m\u2028"),
+        FrameLine(1.6, "out", FrameKind.MORE, b"", "ещё 3", 3),
     ]
     text = encode(lines)
     assert decode(text) == (lines, 0)

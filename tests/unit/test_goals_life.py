@@ -10,7 +10,7 @@ from deck_interfaces.action import DriveToPoint
 
 from graph.calls import goal_life as goals_life
 from graph.calls.goal_life import ANSWER_WITHIN_S, GONE_AFTER_S, GoalLife
-from graph.calls.goal_line import Heard
+from graph.calls.goal_line import GoalAnswers
 from graph.data import Goal, GoalStatus
 from graph.messages.dated import Draft
 
@@ -73,7 +73,7 @@ def life(clock: Clock, line: Line) -> GoalLife:
 
 
 def go(life: GoalLife, **heard: Any) -> GoalStatus:
-    life.hear(Heard(**heard))
+    life.hear(GoalAnswers(**heard))
     life.act()
     return life.told.status
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from nodes.drivers.head_words import SERVO_SETTINGS, contradiction
 from robot.limits import Limits
 from robot.motion.head import HeadJoint, turn_ms
-from robot.wire.lsc16 import PULSE, Move, decode, encode
+from robot.wire.lsc16 import PULSE, ServoMove, decode, encode
 
 JOINTS = st.builds(
     HeadJoint,
@@ -62,7 +62,7 @@ def test_whatever_is_within_reach_is_a_pulse_that_the_controller_takes(
     assert angle in joint.limits
     pulse = joint.pulse_us(angle)
     assert pulse in PULSE
-    move = Move(turn_ms(joint.way_deg(None, angle), 10), ((joint.servo, pulse),))
+    move = ServoMove(turn_ms(joint.way_deg(None, angle), 10), ((joint.servo, pulse),))
     assert decode(encode(move)) == move
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from nodes.parts.stall_detector import Nap
+from nodes.parts.stall_detector import StallDetector
 
 
 @dataclass
@@ -24,9 +24,9 @@ def stamp(age_s: float) -> Stamp:
 
 
 @pytest.fixture
-def woken(monkeypatch: pytest.MonkeyPatch) -> Nap:
+def woken(monkeypatch: pytest.MonkeyPatch) -> StallDetector:
     """One who was away for 2 s and came back this moment."""
-    nap = Nap()
+    nap = StallDetector()
     now_s = time.monotonic() + 2.0
     monkeypatch.setattr(time, "monotonic", lambda: now_s)
     assert nap.lasted(0.5)
@@ -39,12 +39,14 @@ def later(monkeypatch: pytest.MonkeyPatch, by_s: float) -> None:
 
 
 def test_who_was_not_away_takes_everything_in() -> None:
-    nap = Nap()
+    nap = StallDetector()
     assert not nap.lasted(0.5)
     assert not nap.kept_waiting(stamp(0.4))
 
 
-def test_just_awake_it_takes_nothing_in(woken: Nap, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_just_awake_it_takes_nothing_in(
+    woken: StallDetector, monkeypatch: pytest.MonkeyPatch
+) -> None:
     later(monkeypatch, 0.4)
     assert woken.lasted(0.5)
     later(monkeypatch, 0.2)
@@ -52,7 +54,7 @@ def test_just_awake_it_takes_nothing_in(woken: Nap, monkeypatch: pytest.MonkeyPa
 
 
 def test_what_was_sent_meanwhile_is_known_by_its_stamp_though_it_comes_late(
-    woken: Nap, monkeypatch: pytest.MonkeyPatch
+    woken: StallDetector, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     later(monkeypatch, 0.8)
     assert woken.lasted(1.0) is False
@@ -61,7 +63,7 @@ def test_what_was_sent_meanwhile_is_known_by_its_stamp_though_it_comes_late(
 
 
 def test_a_stamp_that_says_nothing_is_not_asked(
-    woken: Nap, monkeypatch: pytest.MonkeyPatch
+    woken: StallDetector, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     later(monkeypatch, 0.4)
     assert not woken.kept_waiting(Stamp(0, 0))
@@ -69,7 +71,7 @@ def test_a_stamp_that_says_nothing_is_not_asked(
 
 
 def test_a_clock_that_is_behind_is_believed_again_after_a_while(
-    woken: Nap, monkeypatch: pytest.MonkeyPatch
+    woken: StallDetector, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     later(monkeypatch, 2.0)
     assert woken.kept_waiting(stamp(5.0))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from nodes.parts.pictures import BadPictureError, bgr
-from nodes.simulated.scene import Scene
+from nodes.simulated.scene import MovingScene
 
 
 def message(**changes: Any) -> Any:
@@ -47,7 +47,7 @@ def test_what_is_no_picture_is_refused_with_a_reason(changes: dict[str, Any], wo
 
 def draw(number: int, *, blue_first: bool = False) -> np.ndarray[Any, np.dtype[np.uint8]]:
     picture = np.zeros((480, 640, 3), np.uint8)
-    Scene(480, 640, blue_first=blue_first).draw(picture, number)
+    MovingScene(480, 640, blue_first=blue_first).draw(picture, number)
     return picture
 
 
@@ -71,7 +71,7 @@ def test_the_caption_counts() -> None:
 @pytest.mark.parametrize(("height", "width"), [(16, 16), (16, 4096), (48, 64), (1080, 1920)])
 def test_every_size_can_be_drawn(height: int, width: int) -> None:
     picture = np.zeros((height, width, 3), np.uint8)
-    scene = Scene(height, width, blue_first=True)
+    scene = MovingScene(height, width, blue_first=True)
     for number in (0, 9, 123_456_789):
         scene.draw(picture, number)
     assert picture.any()

@@ -9,8 +9,8 @@ from typing import cast
 import pytest
 
 from cli.doctor import Level
-from cli.preflight.answers import Answer, ask
-from cli.preflight.line import Line
+from cli.preflight.answers import DeviceAnswer, ask
+from cli.preflight.line import OpenPort
 from robot.wire.lsc16 import Battery
 from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import Telemetry, Welcome
@@ -50,9 +50,9 @@ class Device:
             self._answer += self.answers.get(data, b"")
 
 
-def asked(kind: str, device: Device) -> Answer:
+def asked(kind: str, device: Device) -> DeviceAnswer:
     """Ask a device; whatever it is, nothing is said that moves, and what is not well has a mend."""
-    answer = ask(kind, cast("Line", device))
+    answer = ask(kind, cast("OpenPort", device))
     assert set(device.said) <= {HELLO, BATTERY}
     assert (answer.level is Level.OK) is (answer.mend == "")
     return answer

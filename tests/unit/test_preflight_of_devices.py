@@ -15,9 +15,9 @@ import pytest
 from cli import main
 from cli.doctor import Finding, Level
 from cli.preflight import examine
-from cli.preflight.answers import Answer
+from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
-from cli.preflight.line import Line
+from cli.preflight.line import OpenPort
 from cli.preflight.opening import opened
 from launcher.profile.load import Profile
 from launcher.profile.model import ProfileDocument
@@ -34,10 +34,10 @@ def port() -> Iterator[str]:
     os.close(theirs)
 
 
-def failing(number: int) -> Callable[[str, int], Line]:
+def failing(number: int) -> Callable[[str, int], OpenPort]:
     """Return an opening that fails like this."""
 
-    def opening(path: str, _baud: int) -> Line:
+    def opening(path: str, _baud: int) -> OpenPort:
         raise OSError(number, os.strerror(number), path)
 
     return opening
@@ -65,7 +65,7 @@ def test_ports_that_cannot_be_opened(
     path = tmp_path / "pico"
     path.touch()
     answer = opened("pico", str(path), 115_200, [], failing(number))
-    assert isinstance(answer, Answer)
+    assert isinstance(answer, DeviceAnswer)
     assert answer.level is Level.FAIL
     assert words in answer.text
     assert mend in answer.mend
@@ -73,7 +73,7 @@ def test_ports_that_cannot_be_opened(
 
 def test_a_port_that_is_missing_lists_those_that_are_there(tmp_path: Path) -> None:
     answer = opened("pico", str(tmp_path / "none"), 115_200, [OTHER])
-    assert isinstance(answer, Answer)
+    assert isinstance(answer, DeviceAnswer)
     assert "no such port; ports: /dev/ttyUSB3 (10c4:ea60, CP2102)" in answer.text
     assert "DECK_PICO_PORT=" in answer.mend
 
@@ -81,26 +81,26 @@ def test_a_port_that_is_missing_lists_those_that_are_there(tmp_path: Path) -> No
 def test_a_name_whose_device_was_unplugged(tmp_path: Path) -> None:
     (tmp_path / "pico").symlink_to("/dev/ttyACM99")
     answer = opened("pico", str(tmp_path / "pico"), 115_200, [])
-    assert isinstance(answer, Answer)
+    assert isinstance(answer, DeviceAnswer)
     assert "only its name is left" in answer.text
 
 
 def test_what_is_no_serial_port(tmp_path: Path) -> None:
     (tmp_path / "pico").write_text("no device")
     answer = opened("pico", str(tmp_path / "pico"), 115_200, [])
-    assert isinstance(answer, Answer)
+    assert isinstance(answer, DeviceAnswer)
     assert answer.text == "it is not a serial port"
 
 
 def test_a_port_that_this_program_holds_is_taken(port: str) -> None:
     line = opened("pico", port, 115_200, [])
-    assert isinstance(line, Line)
+    assert isinstance(line, OpenPort)
     taken = opened("pico", port, 115_200, [])
-    assert isinstance(taken, Answer)
+    assert isinstance(taken, DeviceAnswer)
     assert "another program is using it" in taken.text
     line.close()
     again = opened("pico", port, 115_200, [])
-    assert isinstance(again, Line)
+    assert isinstance(again, OpenPort)
     again.close()
 
 

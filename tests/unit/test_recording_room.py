@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from graph.bag.errors import BagError
-from graph.recording.disk_room import Room, free_bytes
+from graph.recording.disk_room import DiskRoom, free_bytes
 
 HERE = Path("/here/walk")
 MB = 1_000_000
@@ -27,7 +27,7 @@ class Disk:
 
 
 def test_the_rate_is_that_of_the_last_seconds() -> None:
-    room = Room(HERE, 0, Disk(1000 * MB))
+    room = DiskRoom(HERE, 0, Disk(1000 * MB))
     for second in range(20):
         room.look(float(second), second * 8 * MB)
     assert room.bytes_per_s == pytest.approx(8 * MB)
@@ -38,7 +38,7 @@ def test_the_rate_is_that_of_the_last_seconds() -> None:
 
 
 def test_the_time_left_is_that_till_the_reserve() -> None:
-    room = Room(HERE, 500 * MB, Disk(900 * MB))
+    room = DiskRoom(HERE, 500 * MB, Disk(900 * MB))
     room.look(0.0, 0)
     assert room.left_s is None
     room.look(2.0, 16 * MB)
@@ -48,7 +48,7 @@ def test_the_time_left_is_that_till_the_reserve() -> None:
 
 def test_at_the_reserve_it_ends_with_a_word() -> None:
     disk = Disk(501 * MB)
-    room = Room(HERE, 500 * MB, disk)
+    room = DiskRoom(HERE, 500 * MB, disk)
     room.look(0.0, 0)
     assert room.end is None
     disk.free = 500 * MB
@@ -57,13 +57,13 @@ def test_at_the_reserve_it_ends_with_a_word() -> None:
 
 
 def test_where_there_is_no_room_it_does_not_begin() -> None:
-    Room(HERE, 500 * MB, Disk(501 * MB)).check()
+    DiskRoom(HERE, 500 * MB, Disk(501 * MB)).check()
     with pytest.raises(BagError, match=r"/here/walk: 499 MB are free.*500 MB must stay free"):
-        Room(HERE, 500 * MB, Disk(499 * MB)).check()
+        DiskRoom(HERE, 500 * MB, Disk(499 * MB)).check()
 
 
 def test_a_disk_that_does_not_tell_ends_nothing() -> None:
-    room = Room(HERE, 500 * MB, Disk(-1))
+    room = DiskRoom(HERE, 500 * MB, Disk(-1))
     room.check()
     room.look(0.0, 0)
     room.look(1.0, MB)

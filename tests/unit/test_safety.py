@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from robot.safety.distance import (
     Reading,
+    SafetyZone,
     Shares,
     Sight,
     Verdict,
-    Zone,
     allowed,
     gate,
     look,
@@ -27,7 +27,9 @@ parts = st.floats(0, 1)
 distances = any_float | st.floats(0, 3)
 ages = any_float | st.floats(0, 3)
 readings = st.builds(Reading, st.none() | distances, ages)
-zones = st.builds(Zone, st.floats(0.01, 100) | st.just(0.5), st.floats(0, 100), st.floats(0.05, 60))
+zones = st.builds(
+    SafetyZone, st.floats(0.01, 100) | st.just(0.5), st.floats(0, 100), st.floats(0.05, 60)
+)
 setpoints = st.builds(DriveSetpoint, any_float, any_float)
 
 
@@ -92,7 +94,7 @@ def test_a_blocked_robot_may_still_turn_its_wheels_and_back_off() -> None:
 
 # ---------------------------------------------------------------- slowing down
 
-ZONE = Zone(critical_m=0.5, slow_m=1.0, stale_after_s=1.0)
+ZONE = SafetyZone(critical_m=0.5, slow_m=1.0, stale_after_s=1.0)
 
 
 @pytest.mark.parametrize(
@@ -117,7 +119,7 @@ def test_speed_is_slowed_in_proportion(distance: float | None, part: float) -> N
 
 @given(readings, zones)
 def test_a_share_is_a_share_and_nothing_where_the_way_is_not_free(
-    reading: Reading, zone: Zone
+    reading: Reading, zone: SafetyZone
 ) -> None:
     part = share(reading, zone)
     assert 0.0 <= part <= 1.0
@@ -126,7 +128,7 @@ def test_a_share_is_a_share_and_nothing_where_the_way_is_not_free(
 
 
 @given(distances, distances, zones)
-def test_nearer_is_never_faster(one: float, other: float, zone: Zone) -> None:
+def test_nearer_is_never_faster(one: float, other: float, zone: SafetyZone) -> None:
     if math.isnan(one) or math.isnan(other):
         return
     near, far = sorted((one, other))
@@ -134,7 +136,9 @@ def test_nearer_is_never_faster(one: float, other: float, zone: Zone) -> None:
 
 
 @given(zones)
-def test_it_stands_at_the_critical_distance_and_is_free_from_the_slow_one_on(zone: Zone) -> None:
+def test_it_stands_at_the_critical_distance_and_is_free_from_the_slow_one_on(
+    zone: SafetyZone,
+) -> None:
     slows = zone.slow_m > zone.critical_m
     assert share(Reading(zone.critical_m), zone) == (0.0 if slows else 1.0)
     assert share(Reading(max(zone.critical_m, zone.slow_m)), zone) == 1.0
@@ -144,7 +148,7 @@ def test_it_stands_at_the_critical_distance_and_is_free_from_the_slow_one_on(zon
 def test_a_slow_distance_within_the_critical_one_slows_nothing(
     distance: float, slow_m: float
 ) -> None:
-    zone = Zone(critical_m=0.5, slow_m=slow_m)
+    zone = SafetyZone(critical_m=0.5, slow_m=slow_m)
     assert share(Reading(distance), zone) in (0.0, 1.0)
 
 

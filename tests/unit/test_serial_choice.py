@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.profile.serial_choice import KINDS, Unclear, Wanted, choose
+from launcher.profile.serial_choice import KINDS, Unclear, WantedPort, choose
 from launcher.serial_ports import SerialPort, lasting_names
 
 PICO = SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython-if00", "2e8a:0005", "Board")
@@ -15,9 +15,9 @@ SERVOS = SerialPort("/dev/ttyUSB1", "/dev/serial/by-path/usb-1.2", "1a86:7523", 
 MODEM = SerialPort("/dev/ttyACM1", "/dev/serial/by-id/usb-modem", "1234:5678", "Modem")
 UART = SerialPort("/dev/ttyAMA0")
 
-A_PICO = Wanted(usb=KINDS["pico"])
-A_LUNA = Wanted(usb=KINDS["tf_luna"])
-SERVO_BOARD = Wanted(usb=KINDS["lsc16"])
+A_PICO = WantedPort(usb=KINDS["pico"])
+A_LUNA = WantedPort(usb=KINDS["tf_luna"])
+SERVO_BOARD = WantedPort(usb=KINDS["lsc16"])
 
 
 def paths(chosen: dict[str, SerialPort | Unclear]) -> dict[str, str | None]:
@@ -69,18 +69,18 @@ def test_one_port_is_not_given_to_two_devices() -> None:
 
 @pytest.mark.parametrize("named", [LUNA.name, LUNA.device])
 def test_what_one_device_names_is_nobody_elses(named: str) -> None:
-    wanted = {"tof_front": Wanted(named), "lsc16": SERVO_BOARD}
+    wanted = {"tof_front": WantedPort(named), "lsc16": SERVO_BOARD}
     assert paths(choose(wanted, [LUNA, SERVOS])) == {"lsc16": SERVOS.name}
 
 
 def test_ids_of_ones_own_tell_equal_kinds_apart() -> None:
-    wanted = {"tof_front": Wanted(usb=("10c4:ea60",)), "lsc16": Wanted(usb=("1a86:7523",))}
+    wanted = {"tof_front": WantedPort(usb=("10c4:ea60",)), "lsc16": WantedPort(usb=("1a86:7523",))}
     assert paths(choose(wanted, [SERVOS, LUNA])) == {"tof_front": LUNA.name, "lsc16": SERVOS.name}
 
 
 def test_without_ids_any_usb_device_may_be_it_but_no_uart() -> None:
-    assert paths(choose({"gps": Wanted()}, [UART, MODEM])) == {"gps": MODEM.name}
-    assert paths(choose({"gps": Wanted()}, [UART])) == {"gps": None}
+    assert paths(choose({"gps": WantedPort()}, [UART, MODEM])) == {"gps": MODEM.name}
+    assert paths(choose({"gps": WantedPort()}, [UART])) == {"gps": None}
 
 
 def test_the_name_of_the_device_goes_before_that_of_its_socket(tmp_path: Path) -> None:

@@ -14,9 +14,9 @@ from launcher.processes.table import Process
 from launcher.processes.usage import Usage
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeState, Severity
-from launcher.supervisor.node import LATE_S, Node
+from launcher.supervisor.node import LATE_S, SupervisedNode
 from launcher.supervisor.plan import NodePlan
-from launcher.supervisor.readiness import Condition, Seen, UnwatchableError
+from launcher.supervisor.readiness import ReadyCondition, Seen, UnwatchableError
 from tests.unit.manual_clock import ManualClock, settle
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class FakeSession:
         self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
         return self.process
 
-    async def ready(self, _condition: Condition, tell: Callable[[Seen], None]) -> None:
+    async def ready(self, _condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
         self.tell = tell
         if not self.watchable:
             raise UnwatchableError
@@ -113,8 +113,8 @@ async def crash(session: FakeSession) -> None:
     await settle()
 
 
-async def started(session: FakeSession, plan: NodePlan = PLAN) -> Node:
-    node = Node(plan, session)
+async def started(session: FakeSession, plan: NodePlan = PLAN) -> SupervisedNode:
+    node = SupervisedNode(plan, session)
     node.start()
     await settle()
     return node
@@ -138,7 +138,7 @@ async def test_what_the_process_before_cost_is_not_told_of_the_next(session: Fak
 
 
 async def test_a_node_is_ready_when_its_condition_holds(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, ready=Condition("topic", "/sonar")))
+    node = await started(session, replace(PLAN, ready=ReadyCondition("topic", "/sonar")))
     assert (node.state, node.serves) == (NodeState.STARTING, False)
     assert "/sonar" in node.detail
     session.is_ready.set()
@@ -147,7 +147,7 @@ async def test_a_node_is_ready_when_its_condition_holds(session: FakeSession) ->
 
 
 async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, ready=Condition("node", "sonar"), within_s=7))
+    node = await started(session, replace(PLAN, ready=ReadyCondition("node", "sonar"), within_s=7))
     await session.clock.advance(7)
     assert (node.state, node.serves) == (NodeState.RUNNING, False)
     assert node.detail == "not ready within 7 s: node sonar is not in the graph"
@@ -159,7 +159,7 @@ async def test_a_node_that_is_not_ready_in_time_runs_on_and_says_so(session: Fak
 async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(
     session: FakeSession,
 ) -> None:
-    awaited = Condition("topic", "/sonar", "std_msgs/msg/Float32", 5)
+    awaited = ReadyCondition("topic", "/sonar", "std_msgs/msg/Float32", 5)
     node = await started(session, replace(PLAN, ready=awaited, within_s=7))
     session.tell(Seen(("std_msgs/msg/String",)))
     wrong = "/sonar is published as std_msgs/msg/String, expected std_msgs/msg/Float32"
@@ -172,7 +172,7 @@ async def test_what_there_is_in_place_of_what_is_awaited_is_told_at_once(
 
 
 async def test_readiness_is_not_watched_for_ever(session: FakeSession) -> None:
-    node = await started(session, replace(PLAN, ready=Condition("node", "sonar")))
+    node = await started(session, replace(PLAN, ready=ReadyCondition("node", "sonar")))
     await session.clock.advance(10 + LATE_S)
     session.is_ready.set()
     await settle()
@@ -181,7 +181,7 @@ async def test_readiness_is_not_watched_for_ever(session: FakeSession) -> None:
 
 async def test_where_readiness_cannot_be_seen_nobody_waits_for_it(session: FakeSession) -> None:
     session.watchable = False
-    node = await started(session, replace(PLAN, ready=Condition("node", "sonar")))
+    node = await started(session, replace(PLAN, ready=ReadyCondition("node", "sonar")))
     assert (node.state, node.serves) == (NodeState.RUNNING, True)
 
 
@@ -277,7 +277,7 @@ async def test_who_is_to_publish_or_serve_does_not_end_well_by_itself(
 ) -> None:
     if was_ready:
         session.is_ready.set()
-    node = await started(session, replace(PLAN, ready=Condition(kind, "/x")))
+    node = await started(session, replace(PLAN, ready=ReadyCondition(kind, "/x")))
     assert node.serves is was_ready
     session.process.end(100, Exit(0))
     await settle()

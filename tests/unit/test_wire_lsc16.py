@@ -12,17 +12,17 @@ from robot.wire.lsc16 import (
     ActionStop,
     Battery,
     BatteryRequest,
-    Move,
     ServoDecoder,
     ServoFrame,
+    ServoMove,
     decode,
     encode,
 )
 from tests.unit.streams import cut, flipped, noise
 
 MADE_BY_THE_MAKER: list[tuple[str, ServoFrame]] = [
-    ("55 55 08 03 01 E8 03 01 D0 07", Move(1000, ((1, 2000),))),
-    ("55 55 0B 03 02 20 03 02 B0 04 09 FC 08", Move(800, ((2, 1200), (9, 2300)))),
+    ("55 55 08 03 01 E8 03 01 D0 07", ServoMove(1000, ((1, 2000),))),
+    ("55 55 0B 03 02 20 03 02 B0 04 09 FC 08", ServoMove(800, ((2, 1200), (9, 2300)))),
     ("55 55 02 0F", BatteryRequest()),
     ("55 55 04 0F 4C 1D", Battery(7500)),
     ("55 55 02 07", ActionStop()),
@@ -31,7 +31,7 @@ pairs = st.tuples(st.integers(1, 16), st.integers(500, 2500))
 moves = st.lists(pairs, min_size=1, max_size=16, unique_by=lambda pair: pair[0]).map(tuple)
 groups = st.integers(0, 255), st.integers(0, 65535)
 frames: st.SearchStrategy[ServoFrame] = st.one_of(
-    st.builds(Move, st.integers(0, 30_000), moves),
+    st.builds(ServoMove, st.integers(0, 30_000), moves),
     st.builds(ActionRun, *groups),
     st.builds(ActionComplete, *groups),
     st.builds(Battery, st.integers(0, 30_000)),
@@ -48,14 +48,14 @@ def test_the_frames_of_the_maker(octets: str, frame: ServoFrame) -> None:
 @pytest.mark.parametrize(
     "frame",
     [
-        Move(30_001, ((1, 1500),)),
-        Move(-1, ((1, 1500),)),
-        Move(100, ((1, 499),)),
-        Move(100, ((1, 2501),)),
-        Move(100, ((0, 1500),)),
-        Move(100, ((17, 1500),)),
-        Move(100, ((1, 1500), (1, 1600))),
-        Move(100, ()),
+        ServoMove(30_001, ((1, 1500),)),
+        ServoMove(-1, ((1, 1500),)),
+        ServoMove(100, ((1, 499),)),
+        ServoMove(100, ((1, 2501),)),
+        ServoMove(100, ((0, 1500),)),
+        ServoMove(100, ((17, 1500),)),
+        ServoMove(100, ((1, 1500), (1, 1600))),
+        ServoMove(100, ()),
         Battery(30_001),
         ActionRun(256, 1),
     ],
@@ -67,7 +67,7 @@ def test_values_that_the_controller_does_not_know_are_refused(frame: ServoFrame)
 
 def test_what_turned_bits_make_is_refused_or_at_least_in_its_range() -> None:
     """There is no checksum: all that can be promised is that no servo is sent astray."""
-    for bad in flipped(encode(Move(1000, ((1, 2000),))), 2):
+    for bad in flipped(encode(ServoMove(1000, ((1, 2000),))), 2):
         for frame in ServoDecoder().feed(bad + bytes(60)):
             assert encode(frame) in bad + bytes(60)
 

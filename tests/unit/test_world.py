@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.motion.odometry import Point, Pose
-from robot.safety.distance import Zone
+from robot.safety.distance import SafetyZone
 from robot.world.room import LIVING_ROOM, Box, Room
-from robot.world.world import Body, Sonar, Wheels, World
+from robot.world.world import Body, SimulatedSonar, Wheels, World
 from tests.unit.random_driver import RandomDriver, drive
 
 EMPTY = Room(Box(0.0, 0.0, 10.0, 10.0))
@@ -162,7 +162,7 @@ def test_orders_that_are_no_numbers_do_no_harm(order: tuple[float, float, float]
 
 def test_a_sonar_tells_what_is_before_it_and_what_it_cannot() -> None:
     dice, body = random.Random(1), Body()
-    exact = Sonar(noise_m=0, dropout=0)
+    exact = SimulatedSonar(noise_m=0, dropout=0)
     assert exact.read(EMPTY, body, Pose(4, 0), dice) == pytest.approx(0.7)
     assert replace(exact, forward=False).read(EMPTY, body, Pose(-4, 0), dice) == pytest.approx(0.95)
     assert exact.read(EMPTY, body, Pose(4.6, 0), dice) == -math.inf
@@ -171,7 +171,7 @@ def test_a_sonar_tells_what_is_before_it_and_what_it_cannot() -> None:
 
 
 def test_noise_and_dropouts_are_as_many_as_asked_for() -> None:
-    dice, sonar = random.Random(2), Sonar(noise_m=0.02, dropout=0.1)
+    dice, sonar = random.Random(2), SimulatedSonar(noise_m=0.02, dropout=0.1)
     read = [sonar.read(EMPTY, Body(), Pose(2, 0), dice) for _ in range(2000)]
     good = [metres for metres in read if not math.isnan(metres)]
     assert len(good) == pytest.approx(1800, abs=60)
@@ -186,7 +186,7 @@ def test_noise_and_dropouts_are_as_many_as_asked_for() -> None:
 
 
 def test_minutes_among_boxes_have_no_collision_that_a_stop_could_have_avoided() -> None:
-    driver = RandomDriver(World(LIVING_ROOM, seed=3), seed=4, zone=Zone(0.3, 0.0, 0.3))
+    driver = RandomDriver(World(LIVING_ROOM, seed=3), seed=4, zone=SafetyZone(0.3, 0.0, 0.3))
     driver.drive_for(180.0)
     assert driver.world.now_s == pytest.approx(180.0)
     assert driver.world.travelled_m > 10

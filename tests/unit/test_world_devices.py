@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from robot.wire.lsc16 import Battery, BatteryRequest, Move, decode
+from robot.wire.lsc16 import Battery, BatteryRequest, ServoMove, decode
 from robot.wire.lsc16 import encode as encode_servo
 from robot.wire.pico import Drive, Halt, Hello, PicoDecoder, Release, Telemetry, encode
 from robot.world.pico import SimulatedPico
@@ -131,7 +131,7 @@ def test_the_simulated_pico_does_what_the_firmware_does(seed: int) -> None:
 
 def test_the_servos_move_at_their_pace_and_tell_their_battery() -> None:
     servos = SimulatedServos()
-    assert servos.feed(encode_servo(Move(1000, ((1, 2000),)))) == b""
+    assert servos.feed(encode_servo(ServoMove(1000, ((1, 2000),)))) == b""
     servos.advance(0.5)
     assert servos.pulse_us(1) == pytest.approx(1750)
     assert servos.pulse_us(2) == 1500

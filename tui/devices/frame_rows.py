@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from launcher.status import LogLine, Severity
 from robot.frames.lines import MOST_OCTETS, FrameLine
-from robot.frames.protocols import Kind
+from robot.frames.protocols import FrameKind
 from text.i18n import N_, _
 from tui.log_view.rows import LogColumns
 
@@ -18,12 +18,12 @@ KEPT = 5000
 """Frames of one port."""
 WAYS = {"in": N_("← in"), "out": N_("→ out")}
 _SEVERITIES = {
-    Kind.FRAME: Severity.INFO,
-    Kind.NOISE: Severity.WARN,
-    Kind.BAD: Severity.ERROR,
-    Kind.MORE: Severity.INFO,
+    FrameKind.FRAME: Severity.INFO,
+    FrameKind.NOISE: Severity.WARN,
+    FrameKind.BAD: Severity.ERROR,
+    FrameKind.MORE: Severity.INFO,
 }
-_MARKS = {Kind.NOISE: "~ ", Kind.BAD: "✗ ", Kind.MORE: "⋯ "}
+_MARKS = {FrameKind.NOISE: "~ ", FrameKind.BAD: "✗ ", FrameKind.MORE: "⋯ "}
 _READABLE = 4
 """Fewer bytes are no text, even if each of them is a letter."""
 _WIDEST = 64

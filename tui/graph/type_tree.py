@@ -10,7 +10,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.widgets import Tree
 
-from graph.messages.browse import Constant, Definition, Field, definition
+from graph.messages.browse import Constant, Definition, MessageField, definition
 from graph.messages.types import UnknownTypeError
 from text.i18n import N_, _, said
 from text.plain import plain
@@ -120,7 +120,7 @@ class GraphTypeTree(Tree["str | None"], Working):
 
 
 def _fill(
-    node: TreeNode[str | None], fields: tuple[Field, ...], constants: tuple[Constant, ...]
+    node: TreeNode[str | None], fields: tuple[MessageField, ...], constants: tuple[Constant, ...]
 ) -> None:
     if not fields and not constants:
         node.add_leaf(Text(_("no fields"), "italic dim"))
@@ -140,7 +140,7 @@ def _fill(
         )
 
 
-def _told(field: Field) -> list[Any]:
+def _told(field: MessageField) -> list[Any]:
     """Return type, default, and bounds that the type's name does not tell by itself."""
     parts: list[Any] = [(plain(field.type_name), "cyan")]
     if not field.message:

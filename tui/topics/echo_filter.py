@@ -9,7 +9,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
-from graph.messages.condition import LONGEST, Condition, ConditionError
+from graph.messages.condition import LONGEST, ConditionError, MessageFilter
 from text.i18n import _, ngettext, said
 from text.plain import plain
 from tui.widgets.field import Field
@@ -46,7 +46,7 @@ class EchoFilter(Horizontal):
         self._topic = ""
         self._texts: dict[str, str] = {}
         """Topic to its expression."""
-        self._condition: Condition | None = None
+        self._condition: MessageFilter | None = None
         self._error: ConditionError | None = None
         """What is wrong with the expression, or what the newest that had none could not answer."""
         self._seen = self._fitted = self._failed = 0
@@ -137,7 +137,7 @@ class EchoFilter(Horizontal):
         self._sent_s = None
         if self.in_force:
             try:
-                self._condition = Condition(self._texts[self._topic])
+                self._condition = MessageFilter(self._texts[self._topic])
             except ConditionError as error:
                 self._error = error
         self._tell()

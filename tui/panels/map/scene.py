@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robot.world.world import Body, Sonar
+from robot.world.world import Body, SimulatedSonar
 from tui.panels.map.canvas import Canvas
 from tui.panels.map.reading import OCCUPIED_FROM
 from tui.panels.sonar.bar import ink_of
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 FRONT, REAR = "front", "rear"
 BODY = Body()
-MAX_RANGE_M = Sonar().farthest_m
+MAX_RANGE_M = SimulatedSonar().farthest_m
 """Where a cone ends in which nothing was found."""
 LONGEST_RAY_M = 1e4
 """A longer one is drawn so long: its end is beyond every edge."""
