@@ -18,7 +18,7 @@ from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
 from tui.emergency.state import TOPIC_TYPE
 from tui.frame.title_bar import TitleBar
 from tui.help.screen import HelpScreen
-from tui.topics.publications import Publications
+from tui.topics.publication_list import PublicationList
 from tui.topics.publish import PublishDialog
 from tui.topics.publish_actions import PublishAtRate
 from tui.topics.screen import TopicsScreen
@@ -148,17 +148,17 @@ async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) 
     await desk.pilot.press("ctrl+g")
     await desk.says("Publishing to /drive at 2.5 Hz.")
     assert [(topic, hz) for topic, _type, _value, hz in desk.graph.repeated] == [("/drive", 2.5)]
-    await desk.until(lambda: desk.dialog.query_one(Publications).chosen_number == 1)
-    assert desk.dialog.query_one(Publications).display
+    await desk.until(lambda: desk.dialog.query_one(PublicationList).chosen_number == 1)
+    assert desk.dialog.query_one(PublicationList).display
     # Another on the same topic takes its place.
     await desk.pilot.press("ctrl+g")
     await desk.until(lambda: desk.graph.stopped_publications == [1])
-    await desk.until(lambda: desk.dialog.query_one(Publications).chosen_number == 2)
+    await desk.until(lambda: desk.dialog.query_one(PublicationList).chosen_number == 2)
     await desk.pilot.press("f12")
     await desk.says("Stopped: /drive")
     assert desk.graph.stopped_publications == [1, 2]
     await desk.until(lambda: not desk.dialog.is_publishing)
-    assert not desk.dialog.query_one(Publications).display
+    assert not desk.dialog.query_one(PublicationList).display
 
 
 async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter(
@@ -172,7 +172,7 @@ async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter
     assert desk.graph.stopped_publications == []
     await desk.open("/ai_command")
     await desk.until(lambda: desk.dialog.is_publishing)
-    desk.dialog.query_one(Publications).focus()
+    desk.dialog.query_one(PublicationList).focus()
     await desk.pilot.press("enter")
     assert desk.graph.stopped_publications == [1]
 
@@ -181,7 +181,7 @@ async def test_a_publication_that_ended_by_itself_says_why(desk: Desk) -> None:
     await desk.open()
     gone = Publication(7, "/drive", DRIVE, 10.0, 3, 0, "the type has changed")
     desk.graph.show(replace(lesson_update(), publications=(gone,)))
-    listed = desk.dialog.query_one(Publications)
+    listed = desk.dialog.query_one(PublicationList)
     await desk.until(lambda: "the type has changed" in listed.render_line(1).text)
 
 

@@ -275,7 +275,7 @@ async def stage() -> Any:
 async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(stage: Any) -> None:
     screen, pilot, graph = stage
     await pilot.press("V")
-    assert screen.plot_place is PlotPlace.NONE
+    assert screen.plotting.place is PlotPlace.NONE
     await pilot.press("enter", "down", "down", "V")
     await pilot.pause()
     assert screen.plot.fields == (PlotField("/drive", ("drive", "steering_angle")),)
@@ -301,7 +301,7 @@ async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(
     await pilot.press("home", "down", "down", "V")
     await pilot.pause()
     assert not screen.plot.fields
-    assert screen.plot_place is PlotPlace.NONE
+    assert screen.plotting.place is PlotPlace.NONE
     assert "/drive" not in graph.followed
 
 
@@ -309,14 +309,14 @@ async def test_the_plot_goes_beside_alone_and_away(stage: Any) -> None:
     screen, pilot, _graph = stage
     await pilot.press("enter", "down", "down", "V", "v")
     await pilot.pause()
-    assert screen.is_covered
+    assert screen.plotting.covers_all
     assert not screen.table.display
     await pilot.press("z", "p")
     assert screen.plot.window_s == 60.0
     assert screen.plot.paused
     await pilot.press("escape")
     await pilot.pause()
-    assert screen.plot_place is PlotPlace.BESIDE
+    assert screen.plotting.place is PlotPlace.BESIDE
     assert screen.table.has_focus
     await pilot.press("p")
     assert not screen.plot.paused

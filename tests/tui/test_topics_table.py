@@ -22,7 +22,7 @@ from tui.topics.table_columns import (
     placed,
     state_text,
 )
-from tui.topics.table_order import Order
+from tui.topics.table_order import TopicsOrder
 
 FLOAT = "std_msgs/msg/Float32"
 
@@ -38,7 +38,7 @@ class TableApp(App[None]):
         """The table fills the screen."""
         yield TopicsTable()
 
-    def on_topics_table_chosen(self, message: TopicsTable.Chosen) -> None:
+    def on_topics_table_topic_chosen(self, message: TopicsTable.TopicChosen) -> None:
         """Note what was chosen."""
         self.chosen.append(message.topic)
 
@@ -174,28 +174,32 @@ def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
         topic("/b", FLOAT, None, age_s=None),
         topic("/a", FLOAT, 5.01),
     ]
-    assert [row.name for row in Order().arranged(rows)] == ["/a", "/b", "/c"]
-    assert [row.name for row in Order().by("hz").arranged(rows)] == ["/a", "/c", "/b"]
-    assert [row.name for row in Order().by("hz").by("hz").arranged(rows)] == ["/b", "/a", "/c"]
-    assert [row.name for row in Order().by("age").arranged(rows)] == ["/a", "/c", "/b"]
+    assert [row.name for row in TopicsOrder().arranged(rows)] == ["/a", "/b", "/c"]
+    assert [row.name for row in TopicsOrder().by("hz").arranged(rows)] == ["/a", "/c", "/b"]
+    assert [row.name for row in TopicsOrder().by("hz").by("hz").arranged(rows)] == [
+        "/b",
+        "/a",
+        "/c",
+    ]
+    assert [row.name for row in TopicsOrder().by("age").arranged(rows)] == ["/a", "/c", "/b"]
 
 
 def test_troubles_come_first_when_sorted_by_state() -> None:
-    first = Order().by("state").arranged(TOPICS)[0]
+    first = TopicsOrder().by("state").arranged(TOPICS)[0]
     assert first.trouble is Trouble.NO_PUBLISHER
 
 
 def test_the_filter_wants_every_word_in_name_or_type() -> None:
-    found = Order(words="SENSOR float").arranged(TOPICS)
+    found = TopicsOrder(words="SENSOR float").arranged(TOPICS)
     assert [row.name for row in found] == ["/sensor/sonar_front"]
-    assert Order(words="float zzz").arranged(TOPICS) == []
+    assert TopicsOrder(words="float zzz").arranged(TOPICS) == []
 
 
 def test_topics_of_ros_itself_are_shown_on_demand() -> None:
-    shown = {row.name for row in Order().arranged(TOPICS)}
+    shown = {row.name for row in TopicsOrder().arranged(TOPICS)}
     assert "/rosout" not in shown
     assert "/emergency_stop" in shown
-    assert {row.name for row in Order(housekeeping=True).arranged(TOPICS)} - shown == {
+    assert {row.name for row in TopicsOrder(housekeeping=True).arranged(TOPICS)} - shown == {
         "/rosout",
         "/parameter_events",
     }
@@ -228,7 +232,7 @@ async def test_the_chosen_topic_stays_chosen_when_rows_come_and_the_order_change
         app.table.show(TOPICS)
         app.table.choose("/drive")
         app.table.show([topic("/aaa", FLOAT, 1.0), *TOPICS])
-        app.table.reorder(Order().by("hz"))
+        app.table.reorder(TopicsOrder().by("hz"))
         await pilot.pause()
         assert app.table.chosen == "/drive"
         assert app.chosen == ["/ai_command", "/drive"]
@@ -282,7 +286,7 @@ async def test_a_row_that_takes_another_place_takes_its_mark_along(
     app = TableApp()
     async with app.run_test(size=(80, 20)) as pilot:
         app.table.show([topic("/a", FLOAT, 1.0), topic("/b", FLOAT, 2.0)])
-        app.table.reorder(Order().by("hz"))
+        app.table.reorder(TopicsOrder().by("hz"))
         await pilot.pause()
         assert [line[:4] for line in app.lines()[1:3]] == ["  /b", "▶ /a"]
         asked = asked_regions(app.table, monkeypatch)

@@ -30,8 +30,8 @@ from tui.logs.actions import LOGS_ACTIONS
 from tui.recording.replay_actions import ReplayAction
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.themes import CYCLE
-from tui.topics.actions import TOPICS_ACTIONS
-from tui.topics.publish_actions import PUBLISH_ACTIONS, OpenPublish
+from tui.topics.actions import TOPICS_ACTIONS, OpenPublish
+from tui.topics.publish_actions import PUBLISH_ACTIONS
 
 if TYPE_CHECKING:
     from textual.dom import DOMNode
@@ -69,7 +69,7 @@ class Place:
 PLACES = (
     Place(ShowDeck, (*DECK_ACTIONS, OpenTeleop)),
     Place(ShowDeck, TELEOP_ACTIONS, OpenTeleop),
-    Place(ShowTopics, (*TOPICS_ACTIONS, OpenPublish)),
+    Place(ShowTopics, TOPICS_ACTIONS),
     Place(ShowTopics, PUBLISH_ACTIONS, OpenPublish),
     Place(ShowComposer, COMPOSER_ACTIONS),
     Place(ShowLogs, LOGS_ACTIONS),

@@ -2,27 +2,87 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.topics.screen import TopicsScreen
+    from textual.widget import Widget
+    from textual.widgets import Input
+
+    from tui.topics.detail import TopicDetail
+    from tui.topics.plotting import Plotting
+    from tui.topics.table import TopicsTable
 
 
-class TopicsAction(Action["TopicsScreen"]):
+class TopicsTarget(Protocol):
+    """What these actions need of the screen of topics."""
+
+    table: TopicsTable
+    detail: TopicDetail
+    plotting: Plotting
+
+    @property
+    def focused(self) -> Widget | None:
+        """What has the focus."""
+
+    @property
+    def filter(self) -> Input:
+        """Where the words of the filter are typed."""
+
+    @property
+    def has_message(self) -> bool:
+        """Whether a message of the chosen topic is shown, or held."""
+
+    @property
+    def shows_image(self) -> bool:
+        """Whether the chosen topic carries images."""
+
+    @property
+    def can_publish(self) -> bool:
+        """Whether there is a graph to publish in."""
+
+    def focus_filter(self) -> None:
+        """Put the cursor into the filter."""
+
+    def filter_messages(self) -> None:
+        """Put the cursor into the expression that messages are to fit."""
+
+    def show_plot_next(self) -> None:
+        """Show the plot in the next of its places."""
+
+    def toggle_field(self) -> None:
+        """Plot the number at the cursor, or plot it no more."""
+
+    def toggle_picture(self) -> None:
+        """Show an image as a picture, or as a tree."""
+
+    def toggle_endpoints(self) -> None:
+        """Show who is on the chosen topic, or its message."""
+
+    def toggle_housekeeping(self) -> None:
+        """Show or hide topics of ROS itself."""
+
+    def copy_message(self) -> None:
+        """Copy the message that is shown as YAML."""
+
+    def open_publish(self) -> None:
+        """Open the dialog that publishes, for the chosen topic."""
+
+
+class TopicsAction(Action[TopicsTarget]):
     """Something that the screen of topics does, while its table and message are shown."""
 
     from_elsewhere = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """Not while the plot covers all."""
-        return not target.is_covered
+        return not target.plotting.covers_all
 
 
-class Filter(TopicsAction):
+class FilterTopics(TopicsAction):
     """Narrow the list down."""
 
     id = "topics.filter"
@@ -34,17 +94,17 @@ class Filter(TopicsAction):
     priority = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """Not in the filter itself: there a slash is a slash."""
-        return target.focused is not target.filter and not target.is_covered
+        return target.focused is not target.filter and not target.plotting.covers_all
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Put the cursor into the filter."""
         target.focus_filter()
 
 
-class Pause(TopicsAction):
+class PauseTopic(TopicsAction):
     """Hold the message still."""
 
     id = "topics.pause"
@@ -54,23 +114,23 @@ class Pause(TopicsAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """Always: the plot can be held too."""
         del target
         return True
 
     @classmethod
-    def label(cls, target: TopicsScreen) -> str:
+    def label(cls, target: TopicsTarget) -> str:
         """By what it would do now."""
-        return N_("Resume") if target.paused else cls.title
+        return N_("Resume") if target.plotting.paused else cls.title
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Pause, or go on."""
-        target.toggle_pause()
+        target.plotting.toggle_pause()
 
 
-class Plot(TopicsAction):
+class ShowPlot(TopicsAction):
     """The plot beside the rest, alone, or not at all."""
 
     id = "topics.plot"
@@ -81,17 +141,17 @@ class Plot(TopicsAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """With a field in it."""
-        return target.plot.has_value
+        return target.plotting.plot.has_value
 
     @classmethod
-    def label(cls, target: TopicsScreen) -> str:
+    def label(cls, target: TopicsTarget) -> str:
         """By what it would do now."""
-        return _PLOT_LABELS[target.plot_place.value]
+        return _PLOT_LABELS[target.plotting.place.value]
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Show it elsewhere."""
         target.show_plot_next()
 
@@ -99,7 +159,7 @@ class Plot(TopicsAction):
 _PLOT_LABELS = {"none": N_("Plot"), "beside": N_("Larger"), "alone": N_("Hide plot")}
 
 
-class PlotField(TopicsAction):
+class TogglePlotField(TopicsAction):
     """A number of the message against time."""
 
     id = "topics.plot_field"
@@ -109,22 +169,24 @@ class PlotField(TopicsAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """Where there is a message with fields to choose from."""
-        return not target.is_covered and (target.detail.front is target.detail.echo or None)
+        return not target.plotting.covers_all and (
+            target.detail.front is target.detail.echo or None
+        )
 
     @classmethod
-    def shown(cls, target: TopicsScreen) -> bool:
+    def shown(cls, target: TopicsTarget) -> bool:
         """Not without a message: there the key says so."""
         return target.has_message
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Take it in, or out."""
         target.toggle_field()
 
 
-class PlotWindow(TopicsAction):
+class NextPlotWindow(TopicsAction):
     """How many seconds the plot shows."""
 
     id = "topics.plot_window"
@@ -135,14 +197,14 @@ class PlotWindow(TopicsAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """With a plot on the screen."""
-        return target.plot.display
+        return target.plotting.plot.display
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Show more, or the least."""
-        target.plot.next_window()
+        target.plotting.plot.next_window()
 
 
 class ClearPlot(TopicsAction):
@@ -154,14 +216,14 @@ class ClearPlot(TopicsAction):
     tooltip = N_("Remove all fields from the plot.")
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """With a field in it."""
-        return target.plot.has_value
+        return target.plotting.plot.has_value
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Take them out."""
-        target.plot.clear()
+        target.plotting.plot.clear()
 
 
 class CopyMessage(TopicsAction):
@@ -175,12 +237,12 @@ class CopyMessage(TopicsAction):
     from_elsewhere = False
 
     @classmethod
-    def shown(cls, target: TopicsScreen) -> bool:
+    def shown(cls, target: TopicsTarget) -> bool:
         """Not without one: there the key says so."""
         return target.has_message
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Copy it."""
         target.copy_message()
 
@@ -197,12 +259,12 @@ class FilterMessages(TopicsAction):
     priority = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """Where there is a topic whose messages can be seen."""
-        return target.table.chosen is not None and not target.is_covered
+        return target.table.chosen is not None and not target.plotting.covers_all
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Put the cursor there."""
         target.filter_messages()
 
@@ -217,17 +279,17 @@ class PictureOrTree(TopicsAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
+    def possible(cls, target: TopicsTarget) -> bool | None:
         """Only for images."""
-        return target.shows_image and not target.is_covered
+        return target.shows_image and not target.plotting.covers_all
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Show the other one."""
         target.toggle_picture()
 
 
-class Endpoints(TopicsAction):
+class ShowEndpoints(TopicsAction):
     """Who is on the topic."""
 
     id = "topics.endpoints"
@@ -240,12 +302,12 @@ class Endpoints(TopicsAction):
     footer = True
 
     @classmethod
-    def label(cls, target: TopicsScreen) -> str:
+    def label(cls, target: TopicsTarget) -> str:
         """By what it would show now."""
         return N_("Message") if target.detail.as_endpoints else cls.title
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Show the other one."""
         target.toggle_endpoints()
 
@@ -260,12 +322,12 @@ class SortByNext(TopicsAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Sort by it."""
         target.table.sort_by_next()
 
 
-class Reverse(TopicsAction):
+class ReverseOrder(TopicsAction):
     """The order turned round."""
 
     id = "topics.reverse"
@@ -274,13 +336,13 @@ class Reverse(TopicsAction):
     tooltip = N_("Reverse the order of the topics.")
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Turn it round."""
         order = target.table.order
         target.table.reorder(order.by(order.column_id))
 
 
-class Housekeeping(TopicsAction):
+class ShowHousekeeping(TopicsAction):
     """Topics of ROS itself."""
 
     id = "topics.housekeeping"
@@ -291,23 +353,44 @@ class Housekeeping(TopicsAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
+    async def run(cls, target: TopicsTarget) -> None:
         """Show or hide them."""
         target.toggle_housekeeping()
 
 
+class OpenPublish(TopicsAction):
+    """A message of one's own."""
+
+    id = "topics.publish"
+    key = "P,З"
+    title = N_("Publish")
+    tooltip = N_("Publish a message to the chosen topic or to a new one, once or at a rate.")
+    footer = True
+
+    @classmethod
+    def possible(cls, target: TopicsTarget) -> bool | None:
+        """Only while there is a graph to publish in: a recording takes nothing."""
+        return target.can_publish
+
+    @classmethod
+    async def run(cls, target: TopicsTarget) -> None:
+        """Open the dialog over the screen."""
+        target.open_publish()
+
+
 TOPICS_ACTIONS = (
-    Filter,
-    Pause,
-    Plot,
-    PlotField,
-    PlotWindow,
+    FilterTopics,
+    PauseTopic,
+    ShowPlot,
+    TogglePlotField,
+    NextPlotWindow,
     ClearPlot,
     CopyMessage,
     FilterMessages,
     PictureOrTree,
-    Endpoints,
+    ShowEndpoints,
     SortByNext,
-    Reverse,
-    Housekeeping,
+    ReverseOrder,
+    ShowHousekeeping,
+    OpenPublish,
 )

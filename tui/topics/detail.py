@@ -17,6 +17,7 @@ from tui.topics.echo_tree import EchoTree
 from tui.topics.endpoints import TopicEndpoints
 from tui.topics.words import advice, ends, figures, packed
 from tui.widgets.image_view import ImageView
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +83,7 @@ class TopicHead(Widget):
         return named + len(packed(parts, width)) + bool(below)
 
 
-class TopicDetail(Vertical):
+class TopicDetail(Vertical, Working):
     """Shows what is known of one topic; the screen tells it row, message and picture."""
 
     DEFAULT_CSS = """

@@ -27,7 +27,7 @@ LONGEST_WORDS = 200
 class EchoFilter(Horizontal):
     """A field that is there once it was asked for; each topic has its own expression."""
 
-    class Changed(Message):
+    class ExpressionChanged(Message):
         """Another expression is in force, or none."""
 
     DEFAULT_CSS = """
@@ -129,7 +129,7 @@ class EchoFilter(Horizontal):
         event.stop()
         self._texts[self._topic] = event.value
         self._take()
-        self.post_message(self.Changed())
+        self.post_message(self.ExpressionChanged())
 
     def _take(self) -> None:
         self._condition = self._error = None

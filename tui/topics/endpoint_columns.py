@@ -18,7 +18,7 @@ WIDEST_NODE = 44
 
 
 @dataclass(frozen=True)
-class Column:
+class EndpointColumn:
     """One column; `id` is the policy's name where it is one."""
 
     id: str
@@ -50,19 +50,19 @@ def liveliness_text(end: EndpointInfo) -> str:
     return end.liveliness + lease
 
 
-NODE = Column("node", "", 20, lambda end: plain(end.node, LONGEST_NAME))
+NODE = EndpointColumn("node", "", 20, lambda end: plain(end.node, LONGEST_NAME))
 POLICIES = (
-    Column("reliability", "reliability", 11, lambda end: end.reliability or UNKNOWN),
-    Column("durability", "durability", 15, lambda end: end.durability or UNKNOWN),
-    Column("history", "history", 13, history_text),
-    Column("deadline", "deadline", 8, lambda end: time_text(end.deadline_s)),
-    Column("lifespan", "lifespan", 8, lambda end: time_text(end.lifespan_s)),
-    Column("liveliness", "liveliness", 22, liveliness_text),
+    EndpointColumn("reliability", "reliability", 11, lambda end: end.reliability or UNKNOWN),
+    EndpointColumn("durability", "durability", 15, lambda end: end.durability or UNKNOWN),
+    EndpointColumn("history", "history", 13, history_text),
+    EndpointColumn("deadline", "deadline", 8, lambda end: time_text(end.deadline_s)),
+    EndpointColumn("lifespan", "lifespan", 8, lambda end: time_text(end.lifespan_s)),
+    EndpointColumn("liveliness", "liveliness", 22, liveliness_text),
 )
 """In the order of the screen; the last go first when room is short."""
 
 
-def columns_for(width: int) -> tuple[Column, ...]:
+def columns_for(width: int) -> tuple[EndpointColumn, ...]:
     """The columns that fit into so many cells, one blank between them; the node takes the rest."""
     kept = list(POLICIES)
     while kept and NODE.width + sum(column.width + 1 for column in kept) > width:
@@ -71,6 +71,6 @@ def columns_for(width: int) -> tuple[Column, ...]:
     return (replace(NODE, width=max(1, min(spare, WIDEST_NODE))), *kept)
 
 
-def left_over(columns: Sequence[Column]) -> tuple[Column, ...]:
+def left_over(columns: Sequence[EndpointColumn]) -> tuple[EndpointColumn, ...]:
     """The policies that have no column."""
     return POLICIES[len(columns) - 1 :]

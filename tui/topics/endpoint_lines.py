@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from graph.qos_fit import LEASE, LIVELINESS, mismatches
 from text.i18n import _, ngettext
 from text.plain import plain
-from tui.topics.endpoint_columns import Column, columns_for, left_over
+from tui.topics.endpoint_columns import EndpointColumn, columns_for, left_over
 from tui.topics.qos_words import pair_words
 from tui.topics.words import names
 from tui.widgets.drawing import Ink, Line, fit
@@ -112,7 +112,7 @@ def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
     return lines
 
 
-def _title(is_publisher: bool, count: int, columns: Sequence[Column]) -> Line:
+def _title(is_publisher: bool, count: int, columns: Sequence[EndpointColumn]) -> Line:
     title = _("Publishers") if is_publisher else _("Subscribers")
     texts = [f"{title} ({count})", *(column.title for column in columns[1:])]
     return [Ink(" " * MARK), *_cells(texts, columns, ["strong", *["muted"] * len(columns)])]
@@ -120,7 +120,7 @@ def _title(is_publisher: bool, count: int, columns: Sequence[Column]) -> Line:
 
 def _end_lines(
     end: EndpointInfo,
-    columns: Sequence[Column],
+    columns: Sequence[EndpointColumn],
     bad: frozenset[str],
     width: int,
     *,
@@ -137,7 +137,7 @@ def _end_lines(
         yield from _wrapped("", " · ".join(below), width, "muted", indent=2 * MARK)
 
 
-def _cells(texts: Sequence[str], columns: Sequence[Column], looks: Sequence[str]) -> Line:
+def _cells(texts: Sequence[str], columns: Sequence[EndpointColumn], looks: Sequence[str]) -> Line:
     last = len(columns) - 1
     return [
         Ink(fit(text, column.width) + ("" if place == last else " "), look)

@@ -18,7 +18,7 @@ from tui.dialogs.dialog import Dialog
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
-from tui.topics.publications import Publications
+from tui.topics.publication_list import PublicationList
 from tui.topics.publish_actions import PUBLISH_ACTIONS
 from tui.topics.publish_rate import PublishRate
 from tui.topics.publish_target import PublishTarget
@@ -34,19 +34,12 @@ if TYPE_CHECKING:
 
     from graph.data import Publication, Sample, TopicRow, Value
     from tui.session.ports import GraphLink
-    from tui.topics.screen import TopicsScreen
 
 LOOK_S = 0.25
 DONE_WITHIN_S = 8.0
 """A new publisher may wait four seconds for its subscribers."""
 LONGEST_ARRAY = 1000
 """Elements of an array that are taken into the form."""
-
-
-def open_publish(screen: TopicsScreen) -> None:
-    """Open the dialog for the topic that is chosen on this screen."""
-    row = screen.table.chosen_row
-    screen.app.push_screen(PublishDialog(row, lambda: screen.detail.sample))
 
 
 class PublishDialog(Dialog[None]):
@@ -84,7 +77,7 @@ class PublishDialog(Dialog[None]):
             yield PublishTarget()
             yield YamlForm(submits=False)
             yield PublishRate()
-            yield Publications()
+            yield PublicationList()
             yield KeyBar()
 
     def on_mount(self) -> None:
@@ -162,7 +155,7 @@ class PublishDialog(Dialog[None]):
 
     def stop_chosen(self) -> None:
         """Publish the chosen one no more."""
-        number = self.query_one(Publications).chosen_number
+        number = self.query_one(PublicationList).chosen_number
         graph = self.deck.feed.graph
         if number is None or graph is None:
             return
@@ -203,18 +196,18 @@ class PublishDialog(Dialog[None]):
     def _topic_done(self) -> None:
         (self.form.editor if self.form.type_name else self.target.type.field).focus()
 
-    @on(PublishRate.Wanted)
+    @on(PublishRate.RateDone)
     def _rate_done(self) -> None:
         self.publish_at_rate()
 
-    @on(TypeField.Chosen)
-    def _type_chosen(self, message: TypeField.Chosen) -> None:
+    @on(TypeField.TypeChosen)
+    def _type_chosen(self, message: TypeField.TypeChosen) -> None:
         if message.type_name != self.form.type_name:
             self.form.load(message.type_name)
         if self.target.type.field.has_focus:
             self.form.editor.focus()
 
-    @on(Publications.Opened)
+    @on(PublicationList.Opened)
     def _publication_opened(self) -> None:
         self.stop_chosen()
 
@@ -293,7 +286,7 @@ class PublishDialog(Dialog[None]):
         if publications != self._listed:
             had = self.is_publishing
             self._listed = publications
-            self.query_one(Publications).show_publications(publications)
+            self.query_one(PublicationList).show_publications(publications)
             if had != self.is_publishing:
                 self.refresh_bindings()
         title.show(self.query_one(TitleBar), self.deck, "topics")

@@ -1,41 +1,44 @@
-"""What can be done about publishing messages: the dialog opened, and what it can do."""
+"""What the dialog that publishes messages can do."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
-from tui.topics.actions import TopicsAction
 
 if TYPE_CHECKING:
-    from tui.topics.publish import PublishDialog
-    from tui.topics.screen import TopicsScreen
+    from graph.data import Sample
 
 
-class OpenPublish(TopicsAction):
-    """A message of one's own."""
+class PublishingTarget(Protocol):
+    """What these actions need of the dialog."""
 
-    id = "topics.publish"
-    key = "P,З"
-    title = N_("Publish")
-    tooltip = N_("Publish a message to the chosen topic or to a new one, once or at a rate.")
-    footer = True
+    @property
+    def is_publishing(self) -> bool:
+        """Whether anything is being published."""
 
-    @classmethod
-    def possible(cls, target: TopicsScreen) -> bool | None:
-        """Only while there is a graph to publish in: a recording takes nothing."""
-        return target.feed.graph is not None and target.feed.replay is None
+    @property
+    def newest(self) -> Sample | None:
+        """The newest message of the topic that stands there."""
 
-    @classmethod
-    async def run(cls, target: TopicsScreen) -> None:
-        """Open the dialog over the screen."""
-        from tui.topics.publish import open_publish
+    def publish_once(self) -> None:
+        """Publish the message."""
 
-        open_publish(target)
+    def publish_at_rate(self) -> None:
+        """Publish the message again and again."""
+
+    def stop_chosen(self) -> None:
+        """Publish the chosen one no more."""
+
+    def take_message(self) -> None:
+        """Fill the form with the newest message."""
+
+    def leave(self) -> None:
+        """Close the list of types if it is open, else the dialog."""
 
 
-class PublishAction(Action["PublishDialog"]):
+class PublishAction(Action[PublishingTarget]):
     """Something that the dialog does; it comes before what a text field would take the key for."""
 
     priority = True
@@ -53,7 +56,7 @@ class PublishOnce(PublishAction):
     tooltip = N_("Publish the message once, if nothing is wrong with it.")
 
     @classmethod
-    async def run(cls, target: PublishDialog) -> None:
+    async def run(cls, target: PublishingTarget) -> None:
         """Publish."""
         target.publish_once()
 
@@ -67,7 +70,7 @@ class PublishAtRate(PublishAction):
     tooltip = N_("Publish the message again and again, so many times a second.")
 
     @classmethod
-    async def run(cls, target: PublishDialog) -> None:
+    async def run(cls, target: PublishingTarget) -> None:
         """Begin."""
         target.publish_at_rate()
 
@@ -82,12 +85,12 @@ class StopPublication(PublishAction):
     tooltip = N_("Stop publishing the chosen one; Enter in the list does the same.")
 
     @classmethod
-    def possible(cls, target: PublishDialog) -> bool | None:
+    def possible(cls, target: PublishingTarget) -> bool | None:
         """Only if something is being published."""
         return target.is_publishing
 
     @classmethod
-    async def run(cls, target: PublishDialog) -> None:
+    async def run(cls, target: PublishingTarget) -> None:
         """Stop it."""
         target.stop_chosen()
 
@@ -102,12 +105,12 @@ class TakeMessage(PublishAction):
     tooltip = N_("Fill the form with the newest message of the topic.")
 
     @classmethod
-    def possible(cls, target: PublishDialog) -> bool | None:
+    def possible(cls, target: PublishingTarget) -> bool | None:
         """Only if there is one."""
         return target.newest is not None
 
     @classmethod
-    async def run(cls, target: PublishDialog) -> None:
+    async def run(cls, target: PublishingTarget) -> None:
         """Take it."""
         target.take_message()
 
@@ -122,7 +125,7 @@ class LeavePublish(PublishAction):
     priority = False
 
     @classmethod
-    async def run(cls, target: PublishDialog) -> None:
+    async def run(cls, target: PublishingTarget) -> None:
         """Close the list of types, or the dialog."""
         target.leave()
 

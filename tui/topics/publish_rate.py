@@ -25,7 +25,7 @@ LONGEST = 300
 class PublishRate(Horizontal):
     """A field for the rate; right of it a sentence in the language spoken now."""
 
-    class Wanted(Message):
+    class RateDone(Message):
         """Enter was pressed in the field."""
 
     DEFAULT_CSS = """
@@ -96,7 +96,7 @@ class PublishRate(Horizontal):
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:
         event.stop()
-        self.post_message(self.Wanted())
+        self.post_message(self.RateDone())
 
 
 def _limits() -> str:

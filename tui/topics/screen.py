@@ -14,14 +14,14 @@ from graph.messages.yaml_text import is_cut, to_yaml
 from text.i18n import N_, _, ngettext, said
 from tui.actions import bindings
 from tui.frame import title
-from tui.topics.actions import TOPICS_ACTIONS, Housekeeping
+from tui.frame.screen import DeckScreen
+from tui.topics.actions import TOPICS_ACTIONS, ShowHousekeeping
 from tui.topics.detail import TopicDetail
 from tui.topics.echo_filter import EchoFilter
 from tui.topics.echo_tree import EchoTree
-from tui.topics.pictures import TopicsPictures
+from tui.topics.pictures import Pictures, carries_images, is_image
 from tui.topics.plot.plot import TopicPlot
-from tui.topics.plotting import PlotPlace
-from tui.topics.publish_actions import OpenPublish
+from tui.topics.plotting import PlotPlace, Plotting
 from tui.topics.table import TopicsTable
 from tui.topics.words import size_text
 from tui.widgets.field import Field
@@ -38,9 +38,13 @@ LONGEST_ARRAY = 2000
 SETTLED_S = 0.12
 """How long a choice must stand before its topic is subscribed: whoever walks down the list with
 the arrow keys asks for none of those passed by."""
+STEADY_S, LIVELY_S = 0.25, 0.1
+"""Seconds between two updates, without and with a picture in front."""
+RATES_S = 0.2
+"""Rates are not shown more often than so."""
 
 
-class TopicsScreen(TopicsPictures):
+class TopicsScreen(DeckScreen):
     """A table of topics and, of the chosen one, the newest message as a tree or a picture."""
 
     tab: ClassVar[str] = "topics"
@@ -50,8 +54,14 @@ class TopicsScreen(TopicsPictures):
         "beside: as a tree that folds, an image as a picture. Where nothing comes, it says why."
     )
     measure_all = True
-    BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS, OpenPublish)
+    BINDINGS: ClassVar = bindings(*TOPICS_ACTIONS)
     DEFAULT_CSS = """
+    TopicsScreen TopicPlot { display: none; border-top: solid $panel; }
+    TopicsScreen.-plot {
+        TopicPlot { display: block; height: 4fr; }
+        TopicDetail { height: 3fr; }
+        TopicsTable { max-height: 25%; }
+    }
     TopicsScreen {
         #topics-bar { height: 1; }
         #topics-filter { width: 1fr; }
@@ -66,10 +76,32 @@ class TopicsScreen(TopicsPictures):
         TopicDetail { width: 1fr; border-top: none; border-left: solid $panel; }
     }
     TopicsScreen.-flat TopicDetail { border-top: none; }
+    TopicsScreen.-low.-plot, TopicsScreen.-flat.-plot {
+        TopicPlot { height: 5fr; border-top: none; background: $panel; }
+        TopicsTable { max-height: 20%; }
+    }
+    TopicsScreen.-wide.-plot {
+        #topics-body { layout: grid; grid-size: 2; grid-columns: 2fr 1fr; grid-rows: 1fr 1fr; }
+        TopicsTable { width: 1fr; height: 1fr; max-height: 100%; }
+        TopicDetail { width: 1fr; height: 1fr; row-span: 2; }
+        TopicPlot { height: 1fr; }
+    }
+    TopicsScreen.-plot.-plot-alone {
+        #topics-body { layout: vertical; }
+        TopicsTable, TopicDetail, #topics-bar { display: none; }
+        TopicPlot { height: 1fr; border-top: none; }
+    }
     """
 
     def __init__(self) -> None:
         super().__init__()
+        self.table = TopicsTable()
+        self.detail = TopicDetail()
+        self.plot = TopicPlot()
+        self.plotting = Plotting(self, self.table, self.detail, self.plot)
+        self._pictures = Pictures(self.detail, self._is_wanted, lambda: self.table.chosen_row)
+        self._rates_s = 0.0
+        """When rates were shown."""
         self._settling: Timer | None = None
         self._offered_with_message = False
         """Whether the keys were offered beside a message."""
@@ -83,9 +115,9 @@ class TopicsScreen(TopicsPictures):
             yield Field(id="topics-filter", compact=True, select_on_focus=False)
             yield Static(id="topics-count", markup=False)
         with Vertical(id="topics-body"):
-            yield TopicsTable()
-            yield TopicDetail()
-            yield TopicPlot()
+            yield self.table
+            yield self.detail
+            yield self.plot
 
     @property
     def filter(self) -> Input:
@@ -94,8 +126,14 @@ class TopicsScreen(TopicsPictures):
 
     def watch_topics(self) -> set[str]:
         """The chosen one."""
-        chosen = self.table.chosen if self.is_mounted else None
-        return set() if chosen is None else {chosen}
+        return set() if self.table.chosen is None else {self.table.chosen}
+
+    def follow_topics(self) -> set[str]:
+        """Those that are plotted, and the chosen one while an expression looks at each message."""
+        followed = self.plot.topics
+        if self.table.chosen and self.detail.filter.in_force:
+            return {*followed, self.table.chosen}
+        return followed
 
     def on_mount(self) -> None:
         """Begin in the table."""
@@ -110,7 +148,7 @@ class TopicsScreen(TopicsPictures):
         self._missed = self.detail.fitting(samples) or self._missed
         if self.feed.front is not self:
             return
-        if self.is_time_for_rates(update.time_s):
+        if self._is_time_for_rates(update.time_s):
             self._listed = tuple(row for row in update.topics if self._is_listed(row))
             self.table.show(self._listed)
             self.detail.show_topic(self.table.chosen_row)
@@ -119,7 +157,7 @@ class TopicsScreen(TopicsPictures):
             self.table.show_words(*self._why_none())
         missed, self._missed = self._missed, None
         if missed is not None and missed.topic == self.table.chosen:
-            self.show_message(missed)
+            self._show_message(missed)
         if self._offered_with_message is not self.has_message:
             self._offered_with_message = self.has_message
             self.refresh_bindings()
@@ -140,11 +178,11 @@ class TopicsScreen(TopicsPictures):
         self.detail.relabel()
         self.plot.words_changed()
 
-    @on(TopicsTable.Chosen)
+    @on(TopicsTable.TopicChosen)
     def _chosen(self) -> None:
         self.detail.show_topic(self.table.chosen_row)
-        self.mark_plotted()
-        self.keep_pace()
+        self.plotting.mark_fields()
+        self._keep_pace()
         self._offered_with_message = self.has_message
         self.refresh_bindings()
         if self._settling is not None:
@@ -156,25 +194,18 @@ class TopicsScreen(TopicsPictures):
         """Whether a message of the chosen topic is shown, or held."""
         return self.detail.echo.message is not None
 
-    def follow_topics(self) -> set[str]:
-        """Those that are plotted, and the chosen one while an expression looks at each message."""
-        followed = super().follow_topics()
-        if self.is_mounted and self.table.chosen and self.detail.filter.in_force:
-            return {*followed, self.table.chosen}
-        return followed
-
-    @on(EchoFilter.Changed)
+    @on(EchoFilter.ExpressionChanged)
     def _expression_changed(self) -> None:
         found = self.detail.filter_anew()
         if found is not None:
-            self.show_message(found)
+            self._show_message(found)
         self.topics_changed()
 
     @on(Input.Submitted, "#echo-filter")
     def _expression_done(self) -> None:
         self.detail.echo.focus()
 
-    @on(TopicsTable.Opened)
+    @on(TopicsTable.TopicOpened)
     def _opened(self) -> None:
         front = self.detail.front
         (front if front.can_focus else self.detail.echo).focus()
@@ -186,8 +217,16 @@ class TopicsScreen(TopicsPictures):
     @on(EchoTree.PauseChanged)
     def _pause_changed(self) -> None:
         self.detail.relabel()
-        self.keep_pace()
+        self._keep_pace()
         self.refresh_bindings()
+
+    @on(TopicPlot.PlotChanged)
+    def _plot_changed(self) -> None:
+        if not self.plot.has_value:
+            self.show_plot(PlotPlace.NONE)
+        self.plotting.mark_fields()
+        self.refresh_bindings()
+        self.topics_changed()
 
     @on(Input.Changed, "#topics-filter")
     def _filter_changed(self, event: Input.Changed) -> None:
@@ -199,13 +238,15 @@ class TopicsScreen(TopicsPictures):
 
     def key_escape(self) -> None:
         """Leave the filter and show every topic again, or leave the message or the plot."""
-        if self.plot_place is PlotPlace.ALONE:
+        if self.plotting.covers_all:
             self.show_plot(PlotPlace.BESIDE)
         if self.focused in (self.filter, self.table):
             self.filter.value = ""
         if self.focused is self.detail.filter.field:
             self.detail.filter.close()
         self.table.focus()
+
+    # What the actions do
 
     def focus_filter(self) -> None:
         """Put the cursor into the filter."""
@@ -224,8 +265,48 @@ class TopicsScreen(TopicsPictures):
     def toggle_endpoints(self) -> None:
         """Show who is on the chosen topic and by which QoS, or its message."""
         self.detail.show_as_endpoints(not self.detail.as_endpoints)
-        self.keep_pace()
+        self._keep_pace()
         self.refresh_bindings()
+
+    @property
+    def shows_image(self) -> bool:
+        """Whether the chosen topic carries images."""
+        return carries_images(self.table.chosen_row)
+
+    def toggle_picture(self) -> None:
+        """Show an image as a picture, or as a tree."""
+        if self.detail.as_endpoints:
+            self.detail.show_as_endpoints(False)
+        else:
+            self.detail.show_as_picture(not self.detail.as_picture)
+        self._keep_pace()
+
+    def show_plot(self, place: PlotPlace) -> None:
+        """Show the plot there; it may cover a picture."""
+        self.plotting.show(place)
+        self._keep_pace()
+
+    def show_plot_next(self) -> None:
+        """Show the plot in the next of its places."""
+        places = list(PlotPlace)
+        self.show_plot(places[(places.index(self.plotting.place) + 1) % len(places)])
+
+    def toggle_field(self) -> None:
+        """Plot the number at the cursor, beside the rest, or plot it no more."""
+        if self.plotting.toggle_field() and self.plotting.place is PlotPlace.NONE:
+            self.show_plot(PlotPlace.BESIDE)
+
+    @property
+    def can_publish(self) -> bool:
+        """Whether there is a graph to publish in: a recording takes nothing."""
+        return self.feed.graph is not None and self.feed.replay is None
+
+    def open_publish(self) -> None:
+        """Open the dialog that publishes, for the chosen topic."""
+        from tui.topics.publish import PublishDialog
+
+        row = self.table.chosen_row
+        self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))
 
     def copy_message(self) -> None:
         """Copy the message that is shown as YAML."""
@@ -239,6 +320,44 @@ class TopicsScreen(TopicsPictures):
         if is_cut(message, LONGEST_ARRAY):
             words += " " + _("Long arrays were cut.")
         self.notify(words, markup=False)
+
+    # What is shown
+
+    def _show_message(self, sample: Sample) -> None:
+        """Show a message of the chosen topic, an image as a picture if that is wanted."""
+        first = self.detail.sample is None
+        self.detail.show_message(sample)
+        if is_image(sample):
+            if first:
+                self.detail.show_as_picture(True)
+            if self._shows_picture:
+                self._pictures.show(sample)
+        if first:
+            self._keep_pace()
+
+    @property
+    def _shows_picture(self) -> bool:
+        """Whether a picture is on the screen and goes on."""
+        in_front = self.detail.front is self.detail.picture and not self.plotting.covers_all
+        return in_front and not self.detail.echo.paused
+
+    def _is_wanted(self, sample: Sample) -> bool:
+        """Tell whether the sample's topic is still the one that is shown, as a picture."""
+        return self.is_attached and sample.topic == self.table.chosen and self._shows_picture
+
+    def _keep_pace(self) -> None:
+        """Ask for updates as often as what is shown needs them."""
+        period_s = LIVELY_S if self._shows_picture else STEADY_S
+        if period_s != self.period_s:
+            self.period_s = period_s
+            self.topics_changed()
+
+    def _is_time_for_rates(self, time_s: float) -> bool:
+        """Tell whether rates are to be shown now; pictures come more often than those change."""
+        if self.period_s == LIVELY_S and 0 <= time_s - self._rates_s < RATES_S:
+            return False
+        self._rates_s = time_s
+        return True
 
     def _is_listed(self, row: TopicRow) -> bool:
         """Leave out what only Deck has asked for; the chosen one stays when all have left it."""
@@ -263,7 +382,7 @@ class TopicsScreen(TopicsPictures):
             return _("no topics yet"), ""
         if not listed:
             return _("no topics"), _("Nobody publishes anything, and nobody listens.")
-        key = self.deck.keys_of(Housekeeping)[0]
+        key = self.deck.keys_of(ShowHousekeeping)[0]
         words = _("There are only those of ROS itself: {key} shows them.").format(key=key)
         return _("no topics of the robot"), words
 

@@ -10,7 +10,7 @@ from textual.geometry import Region, Size
 from textual.message import Message
 
 from text.i18n import _
-from tui.topics.table_order import Order
+from tui.topics.table_order import TopicsOrder
 from tui.topics.table_rows import HEADER, MARK, TopicsRows
 
 if TYPE_CHECKING:
@@ -26,14 +26,14 @@ FAR = 1_000_000
 class TopicsTable(TopicsRows):
     """Shows `TopicRow`s; one of them is chosen, and stays so while rows come, go and are sorted."""
 
-    class Chosen(Message):
+    class TopicChosen(Message):
         """Another topic is the chosen one; None when there is none."""
 
         def __init__(self, topic: str | None) -> None:
             super().__init__()
             self.topic = topic
 
-    class Opened(Message):
+    class TopicOpened(Message):
         """Enter was pressed on the chosen topic."""
 
     class Arranged(Message):
@@ -67,11 +67,11 @@ class TopicsTable(TopicsRows):
                 self.refresh()
 
     @property
-    def order(self) -> Order:
+    def order(self) -> TopicsOrder:
         """What is sorted by and what is left out."""
         return self._order
 
-    def reorder(self, order: Order) -> None:
+    def reorder(self, order: TopicsOrder) -> None:
         """Sort and filter in another way."""
         if order != self._order:
             self._order = order
@@ -125,7 +125,7 @@ class TopicsTable(TopicsRows):
     def action_open(self) -> None:
         """Tell that the chosen topic is wanted."""
         if self._chosen is not None:
-            self.post_message(self.Opened())
+            self.post_message(self.TopicOpened())
 
     def on_click(self, event: Click) -> None:
         """Choose a topic, or a column to sort by."""
@@ -161,7 +161,7 @@ class TopicsTable(TopicsRows):
             self._choose(min(before or 0, len(self._shown) - 1))
         elif self._chosen is not None:
             self._chosen = None
-            self.post_message(self.Chosen(None))
+            self.post_message(self.TopicChosen(None))
 
     def _choose(self, index: int) -> None:
         topic = self._shown[index].name
@@ -169,7 +169,7 @@ class TopicsTable(TopicsRows):
             self._refresh_chosen()
             self._chosen = topic
             self._refresh_chosen()
-            self.post_message(self.Chosen(topic))
+            self.post_message(self.TopicChosen(topic))
         self._bring_into_view(index)
 
     def _bring_into_view(self, index: int) -> None:

@@ -28,7 +28,7 @@ _TROUBLES = {
 
 
 @dataclass(frozen=True)
-class Column:
+class TopicColumn:
     """One column; a `width` of 0 shares what is left."""
 
     id: str
@@ -116,11 +116,13 @@ def _state_key(row: TopicRow) -> SortKey:
 
 
 COLUMNS = (
-    Column(
+    TopicColumn(
         "name", N_("Topic"), 0, lambda row: plain(row.name), lambda row: (0, row.name), least=18
     ),
-    Column("type", N_("Type"), 0, type_text, lambda row: (0, " ".join(row.type_names)), least=18),
-    Column(
+    TopicColumn(
+        "type", N_("Type"), 0, type_text, lambda row: (0, " ".join(row.type_names)), least=18
+    ),
+    TopicColumn(
         "publishers",
         N_("Pub"),
         4,
@@ -129,7 +131,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    Column(
+    TopicColumn(
         "subscribers",
         N_("Sub"),
         4,
@@ -138,7 +140,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    Column(
+    TopicColumn(
         "hz",
         N_("Hz"),
         6,
@@ -147,7 +149,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    Column(
+    TopicColumn(
         "bandwidth",
         N_("Bandwidth"),
         10,
@@ -156,7 +158,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    Column(
+    TopicColumn(
         "age",
         N_("Age"),
         7,
@@ -164,7 +166,7 @@ COLUMNS = (
         lambda row: (float("inf") if row.age_s is None else row.age_s // 1, ""),
         right=True,
     ),
-    Column(
+    TopicColumn(
         "jitter",
         N_("Jitter"),
         8,
@@ -173,7 +175,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    Column(
+    TopicColumn(
         "latency",
         N_("Latency"),
         9,
@@ -182,7 +184,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    Column(
+    TopicColumn(
         "lost",
         N_("Lost"),
         7,
@@ -191,7 +193,7 @@ COLUMNS = (
         right=True,
         falling=True,
     ),
-    Column(
+    TopicColumn(
         "state",
         N_("State"),
         15,
@@ -210,10 +212,10 @@ _GIVEN_UP = ("type", "subscribers", "publishers", "bandwidth", "age", "state", "
 
 
 @dataclass(frozen=True)
-class Place:
+class PlacedColumn:
     """A column where it stands in a row."""
 
-    column: Column
+    column: TopicColumn
     x: int
     width: int
 
@@ -225,7 +227,7 @@ class Place:
         return " " * blank + text if self.column.right else text + " " * blank
 
 
-def placed(width: int, longest_name: int = 0) -> tuple[Place, ...]:
+def placed(width: int, longest_name: int = 0) -> tuple[PlacedColumn, ...]:
     """The columns that fit into so many cells, with their gaps.
 
     What is left beyond the narrowest columns goes to the names until the longest is whole, and
@@ -241,7 +243,7 @@ def placed(width: int, longest_name: int = 0) -> tuple[Place, ...]:
         kept = [column for column in kept if column.id != unneeded]
     spare = max(0, width - _least(kept))
     flexible = [column for column in kept if not column.width]
-    places: list[Place] = []
+    places: list[PlacedColumn] = []
     x = 0
     for column in kept:
         share = spare if column is flexible[-1] else 0
@@ -249,16 +251,16 @@ def placed(width: int, longest_name: int = 0) -> tuple[Place, ...]:
             share = min(spare, max(0, longest_name - column.least))
             spare -= share
         wide = min(width, (column.width or column.least) + share)
-        places.append(Place(column, x, wide))
+        places.append(PlacedColumn(column, x, wide))
         x += wide + _gap(column)
     return tuple(places)
 
 
-def _least(columns: list[Column]) -> int:
+def _least(columns: list[TopicColumn]) -> int:
     gaps = sum(_gap(column) for column in columns[:-1])
     return sum(column.width or column.least for column in columns) + gaps
 
 
-def _gap(column: Column) -> int:
+def _gap(column: TopicColumn) -> int:
     """Cells after a column: two where figures on the right may be followed by a word."""
     return 2 if column.id in {"age", "lost"} else 1

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_housekeeping
-from tui.topics.table_columns import COLUMNS, Column
+from tui.topics.table_columns import COLUMNS, TopicColumn
 
 if TYPE_CHECKING:
     from graph.data import TopicRow
@@ -16,7 +16,7 @@ _BY_ID = {column.id: column for column in COLUMNS}
 
 
 @dataclass(frozen=True)
-class Order:
+class TopicsOrder:
     """What is sorted by, what is left out."""
 
     column_id: str = "name"
@@ -28,7 +28,7 @@ class Order:
     """Whether topics of ROS itself are shown."""
 
     @property
-    def column(self) -> Column:
+    def column(self) -> TopicColumn:
         """The column that is sorted by."""
         return _BY_ID[self.column_id]
 
@@ -37,13 +37,13 @@ class Order:
         """Whether the greatest comes first."""
         return self.column.falling is not self.reverse
 
-    def by(self, column_id: str) -> Order:
+    def by(self, column_id: str) -> TopicsOrder:
         """The order after this column was chosen: chosen again, it turns round."""
         if column_id == self.column_id:
             return replace(self, reverse=not self.reverse)
         return replace(self, column_id=column_id, reverse=False)
 
-    def next_column(self, column_ids: list[str]) -> Order:
+    def next_column(self, column_ids: list[str]) -> TopicsOrder:
         """The order by the column after this one, of those that are shown."""
         at = column_ids.index(self.column_id) if self.column_id in column_ids else -1
         return replace(self, column_id=column_ids[(at + 1) % len(column_ids)], reverse=False)

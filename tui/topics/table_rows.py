@@ -10,8 +10,8 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from text.i18n import _
-from tui.topics.table_columns import Place, needs_mending, placed
-from tui.topics.table_order import Order
+from tui.topics.table_columns import PlacedColumn, needs_mending, placed
+from tui.topics.table_order import TopicsOrder
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import word_strips
 
@@ -53,9 +53,9 @@ class TopicsRows(OneStyle, ScrollView, can_focus=True):
     def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._shown: list[TopicRow] = []
-        self._order = Order()
+        self._order = TopicsOrder()
         self._chosen: str | None = None
-        self._places: tuple[Place, ...] = ()
+        self._places: tuple[PlacedColumn, ...] = ()
         self._drawn: dict[int, _Drawn] = {}
         """By the line of the widget."""
 
@@ -75,7 +75,7 @@ class TopicsRows(OneStyle, ScrollView, can_focus=True):
         return Strip.blank(width, base)
 
     def on_resize(self) -> None:
-        """Place the columns anew."""
+        """PlacedColumn the columns anew."""
         self._place()
 
     def watch_show_vertical_scrollbar(self) -> None:
@@ -95,7 +95,7 @@ class TopicsRows(OneStyle, ScrollView, can_focus=True):
         return "", ""
 
     def _place(self) -> None:
-        """Place the columns, anew only if the room or the longest name has changed."""
+        """PlacedColumn the columns, anew only if the room or the longest name has changed."""
         longest = max((len(row.name) for row in self._shown), default=0)
         places = placed(max(1, self.scrollable_size.width - MARK), longest)
         if places != self._places:

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
 
-if TYPE_CHECKING:
-    from tui.yaml_form.form import YamlForm
+
+class FormTarget(Protocol):
+    """What these actions need of a form."""
+
+    submits: bool
+    submit_title: str
+
+    def submit(self) -> None:
+        """Check, and tell that it was submitted."""
 
 
-class SubmitForm(Action["YamlForm"]):
+class SubmitForm(Action[FormTarget]):
     """The message as it is filled in."""
 
     id = "form.submit"
@@ -23,17 +30,17 @@ class SubmitForm(Action["YamlForm"]):
     priority = True
 
     @classmethod
-    def possible(cls, target: YamlForm) -> bool | None:
+    def possible(cls, target: FormTarget) -> bool | None:
         """Only where the form is what is submitted."""
         return target.submits
 
     @classmethod
-    def label(cls, target: YamlForm) -> str:
+    def label(cls, target: FormTarget) -> str:
         """By what becomes of it."""
         return target.submit_title or cls.title
 
     @classmethod
-    async def run(cls, target: YamlForm) -> None:
+    async def run(cls, target: FormTarget) -> None:
         """Check and take it."""
         target.submit()
 

@@ -23,7 +23,7 @@ LISTED = 50
 class TypeField(Vertical):
     """A field of one line; while it has the focus, a list of what fits what was typed."""
 
-    class Chosen(Message):
+    class TypeChosen(Message):
         """A type was chosen: typed in full, or taken from the list."""
 
         def __init__(self, type_name: str) -> None:
@@ -141,7 +141,7 @@ class TypeField(Vertical):
     def _choose(self, type_name: str) -> None:
         if type_name != self._chosen:
             self.set(type_name)
-            self.post_message(self.Chosen(type_name))
+            self.post_message(self.TypeChosen(type_name))
         else:
             self.close()
 

@@ -19,7 +19,7 @@ PLACES_MOST = 6
 
 
 @dataclass(frozen=True)
-class Axis:
+class ValueAxis:
     """From `low` to `high`, both round, with a tick at each multiple of `step` between them."""
 
     low: float
@@ -56,7 +56,7 @@ def round_step(span: float, ticks: int) -> float:
     return next(step * power for step in STEPS if step * power >= least * (1 - 1e-9))
 
 
-def axis_for(low: float, high: float, ticks: int) -> Axis:
+def axis_for(low: float, high: float, ticks: int) -> ValueAxis:
     """An axis with about so many ticks on which all from `low` to `high` has its place."""
     low, high = max(-HUGE, min(low, HUGE)), max(-HUGE, min(high, HUGE))
     span = high - low
@@ -68,10 +68,10 @@ def axis_for(low: float, high: float, ticks: int) -> Axis:
     fine = round_step(span, FINER * ticks)
     first, last = math.floor(low / fine + NEAR), math.ceil(high / fine - NEAR)
     low, high = first * fine, max(last, first + 1) * fine
-    return Axis(low, high, round_step(high - low, ticks))
+    return ValueAxis(low, high, round_step(high - low, ticks))
 
 
-def steadied(before: Axis | None, low: float, high: float, ticks: int) -> Axis:
+def steadied(before: ValueAxis | None, low: float, high: float, ticks: int) -> ValueAxis:
     """The axis as it was while it suits, else a new one: it grows at once and shrinks late."""
     if before is not None and before.low <= low and high <= before.high:
         span = max(high - low, LEAST_SPAN * max(1.0, abs(low), abs(high)))

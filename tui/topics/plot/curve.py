@@ -11,8 +11,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from tui.topics.plot.axis import Axis
-    from tui.topics.plot.history import Columns, Numbers
+    from tui.topics.plot.axis import ValueAxis
+    from tui.topics.plot.history import HistoryDots, Numbers
 
     Cells: TypeAlias = NDArray[np.uint8]
     """Shape (rows, columns): the dots of each braille cell."""
@@ -21,14 +21,14 @@ DOTS_ACROSS, DOTS_DOWN = 2, 4
 _BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)
 
 
-def heights(values: Numbers, axis: Axis, dots: int) -> Numbers:
+def heights(values: Numbers, axis: ValueAxis, dots: int) -> Numbers:
     """Rows of dots from the top, 0..dots-1, of numbers on this axis; nan stays nan."""
     share = (axis.high - values) / (axis.high - axis.low)
     placed: Numbers = np.clip(np.rint(share * (dots - 1)), 0, dots - 1)
     return placed
 
 
-def curve(columns: Columns, axis: Axis, rows: int) -> Cells:
+def curve(columns: HistoryDots, axis: ValueAxis, rows: int) -> Cells:
     """The dots of a curve in so many rows of cells, two columns of dots a cell."""
     dots = rows * DOTS_DOWN
     top, bottom = _reach(columns, axis, dots)
@@ -40,7 +40,7 @@ def curve(columns: Columns, axis: Axis, rows: int) -> Cells:
     return drawn
 
 
-def _reach(columns: Columns, axis: Axis, dots: int) -> tuple[Numbers, Numbers]:
+def _reach(columns: HistoryDots, axis: ValueAxis, dots: int) -> tuple[Numbers, Numbers]:
     """First and last row of each column of dots, with the lines between numbers; nan: none."""
     # Lists: numpy takes longer than a loop for single numbers.
     top = heights(columns.high, axis, dots).tolist()

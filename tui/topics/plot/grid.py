@@ -18,7 +18,7 @@ EVERY = 4
 """Cells from one dot of a tick's line to the next."""
 
 
-class Grid:
+class PlotGrid:
     """So many cells; one takes the look of the last curve that was drawn through it."""
 
     def __init__(self, rows: int, columns: int, ticks: Iterable[int]) -> None:

@@ -21,7 +21,7 @@ QUIET_PERIODS = 3.0
 """After so long without a message the line is broken (the rule of the rates)."""
 
 
-class Columns(NamedTuple):
+class HistoryDots(NamedTuple):
     """A history seen through a window, by dots from left to right; nan where nothing came."""
 
     low: Numbers
@@ -79,7 +79,7 @@ class History:
         seen = np.isfinite(low)
         return (float(low[seen].min()), float(high[seen].max())) if seen.any() else None
 
-    def columns(self, end_s: float, window_s: float, count: int) -> Columns:
+    def columns(self, end_s: float, window_s: float, count: int) -> HistoryDots:
         """The window that ends at this time as so many dots."""
         first, after = self._slots(end_s, window_s)
         width_s = window_s / count
@@ -88,7 +88,7 @@ class History:
         low, high = self._part(self._low, first, after), self._part(self._high, first, after)
         last, broken = self._part(self._last, first, after), self._part(self._broken, first, after)
         edges = np.clip(np.array([*starts, after]) - first, 0, after - first)
-        out = Columns(
+        out = HistoryDots(
             np.full(count, np.nan), np.full(count, np.nan), np.full(count, np.nan),
             np.zeros(count, np.bool_),
         )  # fmt: skip

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from textual.message import Message
 
 from text.i18n import _, decimal
-from tui.topics.plot.axis import Axis, steadied
+from tui.topics.plot.axis import ValueAxis, steadied
 from tui.topics.plot.field import PlotField
 from tui.topics.plot.legend import legend_in_short, legend_lines
 from tui.widgets.drawing import Drawing, Ink, Line
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from graph.data import GraphUpdate, Sample
-    from tui.topics.plot.history import Columns, History
+    from tui.topics.plot.history import History, HistoryDots
 
 WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
 LOOKS = ("accent", "second", "good", "warn", "bad", "strong")
@@ -59,7 +59,7 @@ class Series:
 class TopicPlot(Drawing):
     """Shows up to six fields; they are those of any topics and stay until they are taken out."""
 
-    class Changed(Message):
+    class PlotChanged(Message):
         """Other fields, another window, or a pause."""
 
     DEFAULT_CSS = """
@@ -72,7 +72,7 @@ class TopicPlot(Drawing):
         self._window_s = WINDOWS_S[1]
         self._now_s = 0.0
         self._paused_s: float | None = None
-        self._axis: Axis | None = None
+        self._axis: ValueAxis | None = None
 
     @property
     def fields(self) -> tuple[PlotField, ...]:
@@ -132,7 +132,7 @@ class TopicPlot(Drawing):
         self._series = kept
         self._axis = None
         self.redraw()
-        self.post_message(self.Changed())
+        self.post_message(self.PlotChanged())
         return added
 
     def clear(self) -> None:
@@ -140,7 +140,7 @@ class TopicPlot(Drawing):
         self._series = []
         self._axis = self._paused_s = None
         self.refresh()
-        self.post_message(self.Changed())
+        self.post_message(self.PlotChanged())
 
     def take(self, update: GraphUpdate) -> None:
         """Add the messages of an update and draw what has changed."""
@@ -157,14 +157,14 @@ class TopicPlot(Drawing):
         self._window_s = WINDOWS_S[(at + 1) % len(WINDOWS_S)]
         self._axis = None
         self.redraw()
-        self.post_message(self.Changed())
+        self.post_message(self.PlotChanged())
 
     def pause(self, paused: bool) -> None:
         """Let the picture stand, or go on."""
         if paused != self.paused:
             self._paused_s = self._now_s if paused else None
             self.redraw()
-            self.post_message(self.Changed())
+            self.post_message(self.PlotChanged())
 
     def draw(self, width: int, height: int) -> list[Line]:
         """A title, what the letters stand for, and the curves between their axes."""
@@ -182,7 +182,7 @@ class TopicPlot(Drawing):
     def _picture(self, end_s: float, width: int, rows: int) -> list[Line]:
         """Curves and axes in so many rows of cells, and the times below."""
         from tui.topics.plot.curve import curve
-        from tui.topics.plot.grid import Grid
+        from tui.topics.plot.grid import PlotGrid
 
         axis = self._axis = self._suiting_axis(end_s, rows)
         labels = {self._row_of(tick, axis, rows): axis.label(tick) for tick in axis.ticks}
@@ -193,7 +193,7 @@ class TopicPlot(Drawing):
         # The window ends at a whole cell: the curves move by cells and keep their shape.
         cell_s = self._window_s / across
         edge_s = math.ceil(end_s / cell_s) * cell_s
-        grid = Grid(rows, across, labels)
+        grid = PlotGrid(rows, across, labels)
         ends: dict[int, Ink] = {}
         for number, series in enumerate(self._series, start=1):
             columns = series.history.columns(edge_s, self._window_s, 2 * across)
@@ -205,7 +205,7 @@ class TopicPlot(Drawing):
             lines.append([Ink(label, "muted"), *line, ends.get(row, Ink(" "))])
         return [*lines, self._times(left, across)]
 
-    def _suiting_axis(self, end_s: float, rows: int) -> Axis:
+    def _suiting_axis(self, end_s: float, rows: int) -> ValueAxis:
         ranges = [series.history.range(end_s, self._window_s) for series in self._series]
         known = [one for one in ranges if one is not None]
         low = min((one[0] for one in known), default=0.0)
@@ -213,12 +213,12 @@ class TopicPlot(Drawing):
         return steadied(self._axis, low, high, max(1, rows // ROWS_PER_TICK))
 
     @staticmethod
-    def _row_of(value: float, axis: Axis, rows: int) -> int:
+    def _row_of(value: float, axis: ValueAxis, rows: int) -> int:
         share = (axis.high - value) / (axis.high - axis.low)
         return min(rows - 1, max(0, round(share * (rows * 4 - 1)) // 4))
 
     def _letter(
-        self, series: Series, columns: Columns, axis: Axis, rows: int, ends: dict[int, Ink]
+        self, series: Series, columns: HistoryDots, axis: ValueAxis, rows: int, ends: dict[int, Ink]
     ) -> None:
         """Write the letter beside the curve's end; where one stands already, above or below."""
         numbers = [number for number in columns.last.tolist() if math.isfinite(number)]

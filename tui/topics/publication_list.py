@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 MOST_LINES = 5
 
 
-class Publications(Rows):
+class PublicationList(Rows):
     """One row each; Enter stops the chosen one. There is nothing to see while there is none."""
 
     DEFAULT_CSS = """
-    Publications { display: none; border-top: solid $panel; }
-    Publications.-some { display: block; }
+    PublicationList { display: none; border-top: solid $panel; }
+    PublicationList.-some { display: block; }
     """
 
     def __init__(self) -> None:
