@@ -1,15 +1,23 @@
-"""The newest message of a topic as a folding tree that stays still while its values change."""
+"""The newest message of a topic as a folding tree that stays still while its values change.
+
+A line is drawn from the first character that has changed.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
+from rich.cells import cell_len
+from rich.segment import Segment
 from textual.binding import Binding, BindingType
 from textual.geometry import Region, Size
 from textual.message import Message
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
 
 from tui.topics.echo_lines import EchoLine, echo_lines
-from tui.topics.echo_rows import EchoRows
+from tui.widgets.one_style import OneStyle
+from tui.widgets.words import cut, word_strips
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,9 +28,11 @@ if TYPE_CHECKING:
     from tui.topics.echo_lines import Path
 
 HUGE_JUMP = 1_000_000
+OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "
+INDENT = 2
 
 
-class EchoTree(EchoRows):
+class EchoTree(OneStyle, ScrollView, can_focus=True):
     """Shows a message as a tree, or words where there is none.
 
     What is folded belongs to the topic and outlives its messages. While it is paused it keeps
@@ -35,6 +45,30 @@ class EchoTree(EchoRows):
         def __init__(self, paused: bool) -> None:
             super().__init__()
             self.paused = paused
+
+    ALLOW_SELECT = False
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "echo-tree--key",
+        "echo-tree--number",
+        "echo-tree--text",
+        "echo-tree--bytes",
+        "echo-tree--note",
+        "echo-tree--mark",
+        "echo-tree--cursor",
+    }
+    DEFAULT_CSS = """
+    EchoTree {
+        width: 1fr; height: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
+        &> .echo-tree--key { color: $text-primary; }
+        &> .echo-tree--text { color: $text-success; }
+        &> .echo-tree--bytes { color: $text-warning; }
+        &> .echo-tree--note { color: $foreground; text-style: italic dim; }
+        &> .echo-tree--mark { color: $text-accent; text-style: bold; }
+        &> .echo-tree--cursor {
+            color: $block-cursor-foreground; background: $block-cursor-background;
+        }
+    }
+    """
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up,k", "move(-1)", show=False),
@@ -54,8 +88,14 @@ class EchoTree(EchoRows):
         self._message: Mapping[str, Value] | None = None
         self._waiting: Mapping[str, Value] | None = None
         """What came while it was paused."""
-        self._folds: dict[str, dict[Path, bool]] = {}
         self._paused = False
+        self._folds: dict[str, dict[Path, bool]] = {}
+        self._lines: list[EchoLine] = []
+        self._cursor = 0
+        self._marks: Mapping[Path, str] = {}
+        """Letters behind the keys of lines, by their paths."""
+        self._words = ("", "")
+        """Why there is no message."""
 
     def show(self, topic: str, message: Mapping[str, Value]) -> None:
         """Show a message of a topic; another topic ends a pause."""
@@ -205,3 +245,74 @@ class EchoTree(EchoRows):
             self._cursor = index
             self.refresh_line(index)
         self.scroll_to_region(Region(0, index, 1, 1), animate=False, immediate=True)
+
+    # Drawing
+
+    def render_line(self, y: int) -> Strip:
+        """One line of the tree, or of the words."""
+        width = self.scrollable_size.width
+        if not self._lines:
+            strips = word_strips(self._words, width, self.rich_style, self.app.console)
+            return strips[y] if y < len(strips) else Strip.blank(width, self.rich_style)
+        index = y + self.scroll_offset.y
+        if index >= len(self._lines):
+            return Strip.blank(width, self.rich_style)
+        line = self._lines[index]
+        segments = self._segments(line)
+        if index == self._cursor and self.has_focus:
+            cursor = self.get_component_rich_style("echo-tree--cursor")
+            return cut([Segment(text, cursor) for text, _, _ in segments], width, cursor)
+        return cut(segments, width, self.rich_style)
+
+    def on_resize(self) -> None:
+        """Draw again at the new width."""
+        self.refresh()
+
+    def on_focus(self) -> None:
+        """Draw the cursor as that of the focused widget."""
+        self.refresh_line(self._cursor)
+
+    def on_blur(self) -> None:
+        """Draw the cursor as that of a widget in the background."""
+        self.refresh_line(self._cursor)
+
+    def _refresh_difference(self, index: int, before: EchoLine, after: EchoLine) -> None:
+        if before is after or before == after:
+            return
+        same = _same_cells(_line_text(before), _line_text(after))
+        width = self.scrollable_size.width
+        if same < width:
+            self.refresh(Region(same, index - self.scroll_offset.y, width - same, 1))
+
+    def _segments(self, line: EchoLine) -> list[Segment]:
+        base = self.rich_style
+        key = base + self.get_component_rich_style("echo-tree--key", partial=True)
+        kind = base
+        if line.kind not in ("branch", "number"):
+            kind = base + self.get_component_rich_style(f"echo-tree--{line.kind}", partial=True)
+        elif line.kind == "branch":
+            kind = base + self.get_component_rich_style("echo-tree--note", partial=True)
+        mark = base + self.get_component_rich_style("echo-tree--mark", partial=True)
+        return [
+            Segment(_margin(line), base),
+            Segment(f"{line.label} " if line.label else "", key),
+            Segment(line.text, kind),
+            Segment(f"  ◂ {self._marks[line.path]}" if line.path in self._marks else "", mark),
+        ]
+
+
+def _same_cells(before: str, after: str) -> int:
+    """Cells at the beginning that two lines have in common."""
+    for index, (old, new) in enumerate(zip(before, after, strict=False)):
+        if old != new:
+            return cell_len(after[:index])
+    return cell_len(after[: len(before)])
+
+
+def _margin(line: EchoLine) -> str:
+    mark = LEAF if line.open is None else OPEN if line.open else CLOSED
+    return " " * (INDENT * line.depth) + mark
+
+
+def _line_text(line: EchoLine) -> str:
+    return f"{_margin(line)}{line.label} {line.text}" if line.label else _margin(line) + line.text
