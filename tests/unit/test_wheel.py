@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 from tests.installed_wheel import ROOMS, ROOT, Installed, build_wheel
 
+CHANGELOG = ROOT / "CHANGELOG.md"
 FOLDERS = (*ROOMS, "profiles")
 
 
@@ -54,6 +56,13 @@ def test_type_checkers_may_read_it(wheel: zipfile.ZipFile) -> None:
 def test_deck_is_a_command(wheel: zipfile.ZipFile) -> None:
     (points,) = (name for name in wheel.namelist() if name.endswith("entry_points.txt"))
     assert "deck = deck:main" in wheel.read(points).decode()
+
+
+def test_the_version_is_the_newest_of_the_changelog(wheel: zipfile.ZipFile) -> None:
+    numbers = re.findall(
+        r"^## \[([\d.]+)\] - \d{4}-\d\d-\d\d$", CHANGELOG.read_text(), re.MULTILINE
+    )
+    assert Path(str(wheel.filename)).name.startswith(f"deck_robot-{numbers[0]}-")
 
 
 def test_ros_is_asked_of_pypi_only_where_it_is_there(wheel: zipfile.ZipFile) -> None:
