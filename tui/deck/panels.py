@@ -8,11 +8,12 @@ from textual.widgets import Static
 
 from text.i18n import _
 from tui.deck.watched import watched_words
-from tui.frame.screen import DeckScreen
 from tui.panels.registry import PANELS, make_panel, panels_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from textual.screen import Screen
 
     from graph.data import GraphUpdate
     from tui.panels.panel import Panel
@@ -22,58 +23,67 @@ SMALL = (60, 18)
 """Columns and rows of the terminal below which there is no room for panels."""
 
 
-class ScreenWithPanels(DeckScreen):
-    """A screen with a `#board` for panels, and words for when there is no room or nobody."""
+class DeckPanels:
+    """Puts panels onto the `#board` of a screen, with words for when there is no room or nobody.
 
-    def __init__(self) -> None:
-        super().__init__()
+    The screen has the classes `-shelved` while there are panels, `-small` while they have no room.
+    """
+
+    def __init__(self, screen: Screen[None]) -> None:
+        """Begin without any."""
+        self._screen = screen
         self._shelf: Shelf | None = None
         self._put: set[str] = set()
         """Panels that were brought for topics that others publish."""
 
     @property
-    def panels(self) -> Sequence[Panel]:
+    def all(self) -> Sequence[Panel]:
         """All that are there, shown or not."""
         return () if self._shelf is None else self._shelf.panels
 
     @property
     def pages(self) -> int:
         """How many pages of panels there are."""
-        return 0 if self._shelf is None or self.has_class("-small") else self._shelf.pages
+        return 0 if self._shelf is None or self._screen.has_class("-small") else self._shelf.pages
 
     def turn_page(self) -> None:
         """Show the panels that had no room."""
         if self._shelf is not None:
             self._shelf.turn()
 
-    def watch_topics(self) -> set[str]:
-        """What the panels show."""
-        return super().watch_topics().union(*(panel.watched() for panel in self.panels))
+    def watched(self) -> set[str]:
+        """Return the topics that they show."""
+        return set().union(*(panel.watched() for panel in self.all))
 
-    def keep_topics(self) -> set[str]:
-        """What has a history in a panel."""
-        return super().keep_topics().union(*(panel.kept() for panel in self.panels))
+    def kept(self) -> set[str]:
+        """Return the topics that have a history in a panel."""
+        return set().union(*(panel.kept() for panel in self.all))
 
-    def follow_topics(self) -> set[str]:
-        """What the panels must not miss."""
-        return super().follow_topics().union(*(panel.followed() for panel in self.panels))
+    def followed(self) -> set[str]:
+        """Return the topics of which they must miss nothing."""
+        return set().union(*(panel.followed() for panel in self.all))
+
+    def take(self, update: GraphUpdate, *, seen: bool) -> None:
+        """Feed them; what is not seen takes in only what must not be missing later."""
+        for panel in self.all:
+            panel.take(update, seen=seen)
 
     def measure_room(self, columns: int, rows: int) -> None:
         """Leave the panels out where there is no room for them."""
-        self.set_class(columns < SMALL[0] or rows < SMALL[1], "-small")
+        self._screen.set_class(columns < SMALL[0] or rows < SMALL[1], "-small")
 
     async def put_up(self, names: Iterable[str]) -> None:
         """Take away the panels of the session before and put up those of this one."""
         self._put.clear()
         await self._put_up(names)
 
-    async def put_up_for(self, update: GraphUpdate) -> bool:
+    async def put_up_for(self, update: GraphUpdate, domain: int) -> bool:
         """Say who runs, and bring the panels for which topics have come; none is taken away.
 
         Return whether any came.
         """
-        words = watched_words(update, self.feed.session.domain if self.feed.session else 0)
-        watched = self.query_one("#watched", Static)
+        words = watched_words(update, domain)
+        watched = self._screen.query_one("#watched", Static)
         # Each update of a Static lays the screen out anew, and this comes with every look.
         if words != watched.content:
             watched.update(words)
@@ -84,9 +94,9 @@ class ScreenWithPanels(DeckScreen):
         await self._put_up([name for name in PANELS if name in self._put])
         return True
 
-    def words_of_panels_changed(self) -> None:
+    def words_changed(self) -> None:
         """Draw them anew in another language."""
-        for panel in self.panels:
+        for panel in self.all:
             panel.words_changed()
         if self._shelf is not None:
             self._shelf.words_changed()
@@ -97,14 +107,16 @@ class ScreenWithPanels(DeckScreen):
             await self._shelf.remove()
             self._shelf = None
         panels = [make_panel(name) for name in names if name in PANELS]
-        self.set_class(bool(panels), "-shelved")
+        self._screen.set_class(bool(panels), "-shelved")
         if panels:
             from tui.panels.shelf import Shelf
 
             self._shelf = Shelf(panels, id="shelf")
-            await self.query_one("#board").mount(self._shelf, after="#nodes")
+            await self._screen.query_one("#board").mount(self._shelf, after="#nodes")
         self._say_small()
 
     def _say_small(self) -> None:
         words = _("Too small for panels: they need {columns}×{rows}")
-        self.query_one("#small", Static).update(words.format(columns=SMALL[0], rows=SMALL[1]))
+        self._screen.query_one("#small", Static).update(
+            words.format(columns=SMALL[0], rows=SMALL[1])
+        )

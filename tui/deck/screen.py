@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on, work
 from textual.binding import Binding
@@ -13,31 +13,36 @@ from textual.widgets import Static
 from launcher.errors import LauncherError
 from launcher.status import NodeState, Severity
 from robot.topics import AI_COMMAND
-from text.i18n import N_, said
+from text.i18n import N_, _, said
 from text.plain import plain
 from tui.actions import bindings
 from tui.deck.actions import DECK_ACTIONS
 from tui.deck.command_line import CommandLine
 from tui.deck.nodes_table import NodesTable
-from tui.deck.panels import ScreenWithPanels
+from tui.deck.panels import DeckPanels
+from tui.frame.screen import DeckScreen
 from tui.graph.pane import GraphHead
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.panels.panel import row_of
 from tui.session.messages import SessionChanged
-from tui.teleop.actions import OpenTeleop
-from tui.teleop.panel import DrivenScreen
+from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
+from tui.teleop.dock import TeleopDock
 from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
     from concurrent.futures import Future
 
     from textual.app import ComposeResult
     from textual.binding import BindingType
     from textual.events import Resize
 
+    from tui.actions import Action
     from tui.log_view.filter import LogFilter
+    from tui.panels.panel import Panel
     from tui.session.messages import (
+        EmergencyChanged,
         GraphChanged,
         LanguageChanged,
         LogArrived,
@@ -49,7 +54,7 @@ DRIVER = "nodes.ai_driver"
 COMMANDS_TYPE = "std_msgs/msg/String"
 
 
-class LessonDeck(ScreenWithPanels, DrivenScreen):
+class LessonDeck(DeckScreen):
     """Nodes above the log, panels at the right; on a small terminal panels beside the log."""
 
     tab: ClassVar[str] = "deck"
@@ -94,6 +99,11 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
     """Name and state of the chosen node where the table has no room for all of it."""
     _offered_for: NodeState | None = None
     """The state of the chosen node by which its keys are offered."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._panels = DeckPanels(self)
+        self._dock = TeleopDock(self, self.focus_usual)
 
     def compose_body(self) -> ComposeResult:
         """The nodes above the log; panels come with the session."""
@@ -194,7 +204,45 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         """Back to the nodes."""
         self.focus_usual()
 
+    @property
+    def panels(self) -> Sequence[Panel]:
+        """All panels that are there, shown or not."""
+        return self._panels.all
+
+    @property
+    def pages(self) -> int:
+        """How many pages of panels there are."""
+        return self._panels.pages
+
+    def turn_page(self) -> None:
+        """Show the panels that had no room."""
+        self._panels.turn_page()
+
+    async def open_teleop(self) -> None:
+        """Drive by keys."""
+        await self._dock.open()
+
+    async def on_teleop_panel_closed(self) -> None:
+        """Drive no more."""
+        await self._dock.close()
+
+    def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
+        """The keys that drive."""
+        yield _("Keys while driving"), TELEOP_ACTIONS
+
     # What is shown
+
+    def watch_topics(self) -> set[str]:
+        """What the panels show."""
+        return self._panels.watched() | self._dock.topics
+
+    def keep_topics(self) -> set[str]:
+        """What has a history in a panel."""
+        return self._panels.kept()
+
+    def follow_topics(self) -> set[str]:
+        """What the panels must not miss."""
+        return self._panels.followed()
 
     def on_mount(self) -> None:
         """Begin at the nodes."""
@@ -202,10 +250,16 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
 
     def on_resize(self, event: Resize) -> None:
         """Leave the panels out where there is no room for them."""
-        self.measure_room(*event.size)
+        self._panels.measure_room(*event.size)
         self._lay_out(event.size.height)
 
     @on(SessionChanged)
+    async def _session_changed(self, message: SessionChanged) -> None:
+        """Bring what belongs to the session; without one there is nothing to drive."""
+        await self._bring_panels()
+        if message.ended or self.feed.link is None:
+            await self._dock.close()
+
     async def _bring_panels(self) -> None:
         """Bring the panels of the session; one that has ended keeps what it showed."""
         session = self.feed.session
@@ -216,7 +270,7 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         self.pane.save_folder = session.log_dir
         self.set_class(self.feed.replay is not None, "-recorded")
         self.set_class(self.feed.watching, "-watching")
-        await self.put_up(session.panels)
+        await self._panels.put_up(session.panels)
         self._lay_out(self.size.height)
         self.topics_changed()
 
@@ -241,18 +295,27 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
             return
         if self.feed.watching:
             self.set_class(self.driven, "-driven")
-            if await self.put_up_for(message.update):
+            domain = self.feed.session.domain if self.feed.session else 0
+            if await self._panels.put_up_for(message.update, domain):
                 self._lay_out(self.size.height)
                 self.topics_changed()
-        seen = self.feed.front is self
-        for panel in self.panels:
-            panel.take(message.update, seen=seen)
+        self._panels.take(message.update, seen=self.feed.front is self)
         if self.table.outside != self.feed.outside.now:
             self._show_nodes()
             self._lay_out(self.size.height)
             self.refresh_bindings()
         row = row_of(message.update, AI_COMMAND)
         self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
+        self._dock.take(message.update)
+
+    def on_emergency_changed(self, message: EmergencyChanged) -> None:
+        """A stop is also the end of what the keys asked for; other news of the gate are not."""
+        if message.emergency.engaged:
+            self._dock.release()
+
+    def on_screen_suspend(self) -> None:
+        """Another screen, or a dialog, has the keys."""
+        self._dock.release()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Draw anew."""
@@ -260,7 +323,8 @@ class LessonDeck(ScreenWithPanels, DrivenScreen):
         self.pane.words_changed()
         self._show_nodes()
         self.query_one(CommandLine).words_changed()
-        self.words_of_panels_changed()
+        self._panels.words_changed()
+        self._dock.words_changed()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
         """Other keys are possible now."""

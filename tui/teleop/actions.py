@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
-from tui.deck.actions import DeckAction
 from tui.teleop.keys import Move
 
 if TYPE_CHECKING:
-    from tui.deck.screen import LessonDeck
+    from tui.session.feed import Feed
     from tui.teleop.widget import TeleopPanel
 
 
-class OpenTeleop(DeckAction):
+class CanDrive(Protocol):
+    """A screen on which the keys can drive."""
+
+    @property
+    def feed(self) -> Feed:
+        """What runs."""
+
+    async def open_teleop(self) -> None:
+        """Open the panel, or go to it."""
+
+
+class OpenTeleop(Action["CanDrive"]):
     """Drive the robot by keys."""
 
     id = "deck.teleop"
@@ -28,12 +38,12 @@ class OpenTeleop(DeckAction):
     from_elsewhere = True
 
     @classmethod
-    def possible(cls, target: LessonDeck) -> bool | None:
+    def possible(cls, target: CanDrive) -> bool | None:
         """Only where there is a robot: not in a recording, and not when the session is over."""
         return target.feed.link is not None and target.feed.replay is None
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: CanDrive) -> None:
         """Open the panel, or go to it."""
         await target.open_teleop()
 
