@@ -9,8 +9,8 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
-from tui.topics.echo_lines import MAX_LINES, EchoLine, echo_lines
-from tui.topics.echo_tree import EchoTree
+from tui.echo.lines import MAX_LINES, EchoLine, echo_lines
+from tui.echo.tree import EchoTree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -33,12 +33,12 @@ from tui.panels.voice.widget import VoicePanel
 from tui.panels.wheels.panel import would_be
 from tui.panels.wheels.reading import wheels_in
 from tui.panels.wheels.widget import WheelsPanel, angle_words, radius_words, speed_words
-from tui.topics.figures import count_text, seconds_text
 from tui.topics.plot.field import PlotField
 from tui.topics.plot.legend import number_text
 from tui.topics.plot.plot import TopicPlot
 from tui.topics.table_columns import age_text, bandwidth_text, hz_text
 from tui.widgets.drawing import Drawing
+from tui.widgets.figures import count_text, seconds_text
 from tui.widgets.trouble import no_data_words
 
 Said = tuple[GraphUpdate, tuple[NodeStatus, ...], tuple[LogLine, ...]]

@@ -7,7 +7,7 @@ import pytest
 from graph.data import EndpointInfo
 from graph.qos_fit import mismatches
 from text.i18n import set_language
-from tui.topics.qos_words import misfit_words, pair_words
+from tui.widgets.qos_words import misfit_words, pair_words
 
 
 def facts(**values: str) -> dict[str, str]:

@@ -12,9 +12,9 @@ from graph.data import EndpointInfo, TopicRow
 from tests.tui.recorded import TOPICS, lesson_update
 from tests.tui.snapshots import Look, settle
 from tui.topics.endpoint_lines import endpoint_lines
-from tui.topics.figures import count_text, seconds_text
 from tui.topics.screen import TopicsScreen
 from tui.topics.words import ends
+from tui.widgets.figures import count_text, seconds_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -24,7 +24,7 @@ from tui.composer.templates import TEMPLATES
 from tui.composer.templates_dialog import TemplatesDialog
 from tui.composer.verdict import JsonVerdict
 from tui.frame.screen import DeckScreen
-from tui.topics.words import names
+from tui.widgets.trouble import names
 from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from textual.widgets import Static
 
 from text.i18n import _
 from tui import clock
+from tui.echo.tree import EchoTree
 from tui.graph.links import GraphLinks
 from tui.graph.pane import GraphHead, GraphPane
-from tui.topics.echo_tree import EchoTree
 from tui.widgets.rows import Rows
 from tui.yaml_form.actions import SubmitForm
 from tui.yaml_form.form import YamlForm

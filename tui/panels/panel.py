@@ -153,7 +153,7 @@ def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, fl
     if row.trouble in {None, Trouble.NO_PUBLISHER, Trouble.QUIET} or not row.detail:
         return row.trouble, topic, row.age_s
     # The first frame does without.
-    from tui.topics.words import advice
+    from tui.widgets.trouble import advice
 
     return row.trouble, f"{topic}: {advice(row)[1]}", row.age_s
 

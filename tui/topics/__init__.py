@@ -1,1 +1,5 @@
-"""The tab of topics: the table, one topic live, its plot, and publishing."""
+"""The tab of topics: the table, one topic live, its plot, and publishing.
+
+The app makes its `screen.TopicsScreen`, and other screens lead to a topic by its `table.choose`.
+Nothing else here is for others: the tree of a message stands in `tui.echo`.
+"""

@@ -12,11 +12,12 @@ from textual.widget import Widget
 from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
+from tui.echo.tree import EchoTree
 from tui.topics.echo_filter import EchoFilter
-from tui.topics.echo_tree import EchoTree
 from tui.topics.endpoints import TopicEndpoints
-from tui.topics.words import advice, ends, figures, packed
+from tui.topics.words import ends, figures, packed
 from tui.widgets.image_view import ImageView
+from tui.widgets.trouble import advice
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:

@@ -13,12 +13,12 @@ from graph.housekeeping import is_housekeeping
 from graph.messages.yaml_text import is_cut, to_yaml
 from text.i18n import N_, _, ngettext, said
 from tui.actions import bindings
+from tui.echo.tree import EchoTree
 from tui.frame import title
 from tui.frame.screen import DeckScreen
 from tui.topics.actions import TOPICS_ACTIONS, ShowHousekeeping
 from tui.topics.detail import TopicDetail
 from tui.topics.echo_filter import EchoFilter
-from tui.topics.echo_tree import EchoTree
 from tui.topics.pictures import Pictures, carries_images, is_image
 from tui.topics.plot.plot import TopicPlot
 from tui.topics.plotting import PlotPlace, Plotting

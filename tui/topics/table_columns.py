@@ -12,7 +12,7 @@ from graph.data import TopicRow, Trouble
 from text.figures import elapsed, figure
 from text.i18n import N_, _
 from text.plain import plain
-from tui.topics.figures import UNKNOWN, count_text, seconds_text
+from tui.widgets.figures import UNKNOWN, count_text, seconds_text
 
 SortKey: TypeAlias = "tuple[float, str]"
 UNITS = (N_("B/s"), N_("kB/s"), N_("MB/s"), N_("GB/s"))

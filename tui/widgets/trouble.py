@@ -1,10 +1,23 @@
-"""Why a panel is empty, in words: four different troubles, four different messages."""
+"""Why nothing is shown of a topic, in words, and the way out: four troubles, four messages."""
 
 from __future__ import annotations
 
+from collections import Counter
+from typing import TYPE_CHECKING
+
 from graph.data import Trouble
 from text.figures import elapsed
-from text.i18n import N_, _
+from text.i18n import N_, _, said
+from text.plain import plain
+from tui.widgets.qos_words import misfit_words
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from graph.data import EndpointInfo, TopicRow
+
+LONGEST = 400
+SHOWN_NODES = 4
 
 _HEADLINES = {
     Trouble.NO_PUBLISHER: N_("nobody publishes this topic"),
@@ -26,3 +39,66 @@ def no_data_words(age_s: float) -> str:
     if age_s < 120:
         return _("no data for {seconds} s").format(seconds=elapsed(age_s))
     return _("no data for {minutes} min").format(minutes=elapsed(age_s / 60))
+
+
+def advice(row: TopicRow) -> tuple[str, str]:
+    """Why nothing can be shown of the topic, and the way out; both empty if there is no trouble."""
+    if row.trouble is None:
+        return "", _remark(row)
+    if row.trouble is Trouble.QUIET and not row.publishers:
+        return _("only Deck itself publishes here"), _what_deck_sent(row)
+    return trouble_words(row.trouble, row.age_s), plain(_way_out(row, row.trouble), LONGEST)
+
+
+def _way_out(row: TopicRow, trouble: Trouble) -> str:
+    facts = row.facts
+    if "recorded" in facts:
+        return _("Nothing of it was recorded around here: go on, or jump.")
+    if trouble is Trouble.NO_PUBLISHER:
+        return _("Start the node that publishes it, or look for a misspelt or remapped name.")
+    if trouble is Trouble.QUIET:
+        return _("Publishers are there: {nodes}. Look at their logs.").format(
+            nodes=names(row.published_by) or row.publishers
+        )
+    if trouble is Trouble.UNKNOWN_TYPE and "package" in facts:
+        return _how_to_install(facts).format(**facts)
+    if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
+        return misfit_words(facts)
+    return said(row.detail)
+
+
+def _how_to_install(facts: Mapping[str, str]) -> str:
+    if "pip" in facts:
+        return _(
+            "{type}: install {package} by `pip install {pip}`, `apt install {apt}` or `pixi add "
+            "{pixi}`, or source the workspace that has it."
+        )
+    if "apt" in facts:
+        return _(
+            "{type}: install {package} by `apt install {apt}` or `pixi add {pixi}`, or source the "
+            "workspace that has it."
+        )
+    return _("{type}: install the package {package}, or source the workspace that has it.")
+
+
+def _what_deck_sent(row: TopicRow) -> str:
+    return _("It has sent nothing yet.") if row.age_s is None else no_data_words(row.age_s)
+
+
+def _remark(row: TopicRow) -> str:
+    if "types" in row.facts:
+        words = _("Peers disagree about the type: {types}; shown is {shown}.")
+        return plain(words.format(**row.facts), LONGEST)
+    return plain(row.detail, LONGEST)
+
+
+def names(endpoints: Sequence[EndpointInfo], *, counted: bool = False) -> str:
+    """The nodes of these endpoints, each once, without the slash of the root namespace.
+
+    `counted`: with the number of its endpoints where there are several, as beside their sum.
+    """
+    found = Counter(plain(end.node.removeprefix("/"), LONGEST) for end in endpoints)
+    several = {name: f" ×{count}" for name, count in found.items() if counted and count > 1}
+    shown = [name + several.get(name, "") for name in found][:SHOWN_NODES]
+    more = len(found) - len(shown)
+    return ", ".join(shown) + (f" +{more}" if more else "")

@@ -9,8 +9,8 @@ from rich.cells import cell_len
 
 from text.i18n import _
 from text.plain import plain
-from tui.topics.figures import UNKNOWN
 from tui.widgets.drawing import Ink, Line, fit
+from tui.widgets.figures import UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from graph.qos_fit import DEADLINE, LEASE
 from text.i18n import N_, _, ngettext
 from text.plain import plain
-from tui.topics.figures import seconds_text
+from tui.widgets.figures import seconds_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,7 +11,7 @@ import numpy as np
 
 from text.i18n import _, ngettext
 from text.plain import plain
-from tui.topics import echo_values
+from tui.echo import values as echo_values
 
 if TYPE_CHECKING:
     from graph.data import Value

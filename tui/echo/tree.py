@@ -15,7 +15,7 @@ from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tui.topics.echo_lines import EchoLine, echo_lines
+from tui.echo.lines import EchoLine, echo_lines
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import cut, word_strips
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from textual.events import Click
 
     from graph.data import Value
-    from tui.topics.echo_lines import Path
+    from tui.echo.lines import Path
 
 HUGE_JUMP = 1_000_000
 OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "
