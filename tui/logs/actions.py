@@ -130,7 +130,7 @@ class ShowNodes(LogsAction):
         target.toggle_nodes()
 
 
-class MuteNode(LogsAction):
+class MuteInLog(LogsAction):
     """Mute a node, or hear it."""
 
     id = "logs.mute"
@@ -153,7 +153,7 @@ class MuteNode(LogsAction):
             target.choose(target.pane.view.log_filter.toggled(target.chosen_node))
 
 
-class HearOneNode(LogsAction):
+class HearOneInLog(LogsAction):
     """Mute all but one node."""
 
     id = "logs.alone"
@@ -176,7 +176,7 @@ class HearOneNode(LogsAction):
             target.choose(target.pane.view.log_filter.alone(target.chosen_node))
 
 
-class HearAllNodes(LogsAction):
+class HearAllInLog(LogsAction):
     """Hear every node."""
 
     id = "logs.all"
@@ -233,9 +233,9 @@ LOGS_ACTIONS = (
     OnlyFound,
     RaiseSeverity,
     ShowNodes,
-    MuteNode,
-    HearOneNode,
-    HearAllNodes,
+    MuteInLog,
+    HearOneInLog,
+    HearAllInLog,
     FoldLog,
     CopyLog,
     CopyWholeLog,

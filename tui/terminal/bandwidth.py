@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from tui.clock import steady
 
@@ -74,6 +74,12 @@ class Bandwidth:
         earned = (now_s - self._seen_s) * self.limit
         self._saved = min(self._saved + earned, self.limit * SAVED_S)
         self._seen_s = now_s
+
+
+class HasBandwidth(Protocol):
+    """An app that knows how much may be written to its terminal."""
+
+    bandwidth: Bandwidth
 
 
 class PicturePace:

@@ -31,7 +31,7 @@ def is_image(sample: Sample) -> bool:
     return sample.type_name in {IMAGE, COMPRESSED}
 
 
-class Pictures:
+class TopicPictures:
     """Shows the newest image of a topic in its detail, or why it cannot be shown."""
 
     def __init__(

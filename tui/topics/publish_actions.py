@@ -46,7 +46,7 @@ class PublishAction(Action[PublishingTarget]):
     footer = True
 
 
-class PublishOnce(PublishAction):
+class PublishMessage(PublishAction):
     """The message, once."""
 
     id = "publish.once"
@@ -130,4 +130,4 @@ class LeavePublish(PublishAction):
         target.leave()
 
 
-PUBLISH_ACTIONS = (PublishOnce, PublishAtRate, StopPublication, TakeMessage, LeavePublish)
+PUBLISH_ACTIONS = (PublishMessage, PublishAtRate, StopPublication, TakeMessage, LeavePublish)

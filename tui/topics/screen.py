@@ -19,7 +19,7 @@ from tui.frame.screen import DeckScreen
 from tui.topics.actions import TOPICS_ACTIONS, ShowHousekeeping
 from tui.topics.detail import TopicDetail
 from tui.topics.echo_filter import EchoFilter
-from tui.topics.pictures import Pictures, carries_images, is_image
+from tui.topics.pictures import TopicPictures, carries_images, is_image
 from tui.topics.plot.plot import TopicPlot
 from tui.topics.plotting import PlotPlace, Plotting
 from tui.topics.table import TopicsTable
@@ -99,7 +99,7 @@ class TopicsScreen(DeckScreen):
         self.detail = TopicDetail()
         self.plot = TopicPlot()
         self.plotting = Plotting(self, self.table, self.detail, self.plot)
-        self._pictures = Pictures(self.detail, self._is_wanted, lambda: self.table.chosen_row)
+        self._pictures = TopicPictures(self.detail, self._is_wanted, lambda: self.table.chosen_row)
         self._rates_s = 0.0
         """When rates were shown."""
         self._settling: Timer | None = None

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from textual.events import Resize
     from textual.timer import Timer
 
-    from tui.app import DeckApp
-    from tui.terminal.bandwidth import Bandwidth
+    from tui.terminal.bandwidth import Bandwidth, HasBandwidth
     from tui.widgets.half_blocks import Pixels
 
 CAPTION_FROM = 4
@@ -168,7 +167,7 @@ class ImageView(OneStyle, Widget):
 
     @property
     def _bandwidth(self) -> Bandwidth:
-        return cast("DeckApp", self.app).bandwidth
+        return cast("HasBandwidth", self.app).bandwidth
 
     def _on_resize(self, _event: Resize) -> None:
         self._shown = None

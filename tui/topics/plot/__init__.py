@@ -1,1 +1,1 @@
-"""Numbers of topics against time, drawn in braille."""
+"""Numbers of messages against time, drawn in cells: `plot.TopicPlot`, of `field.PlotField`s."""

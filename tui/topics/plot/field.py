@@ -1,15 +1,17 @@
-"""A field of a topic that is plotted: its name, and its number in a message."""
+"""A field of a topic that is plotted: its name, its number in a message, its curve in a plot."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, SupportsFloat
 
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from graph.data import Value
+    from graph.data import Sample, Value
+    from tui.topics.plot.history import History
 
 LONGEST = 200
 
@@ -42,6 +44,24 @@ class PlotField(NamedTuple):
             else:
                 return None
         return as_number(value)
+
+
+@dataclass
+class Series:
+    """One field with its name in the picture, its look and its history."""
+
+    field: PlotField
+    letter: str
+    look: str
+    history: History
+    is_number: bool = True
+    """Whether the newest message had a number there."""
+
+    def take(self, sample: Sample) -> None:
+        """Add the number of one message."""
+        number = self.field.number(sample.value)
+        self.is_number = number is not None
+        self.history.add(sample.received_s - sample.age_s, number)
 
 
 def as_number(value: object) -> float | None:

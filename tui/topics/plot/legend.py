@@ -15,7 +15,7 @@ from tui.widgets.figures import UNKNOWN
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.topics.plot.plot import Series
+    from tui.topics.plot.field import Series
 
 FIGURE = 9
 LEAST_NAME = 18

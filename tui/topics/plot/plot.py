@@ -8,14 +8,13 @@ the axis keeps its numbers while they suit, and what does not change is not sent
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from textual.message import Message
 
 from text.i18n import _, decimal
 from tui.topics.plot.axis import ValueAxis, steadied
-from tui.topics.plot.field import PlotField
+from tui.topics.plot.field import PlotField, Series
 from tui.topics.plot.legend import legend_in_short, legend_lines
 from tui.widgets.drawing import Drawing, Ink, Line
 
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from graph.data import GraphUpdate, Sample
-    from tui.topics.plot.history import History, HistoryDots
+    from tui.topics.plot.history import HistoryDots
 
 WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
 LOOKS = ("accent", "second", "good", "warn", "bad", "strong")
@@ -36,24 +35,6 @@ ROWS_PER_TICK = 4
 LEAST_ROWS = 8
 """Fewer rows than these for the curves: the legend gives way."""
 LABEL_LEAST = 5
-
-
-@dataclass
-class Series:
-    """One field with its name in the picture, its look and its history."""
-
-    field: PlotField
-    letter: str
-    look: str
-    history: History
-    is_number: bool = True
-    """Whether the newest message had a number there."""
-
-    def take(self, sample: Sample) -> None:
-        """Add the number of one message."""
-        number = self.field.number(sample.value)
-        self.is_number = number is not None
-        self.history.add(sample.received_s - sample.age_s, number)
 
 
 class TopicPlot(Drawing):
