@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from textual.app import App, ComposeResult
 
 from graph.pictures.picture import Picture
 from graph.pictures.reading import read_picture
@@ -22,6 +23,8 @@ from tests.tui.topics_room import (
     with_camera,
 )
 from tui.topics import pictures as topics_pictures
+from tui.topics.detail import TopicDetail
+from tui.topics.pictures import TopicPictures
 
 
 @pytest.fixture
@@ -112,6 +115,26 @@ async def test_late_pictures_are_left_out_while_one_is_decoded(
     release.set()
     await room.decoded()
     assert seen == [0, 4]
+
+
+class DetailApp(App[None]):
+    """Nothing but the detail of a topic."""
+
+    def compose(self) -> ComposeResult:
+        """The detail."""
+        yield TopicDetail()
+
+
+@pytest.mark.parametrize("wanted", [True, False])
+async def test_a_picture_that_nobody_wants_any_more_when_it_is_decoded_is_not_shown(
+    wanted: bool,
+) -> None:
+    async with DetailApp().run_test() as pilot:
+        detail = pilot.app.query_one(TopicDetail)
+        pictures = TopicPictures(detail, lambda _sample: wanted, lambda: None)
+        pictures.show(sample(CAMERA, "sensor_msgs/msg/CompressedImage", jpeg_message()))
+        await pilot.app.workers.wait_for_complete()
+        assert detail.picture.has_picture is wanted
 
 
 async def test_a_picture_asks_for_ten_updates_a_second_and_rates_stay_as_they_are(
