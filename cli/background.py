@@ -7,14 +7,14 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from cli.company import warn_of_company
 from cli.doctor.login import before_logout, look
 from cli.health import settled, well
 from cli.report import TextReport
 from cli.sessions import as_json, show
+from cli.shared_domain import warn_of_shared_domain
 from cli.stop_in_force import stop_is_kept, stop_words
 from launcher.client import client
-from launcher.client.past import newer
+from launcher.client.log_history import newer
 from launcher.errors import (
     AlreadyRunningError,
     ConnectionLostError,
@@ -72,7 +72,7 @@ async def _up(options: Namespace) -> int:
         domain=options.domain,
         ports=serial_ports,
     )
-    warn_of_company(profile)
+    warn_of_shared_domain(profile)
     try:
         link = await client.launch(
             profile, foreground=False, node_lang=language(), supervisor=options.supervisor

@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cli.robot_to_hear import robot_to_hear
+from cli.running_domain import running_domain
 from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
@@ -44,7 +44,7 @@ def record_command(options: Namespace) -> int:
     from graph.recording.recorder import Recorder
 
     topics = [_topic(name) for name in options.topics]
-    what, domain, discovery = robot_to_hear(options.domain)
+    what, domain, discovery = running_domain(options.domain)
     folder = Path(options.output) if options.output else new_recording(what)
     recorder = Recorder(
         domain, discovery, folder, topics or None, hidden=options.hidden, images=options.images

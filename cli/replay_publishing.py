@@ -10,7 +10,7 @@ import signal
 import threading
 from typing import TYPE_CHECKING
 
-from cli.robot_to_hear import robot_to_hear
+from cli.running_domain import running_domain
 from graph.bag.errors import BagError
 from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
@@ -36,7 +36,7 @@ def publish_bag(path: Path, options: Namespace) -> int:
     """Publish until the end or until it is stopped; 1 if nothing could be published."""
     from graph.bag.reading import open_bag
 
-    _name, domain, discovery = robot_to_hear(options.domain)
+    _name, domain, discovery = running_domain(options.domain)
     stop = threading.Event()
     for number in SIGNALS:
         signal.signal(number, lambda *_: stop.set())

@@ -99,10 +99,11 @@ class TopicRow:
     facts: Mapping[str, str] = field(default_factory=dict)
     """What `detail` is made of, to say it in another language.
 
-    QOS_MISMATCH: of the first pair `policy` (as in `graph.qos_fit.Mismatch`), `publisher`,
-    `subscriber` (nodes), `offered`, `requested`; `more`, the number of further pairs, if there are
-    any. UNKNOWN_TYPE: `type`, `package`, `reason`, and if the package is missing its names for
-    `pip` (where PyPI has it), `apt` and `pixi`. QUIET: `seconds`. NO_PUBLISHER: none.
+    QOS_MISMATCH: of the first pair `policy` (as in `graph.qos_compatibility.Mismatch`),
+    `publisher`, `subscriber` (nodes), `offered`, `requested`; `more`, the number of further
+    pairs, if there are any. UNKNOWN_TYPE: `type`, `package`, `reason`, and if the package is
+    missing its names for `pip` (where PyPI has it), `apt` and `pixi`. QUIET: `seconds`.
+    NO_PUBLISHER: none.
     Both in a replay: `recorded`.
     A remark: `types`, with the one that is shown in `shown`.
     """

@@ -19,7 +19,7 @@ def _leave(_number: int, _frame: FrameType | None) -> None:
     os._exit(0)
 
 
-__preload__ = ("parts.life", "parts.node", "parts.parameters", "parts.speech", "parts.qos")
+__preload__ = ("parts.runner", "parts.node", "parts.parameters", "parts.speech", "parts.qos")
 """What nearly every node imports: the launcher's spawn server may import it ahead for all."""
 __preload_idle__ = (
     "parts.refusals",

@@ -16,10 +16,10 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import ByteMultiArray, Float32, String
 
 from nodes.parts.head_client import HeadAnswer, HeadClient
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message, to_message
 from nodes.parts.speech import Phrase

@@ -11,10 +11,10 @@ import sys
 
 from std_msgs.msg import String
 
-from nodes.driving.repeat import REPEAT_FOR_S, DriveVoice
-from nodes.parts.life import run
+from nodes.driving.repeat import REPEAT_FOR_S, DriveRepeater
 from nodes.parts.node import LessonNode
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from robot.topics import AI_COMMAND
 from robot.words import WORDS, parse_word
@@ -38,7 +38,7 @@ class AiDriver(LessonNode):
 
     def __init__(self) -> None:
         super().__init__()
-        self._drive = DriveVoice(self)
+        self._drive = DriveRepeater(self)
         self.create_subscription(String, AI_COMMAND, self._hear, DEPTH)
         self._known = ", ".join(WORDS[self.say.language])
         self.say.info(_STARTED, words=self._known)

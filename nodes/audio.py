@@ -19,10 +19,10 @@ from nodes.drivers.sound_port import SoundPort
 from nodes.drivers.sound_status import PortStatus
 from nodes.drivers.sound_words import EMPTY, LATE, ODD, UNPLAYED, WORDS
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.sound import from_message, to_message
 from nodes.parts.speech import Phrase
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, text_in

@@ -22,11 +22,11 @@ from sensor_msgs.msg import Image
 from nodes.drivers.camera_source import CameraSource, SourceSetting
 from nodes.drivers.capture import SILENT_S, THREAD, Capture
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Choice, Number, Switch, Text, Whole
 from nodes.parts.pictures import CHANNELS, fit
 from nodes.parts.qos import NEWEST
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from robot.topics import CAMERA
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number, Text, Value
 from nodes.parts.qos import LATCHED
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from robot.motion.geometry import quaternion_from_rpy
 from robot.topics import TF_STATIC

@@ -36,12 +36,12 @@ from nodes.drivers.chassis_words import (
 from nodes.drivers.pico import PicoClient
 from nodes.parts.diagnostics import tell_every_second
 from nodes.parts.emergency import PICO, EmergencyStopListener
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
-from nodes.parts.pace import PeriodicThread
 from nodes.parts.parameters import Number, Text, Whole
+from nodes.parts.periodic_thread import PeriodicThread
 from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
+from nodes.parts.runner import run
 from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M

@@ -31,11 +31,11 @@ from nodes.driving.goal import DriveGoal
 from nodes.driving.goal_pose import GoalPose
 from nodes.parts.drive import to_message
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.odometry import OdometryListener
 from nodes.parts.parameters import Choice, Number, Text
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.simulated.base import ALWAYS, AUTO, NEVER, WAIT_S, SimulatedBase
 from robot.kinematics import WHEELBASE_M
 from robot.limits import SPEED, STEERING

@@ -21,11 +21,11 @@ from sensor_msgs.msg import JointState
 
 from nodes.parts.drive import FRAME, from_message
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
+from nodes.parts.runner import run
 from nodes.parts.sole_publisher import SolePublisher
 from nodes.parts.speech import Phrase
 from nodes.parts.stall_detector import StallDetector

@@ -28,10 +28,10 @@ from sensor_msgs.msg import JointState
 from nodes.drivers import head_words as words
 from nodes.drivers.servos import WAS_AWAY, ServoClient
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Whole
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from robot.joints import HEAD_JOINTS
 from robot.motion.head import turn_ms
 from robot.topics import HEAD_SERVICE, HEAD_STATE

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 
 _AWAKE = Phrase("Hello! The first node is awake.", "Привет! Первый узел проснулся.")

@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING
 
 from std_msgs.msg import String
 
-from nodes.driving.repeat import REPEAT_FOR_S, DriveVoice
+from nodes.driving.repeat import REPEAT_FOR_S, DriveRepeater
 from nodes.parts.head_client import HeadAnswer, HeadClient
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from robot.commands.schema import (
     MAX_COMMANDS,
@@ -74,7 +74,7 @@ class LlmParser(LessonNode):
 
     def __init__(self) -> None:
         super().__init__()
-        self._drive = DriveVoice(self)
+        self._drive = DriveRepeater(self)
         self._result = self.create_publisher(String, LLM_RESULT, _RESULTS)
         self._head = HeadClient(self, lambda: self.number("head_timeout"))
         self.create_subscription(String, LLM_RAW_JSON, self._receive, DEPTH)

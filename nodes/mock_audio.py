@@ -14,10 +14,10 @@ import time
 
 from std_msgs.msg import ByteMultiArray, Float32
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.sound import from_message, to_message
 from nodes.parts.speech import Phrase
 from robot.sound import LEVEL_S, mock_level_dbfs

@@ -15,10 +15,10 @@ from array import array
 import numpy as np
 from sensor_msgs.msg import Image
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Choice, Number, Text, Whole
 from nodes.parts.qos import NEWEST
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from nodes.simulated.room_scene import RoomScene
 from nodes.simulated.scene import MovingScene

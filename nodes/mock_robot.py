@@ -19,10 +19,10 @@ from pathlib import Path
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, NodeUsageError
 from nodes.parts.parameters import Choice, Number, Setting, Text, Whole
 from nodes.parts.qos import DEPTH, LATCHED
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from nodes.simulated.device_fault import FAULTS, FINE, FaultyLine
 from nodes.simulated.map_message import occupancy_grid

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 
 from std_msgs.msg import Float32
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Choice, Number, Text, Value
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from robot.topics import SONAR_FRONT
 

@@ -28,14 +28,14 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float32
 
 from nodes.parts.emergency import EmergencyStopListener
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Switch, Text
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
-from nodes.safety.eyes import Eyes, shares
+from nodes.safety.distance_sensors import Eyes, shares
 from nodes.safety.gate import CommandGate
-from nodes.safety.moment import Moment
+from nodes.safety.snapshot import GateSnapshot
 from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
 from robot.safety.distance import SafetyZone, Sight, Verdict, allowed, where
 from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
@@ -43,7 +43,7 @@ from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
 
-    from nodes.safety.eyes import View
+    from nodes.safety.distance_sensors import View
 
 _STATE_EVERY_S = 1.0
 
@@ -88,7 +88,7 @@ class SafetyStop(LessonNode):
         self._views: tuple[View, ...] = self._eyes.views(self._zone)
         self._sights: tuple[Sight, ...] = ()
         self._verdict = Verdict.BLOCKED_FORWARD
-        self._told: tuple[Verdict, Moment] | None = None
+        self._told: tuple[Verdict, GateSnapshot] | None = None
         self._told_s = 0.0
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
         # In this order, which is that of their callbacks: of all that waits a stop comes first.
@@ -170,21 +170,21 @@ class SafetyStop(LessonNode):
         if changed:
             self._publish_state()
 
-    def _news(self) -> tuple[Verdict, Moment]:
+    def _news(self) -> tuple[Verdict, GateSnapshot]:
         """What is told at once when it changes, which an age does all the time."""
-        moment = self._moment()
-        return self._verdict, moment._replace(allowed=round(moment.allowed, 2), age_s=None)
+        snapshot = self._snapshot()
+        return self._verdict, snapshot._replace(allowed=round(snapshot.allowed, 2), age_s=None)
 
-    def _moment(self) -> Moment:
+    def _snapshot(self) -> GateSnapshot:
         if self._gate is not None:
-            return self._gate.moment()
-        return Moment(allowed=allowed(0.0, self._verdict, shares(self._views)))
+            return self._gate.snapshot()
+        return GateSnapshot(allowed=allowed(0.0, self._verdict, shares(self._views)))
 
     def _reason(self) -> str:
         return str(self._status().message)
 
     def _status(self) -> DiagnosticStatus:
-        return diagnosis(self.say, self._verdict, self._views, self._moment(), self._zone)
+        return diagnosis(self.say, self._verdict, self._views, self._snapshot(), self._zone)
 
     def _publish_state(self) -> None:
         self._told_s, self._told = time.monotonic(), self._news()

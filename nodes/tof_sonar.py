@@ -19,11 +19,11 @@ from std_msgs.msg import Float32
 
 from nodes.drivers.serial_link import SerialLink
 from nodes.parts.diagnostics import tell_every_second
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
-from nodes.parts.pace import PeriodicThread
 from nodes.parts.parameters import Choice, Number, Text, Whole
+from nodes.parts.periodic_thread import PeriodicThread
 from nodes.parts.qos import DEPTH
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 from robot.frames.tof import TofReader
 from robot.topics import SONAR_FRONT

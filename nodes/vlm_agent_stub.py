@@ -12,10 +12,10 @@ import sys
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.pictures import BadPictureError, bgr
+from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.parts.speech import Phrase
 from robot.topics import CAMERA

@@ -21,7 +21,7 @@ from text.i18n import Prose, _
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cli.preflight.line import OpenPort
+    from cli.preflight.open_port import OpenPort
 
 NAMES = {"pico": "Pico", "tf_luna": "TF-Luna", "tfmini_s": "TFmini-S", "lsc16": "LSC-16"}
 """Kind of device to what it is called."""

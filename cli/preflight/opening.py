@@ -11,7 +11,7 @@ from cli.doctor.finding import Level
 from cli.doctor.serial_ports import permission_mend
 from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
-from cli.preflight.line import OpenPort
+from cli.preflight.open_port import OpenPort
 from launcher.profile.serial_choice import how_to_choose
 from launcher.serial_ports import lasting_names
 from text.i18n import _, said

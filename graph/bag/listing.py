@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from graph.bag.defects import defect_of, endless
 from graph.bag.reading import SUFFIXES, metadata_of
-from graph.bag.unfit import endless, unfit
 from text.sentences import say
 
 
@@ -51,7 +51,7 @@ def _listed(path: Path) -> ListedBag | None:
     stats = [file.stat() for file in parts]
     size, changed_s = sum(one.st_size for one in stats), max(one.st_mtime for one in stats)
     metadata = metadata_of(path) if path.is_dir() else {}
-    broken = unfit(path, parts, metadata) or endless(parts) or ""
+    broken = defect_of(path, parts, metadata) or endless(parts) or ""
     if not path.is_dir() or broken:
         return ListedBag(path.name, path, size, changed_s, trouble=broken)
     try:

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from graph.bag.decoding import TypeText
+from graph.bag.defects import defect_of
 from graph.bag.errors import BagError, no_bag, unreadable
-from graph.bag.unfit import unfit
 from text.sentences import Words, say
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def open_bag(path: Path) -> Bag:
 def _unreadable(path: Path, files: list[Path], error: Exception) -> BagError:
     """Return why no reader takes the files, by their first bytes if these tell it."""
     with suppress(OSError):
-        reason = unfit(path, files, metadata_of(path))
+        reason = defect_of(path, files, metadata_of(path))
         if reason:
             return BagError(say("{path} cannot be read: {reason}", path=path, reason=reason))
     return unreadable(path, error)

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from graph.data import Trouble
-from graph.qos_fit import mismatches
+from graph.qos_compatibility import mismatches
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from graph.messages.types import UnknownTypeError
-    from graph.qos_fit import Mismatch
+    from graph.qos_compatibility import Mismatch
     from graph.scan.endpoints import TopicEnds
 
 MOST_PAIRS = 5

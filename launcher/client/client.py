@@ -8,9 +8,9 @@ import json
 import os
 from typing import TYPE_CHECKING, Any
 
+from launcher.client.hung_supervisor import kill_supervisor
 from launcher.client.inbox import Inbox
-from launcher.client.parting import kill_supervisor
-from launcher.client.past import newer
+from launcher.client.log_history import newer
 from launcher.client.running import find_running, running_records
 from launcher.client.start import StartingSupervisor
 from launcher.control.protocol import (

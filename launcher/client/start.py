@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import launcher
-from launcher.processes.marks import ROOM_ARGUMENT, room_for_marks
 from launcher.processes.signal import send
 from launcher.processes.table import processes
+from launcher.processes.title import ROOM_ARGUMENT, room_for_marks
 
 if TYPE_CHECKING:
     from typing_extensions import Self

@@ -16,9 +16,9 @@ from launcher.errors import DomainError, ProfileError, ProfileProblem
 from launcher.profile.check import applies, check_needs, check_node, check_run
 from launcher.profile.devices import with_devices
 from launcher.profile.extends import read_profile
+from launcher.profile.overrides import read_sets
 from launcher.profile.params import flatten
 from launcher.profile.references import used_devices
-from launcher.profile.sets import read_sets
 from launcher.profile.spec import NodeSpec, Profile, Ready
 from launcher.profile.text import shown
 from launcher.profile.tree import Branch, Place, Problems, Scalar, find, place_of

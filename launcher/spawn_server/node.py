@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from launcher import node_program
-from launcher.processes.marks import show_mark, show_name, show_title
+from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit
 from launcher.processes.table import NODE_MARK
-from launcher.processes.ties import die_with_parent, leave_libraries_alone_at_exit
+from launcher.processes.title import show_mark, show_name, show_title
 from text.plain import plain
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-    from launcher.spawn_server.arrivals import MessageRates
+    from launcher.spawn_server.message_rates import MessageRates
 
 EAGER_S = 10.0
 """For so long it looks often: a start is under way."""
@@ -56,7 +56,7 @@ def probe(argv: Sequence[str]) -> None:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    from launcher.spawn_server.arrivals import MessageRates
+    from launcher.spawn_server.message_rates import MessageRates
 
     conditions = [_Wanted(*fields) for fields in json.loads(argv[0])]
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)

@@ -3,7 +3,7 @@
 The first is forked from the supervisor before that has imported anything, later ones are started
 as `python -m launcher.spawn_server.server FD PID MODE ROOM`: FD is its end of a seqpacket socket,
 PID the supervisor, MODE `warm` or `cold`, and ROOM mere length for titles
-(`launcher.processes.marks`).
+(`launcher.processes.title`).
 
 One message is one packet of descriptors: first that of a memory file with a JSON object, then, of
 a request, the new process's stdin (optional), stdout and stderr. The answer is a packet of JSON,
@@ -11,7 +11,7 @@ a request, the new process's stdin (optional), stdout and stderr. The answer is 
 node is forked through an intermediate that exits, so that it becomes the supervisor's own child.
 
 At the end of the socket the supervisor is gone, and this process, which outlives it, ends
-whatever it has left running (`launcher.spawn_server.undertaker`).
+whatever it has left running (`launcher.spawn_server.cleanup`).
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from launcher.processes.table import RUN_MARK, read_process
+from launcher.spawn_server.cleanup import end_survivors
 from launcher.spawn_server.node import ENDING, Birth, become
 from launcher.spawn_server.preload import Preload
-from launcher.spawn_server.undertaker import undertake
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -146,7 +146,7 @@ def _answer(link: socket.socket, answer: dict[str, Any]) -> None:
 
 
 def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold: bool) -> None:
-    """Serve; at the end of the socket be the undertaker; in a forked node be the node.
+    """Serve; at the end of the socket end what is left; in a forked node be the node.
 
     `packages`: those whose shared modules the nodes to come will need, as far as that is known.
     """
@@ -160,7 +160,7 @@ def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold
     if task is not None:
         task()
     else:
-        undertake(os.environ[RUN_MARK], server.groups)
+        end_survivors(os.environ[RUN_MARK], server.groups)
 
 
 def main() -> None:

@@ -9,8 +9,8 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from launcher.processes.marks import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
 from launcher.processes.table import RUN_MARK, read_process
+from launcher.processes.title import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

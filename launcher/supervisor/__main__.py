@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import sys
 
-from launcher.processes.ties import become_subreaper
+from launcher.processes.prctl import become_subreaper
 from launcher.run_id import new_run_id
 from launcher.spawn_server.start import fork_spawn_server
 from launcher.supervisor.guardian import fork_under_guardian

@@ -12,10 +12,10 @@ import signal
 import time
 from typing import TYPE_CHECKING, NoReturn
 
-from launcher.processes.marks import show_name, show_title
+from launcher.processes.prctl import become_subreaper
 from launcher.processes.signal import send
 from launcher.processes.table import processes
-from launcher.processes.ties import become_subreaper
+from launcher.processes.title import show_name, show_title
 
 if TYPE_CHECKING:
     from launcher.processes.table import Process

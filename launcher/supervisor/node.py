@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
     from launcher.processes.table import Process
     from launcher.processes.usage import Usage
+    from launcher.supervisor.node_context import NodeContext, RunningProcess
     from launcher.supervisor.plan import NodePlan
     from launcher.supervisor.readiness import Seen
-    from launcher.supervisor.surroundings import RunningProcess, Surroundings
 
 LATE_S = 60.0
 """For so long after its time was up a node may still become ready."""
@@ -60,7 +60,7 @@ class _Now:
 class SupervisedNode:
     """One node of the session."""
 
-    def __init__(self, plan: NodePlan, around: Surroundings) -> None:
+    def __init__(self, plan: NodePlan, around: NodeContext) -> None:
         """`around`: the session it lives in."""
         self.plan = plan
         self.state = NodeState.WAITING

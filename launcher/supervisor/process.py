@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import asyncio
     from collections.abc import Iterable, Mapping, Sequence
 
-    from launcher.logs.book import LogBook
+    from launcher.logs.session_log import SessionLog
     from launcher.processes.exit import Exit, Reaper
     from launcher.processes.table import Process
     from launcher.spawn_server.spawner import Born, Spawner
@@ -89,13 +89,13 @@ class ProcessLauncher:
     """Starts nodes' processes, their pipes read into the log."""
 
     def __init__(
-        self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, book: LogBook
+        self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, log: SessionLog
     ) -> None:
         self.spawner = spawner
         self.reaper = reaper
         self.scan = scan
         self._plan = plan
-        self._book = book
+        self._log = log
         self._segments: dict[str, set[str]] = {}
         self._burnt = BurntPorts()
         # Before the probe joins: it would be shifted, and shift the nodes.
@@ -123,8 +123,8 @@ class ProcessLauncher:
         err, err_write = node_pipe()
         # Read from the first moment: what a process says before it is known is its own too.
         readers = [
-            self._book.read(node.name, out, "stdout"),
-            self._book.read(node.name, err, "stderr"),
+            self._log.read(node.name, out, "stdout"),
+            self._log.read(node.name, err, "stderr"),
         ]
         try:
             self._burnt.avoid_others(self._plan.domain)

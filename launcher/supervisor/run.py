@@ -14,9 +14,9 @@ from launcher.control.protocol import MAX_MESSAGE_BYTES, encode, pack_session, p
 from launcher.control.server import ControlServer
 from launcher.domain.discovery import why_open
 from launcher.domain.ports import other_users
-from launcher.logs.book import DECK, LogBook
 from launcher.logs.files import LogFiles
 from launcher.logs.folder import make_log_folder, prune_runs
+from launcher.logs.session_log import DECK, SessionLog
 from launcher.private_files import open_file
 from launcher.processes.exit import Reaper
 from launcher.processes.members import Members
@@ -24,10 +24,10 @@ from launcher.processes.owner import who_runs, who_words
 from launcher.processes.shared_memory import sweep_abandoned
 from launcher.processes.stop import end_all
 from launcher.rundir import OWN_RUN_DIR
-from launcher.runs.beside import free_domain, rival
 from launcher.runs.found import supervisors
-from launcher.runs.home import Home
 from launcher.runs.record import RunRecord, exclusively
+from launcher.runs.run_folder import RunFolder
+from launcher.runs.shared_domain import free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
 from launcher.spawn_server.spawner import Spawner
 from launcher.status import SessionInfo, Severity, Stray
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from launcher.logs.ring import LogRing
-    from launcher.runs.beside import Neighbour
+    from launcher.runs.shared_domain import Neighbour
     from launcher.spawn_server.start import SpawnServerHandle
     from launcher.status import LogLine, NodeStatus
 
@@ -62,12 +62,12 @@ async def run(run_id: str, spawn_server: SpawnServerHandle, client: int) -> None
     if not line.endswith(b"\n"):
         return  # The profile was no good, or the client has gone: there is nothing to do.
     plan = Plan.from_json(line)
-    home = Home(_record(plan, run_id, client))
+    run_folder = RunFolder(_record(plan, run_id, client))
     try:
-        if _claim(home, plan):
-            await Supervisor(plan, home, spawn_server).run(stdin)
+        if _claim(run_folder, plan):
+            await Supervisor(plan, run_folder, spawn_server).run(stdin)
     finally:
-        home.remove()
+        run_folder.remove()
 
 
 async def _open_stdin() -> asyncio.StreamReader:
@@ -99,19 +99,19 @@ def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
     return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
 
 
-def _claim(home: Home, plan: Plan) -> bool:
+def _claim(run_folder: RunFolder, plan: Plan) -> bool:
     """Make room for this run, unless another has these nodes in this domain."""
-    folder = home.run_dir
+    folder = run_folder.run_dir
     try:
         with exclusively(folder, plan.domain):
             everyone = list(supervisors())
-            other = rival(everyone, home.record)
+            other = rival(everyone, run_folder.record)
             if other is not None:
                 _answer(_refusal(other, free_domain(everyone, plan.domain)))
                 return False
-            home.settle()
-        folder = Path(home.record.session.log_dir)
-        make_log_folder(folder, (DECK, LAST_WORDS, *home.record.nodes))
+            run_folder.settle()
+        folder = Path(run_folder.record.session.log_dir)
+        make_log_folder(folder, (DECK, LAST_WORDS, *run_folder.record.nodes))
         _keep_last_words(folder)
     except OSError as problem:
         _answer({"no_room": pack_text(_no_room(folder, problem))})
@@ -152,11 +152,11 @@ def _keep_last_words(folder: Path) -> None:
 class Supervisor:
     """Fits `Controlled`: what clients ask for ends here."""
 
-    def __init__(self, plan: Plan, home: Home, spawn_server: SpawnServerHandle) -> None:
-        self.info = home.record.session
+    def __init__(self, plan: Plan, run_folder: RunFolder, spawn_server: SpawnServerHandle) -> None:
+        self.info = run_folder.record.session
         self.strays: tuple[Stray, ...] = ()
         self._plan = plan
-        self._home = home
+        self._run_folder = run_folder
         self._loop = asyncio.get_running_loop()
         self._reaper = Reaper()
         self._spawner = Spawner(self.info.run_id, spawn_server, self._warn)
@@ -165,15 +165,15 @@ class Supervisor:
         self._spawner.preload(plan.packages)
         self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
         self.control = ControlServer(self)
-        self._book = LogBook(
+        self._log = SessionLog(
             (node.name for node in plan.nodes), self._files, self.control.lines_came
         )
         scan = ProcessScan(Members(self.info.run_id))
-        launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._book)
-        self._session = Session(plan, launcher, self._book, self._status_changed)
+        launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._log)
+        self._session = Session(plan, launcher, self._log, self._status_changed)
         open_because = why_open(os.environ, plan.discovery)
         if open_because:
-            self._book.say(DECK, Severity.WARN, open_because)
+            self._log.say(DECK, Severity.WARN, open_because)
         self._end = asyncio.Event()
         self._hurry = asyncio.Event()
         self._reason = ""
@@ -186,9 +186,9 @@ class Supervisor:
         self._install_signals()
         self._watch_guardian()
         try:
-            listener = self._home.listen()
+            listener = self._run_folder.listen()
         except OSError as problem:
-            folder = self._home.record.folder
+            folder = self._run_folder.record.folder
             _answer({"no_room": pack_text(_no_room(folder, problem))})
             self._spawner.close()
             self._files.close()
@@ -196,11 +196,11 @@ class Supervisor:
         await self.control.serve(listener)
         self._tell_of_other_users()
         self._session.start()
-        _answer({"folder": str(self._home.record.folder)})
+        _answer({"folder": str(self._run_folder.record.folder)})
         helpers = [
             asyncio.create_task(self._session.measure()),
             asyncio.create_task(self._look_for_strays()),
-            asyncio.create_task(self._home.keep(self.control.serve, self._warn)),
+            asyncio.create_task(self._run_folder.keep(self.control.serve, self._warn)),
             asyncio.create_task(self._watch_owner(stdin)),
         ]
         await self._end.wait()
@@ -210,7 +210,7 @@ class Supervisor:
         self._spawner.close()
         # Whoever hears that it is over finds the logs complete, and nothing in the way.
         self._files.close()
-        self._home.remove()
+        self._run_folder.remove()
         await self.control.close(self._reason)
 
     # What clients ask.
@@ -221,11 +221,11 @@ class Supervisor:
 
     def rings(self) -> Mapping[str, LogRing]:
         """Return every node's log."""
-        return self._book.rings
+        return self._log.rings
 
     def history(self, node: str | None, limit: int) -> Sequence[LogLine]:
         """Return the newest lines of one node or of all."""
-        return self._book.newest(node, limit)
+        return self._log.newest(node, limit)
 
     def start(self, names: Iterable[str]) -> None:
         """Start nodes; raises `UnknownNodeError`."""
@@ -278,7 +278,7 @@ class Supervisor:
         if left:
             words = say("{reason}; still running: {who}", reason=self._reason, who=who(left))
             self._reason = words
-            self._book.say(DECK, Severity.ERROR, words)
+            self._log.say(DECK, Severity.ERROR, words)
 
     def _install_signals(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -323,16 +323,18 @@ class Supervisor:
     def _write_record(self) -> None:
         """Note which processes there are, for whoever comes after a sudden end."""
         try:
-            self._home.note(self._session.processes)
+            self._run_folder.note(self._session.processes)
         except OSError as problem:
             if not self._record_failed:
                 self._record_failed = True
-                self._book.say(DECK, Severity.ERROR, _no_room(self._home.record.folder, problem))
+                self._log.say(
+                    DECK, Severity.ERROR, _no_room(self._run_folder.record.folder, problem)
+                )
         else:
             self._record_failed = False
 
     def _warn(self, words: Words) -> None:
-        self._book.say(DECK, Severity.WARN, words)
+        self._log.say(DECK, Severity.WARN, words)
 
     def _tell_of_other_users(self) -> None:
         """Say who could hear and drive this robot from elsewhere on the machine."""
@@ -348,7 +350,7 @@ class Supervisor:
 
     def _log_failed(self, reason: str) -> None:
         words = say("{folder}: {reason}", folder=self.info.log_dir, reason=reason)
-        self._loop.call_soon_threadsafe(self._book.say, DECK, Severity.ERROR, words)
+        self._loop.call_soon_threadsafe(self._log.say, DECK, Severity.ERROR, words)
 
     async def _look_for_strays(self) -> None:
         self._find_strays()
@@ -359,7 +361,7 @@ class Supervisor:
             self._find_strays()
 
     def _find_strays(self) -> None:
-        run_dir = self._home.run_dir
+        run_dir = self._run_folder.run_dir
         strays = find_strays(run_dir)
         forget_ended_runs(run_dir, strays)
         if strays != self.strays:

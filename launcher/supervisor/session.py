@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from launcher.clock import MonotonicClock
 from launcher.errors import UnknownNodeError
-from launcher.logs.book import DECK
+from launcher.logs.session_log import DECK
 from launcher.processes.usage import UsageMeter
 from launcher.status import NodeState, Severity
+from launcher.supervisor.dependencies import stop_waves, with_needs
 from launcher.supervisor.node import SupervisedNode
-from launcher.supervisor.order import needed_by, stop_waves
 from launcher.supervisor.readiness import Readiness
 from launcher.supervisor.shared_memory import SharedMemory
 from text.sentences import say
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from launcher.clock import Clock
-    from launcher.logs.book import LogBook
+    from launcher.logs.session_log import SessionLog
     from launcher.supervisor.plan import NodePlan, Plan
     from launcher.supervisor.process import NodeProcess, ProcessLauncher
     from launcher.supervisor.readiness import ReadyCondition, Seen
@@ -35,13 +35,13 @@ class Session:
         self,
         plan: Plan,
         launcher: ProcessLauncher,
-        book: LogBook,
+        log: SessionLog,
         on_change: Callable[[str], None],
     ) -> None:
         """`on_change` is called with the name of a node whose status has changed."""
         self.clock: Clock = MonotonicClock()
         self.plan = plan
-        self.book = book
+        self.log = log
         self.nodes = {node.name: SupervisedNode(node, self) for node in plan.nodes}
         self._launcher = launcher
         self._on_change = on_change
@@ -58,7 +58,7 @@ class Session:
         """Nodes that are being stopped only to be started again."""
         self._restarting: asyncio.Task[None] | None = None
         self._hurry = asyncio.Event()
-        self._shared_memory = SharedMemory(lambda *words: book.say(DECK, *words))
+        self._shared_memory = SharedMemory(lambda *words: log.say(DECK, *words))
 
     # What is asked of it.
 
@@ -68,7 +68,7 @@ class Session:
         self._shared_memory.clear()
         # The probe goes first: what it sees coming it need not look for.
         self._readiness.expect()
-        for name in needed_by(chosen, self.plan.needs):
+        for name in with_needs(chosen, self.plan.needs):
             if name in chosen or not self.nodes[name].at_work:
                 self.nodes[name].start()
 
@@ -157,11 +157,11 @@ class Session:
 
     def last_words(self, name: str) -> str:
         """Return what the node said last."""
-        return self.book.last_words(name)
+        return self.log.last_words(name)
 
     def say(self, name: str, severity: Severity, words: str) -> None:
         """Add a line about the node to its log."""
-        self.book.say(name, severity, words)
+        self.log.say(name, severity, words)
 
     def changed(self, name: str, state: NodeState) -> None:
         """Tell the clients, and those nodes that need this one."""

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from std_msgs.msg import String
 
 from nodes.parts.node import change_period
+from robot.frames.batches import Chunk, FrameBatcher
 from robot.frames.lines import encode
-from robot.frames.teller import Chunk, FrameTeller
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,7 +35,7 @@ class SerialFrames:
     def __init__(self, node: LessonNode, make: Callable[[str], FrameReader]) -> None:
         """`make` makes what reads the frames of this device and speaks a language."""
         self._publisher = node.quick_publisher(String, FRAMES)
-        self._teller = FrameTeller(make, node.say.language)
+        self._batcher = FrameBatcher(make, node.say.language)
         self._wanted = False
         self._lock = threading.Lock()
         self._chunks: list[Chunk] = []
@@ -58,7 +58,7 @@ class SerialFrames:
         wanted = self._publisher.get_subscription_count() > 0
         if wanted != self._wanted:
             self._wanted = wanted
-            self._teller.restart()
+            self._batcher.restart()
             self._take()
             change_period(self._timer, _TELL_EVERY_S if wanted else _LOOK_EVERY_S)
         elif wanted:
@@ -66,7 +66,7 @@ class SerialFrames:
 
     def _tell(self) -> None:
         chunks, missed = self._take()
-        lines = self._teller.tell(chunks, time.time(), missed)
+        lines = self._batcher.tell(chunks, time.time(), missed)
         if lines:
             self._publisher.publish(String(data=encode(lines)))
 

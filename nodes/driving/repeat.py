@@ -40,7 +40,7 @@ _OVER = Phrase(
 )
 
 
-class DriveVoice:
+class DriveRepeater:
     """Publishes /drive for a node that has `REPEAT_FOR_S` among its settings."""
 
     def __init__(self, node: LessonNode) -> None:

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 from ackermann_msgs.msg import AckermannDriveStamped
 from rclpy.duration import Duration
 
-from nodes.parts.arrivals import FirstHeard
 from nodes.parts.drive import from_message, to_message
+from nodes.parts.first_heard import FirstHeard
 from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import CommandRefusals
 from nodes.parts.sole_publisher import SolePublisher
 from nodes.parts.stall_detector import StallDetector
 from nodes.safety import words
-from nodes.safety.moment import Moment
+from nodes.safety.snapshot import GateSnapshot
 from robot.limits import SPEED, STEERING
 from robot.safety.distance import Shares, Verdict, allowed, gate
 from robot.safety.sources import Sources
@@ -102,13 +102,13 @@ class CommandGate:
         self._send(STOP)
         self._publisher.wait_for_all_acked(_LAST_STOP)
 
-    def moment(self) -> Moment:
+    def snapshot(self) -> GateSnapshot:
         """What it does just now."""
         now_s = time.monotonic()
         order = self._sources.driving(now_s)
         asked_m_s = order.setpoint.speed_m_s if order else 0.0
         recently = now_s - self._ignored_s < _REMEMBER_IGNORED_S
-        return Moment(
+        return GateSnapshot(
             order.source if order else "",
             self._ignored if recently and order else "",
             asked_m_s,

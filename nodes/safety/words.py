@@ -13,8 +13,8 @@ from robot.safety.distance import SafetyZone, Sight, Verdict
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from nodes.safety.eyes import View
-    from nodes.safety.moment import Moment
+    from nodes.safety.distance_sensors import View
+    from nodes.safety.snapshot import GateSnapshot
 
 STARTED = Phrase(
     "Watching the way: closer than {metres:g} m is danger",
@@ -123,7 +123,7 @@ def _percent(share: float) -> int:
 
 
 def diagnosis(
-    say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment, zone: SafetyZone
+    say: Speech, verdict: Verdict, views: Sequence[View], snapshot: GateSnapshot, zone: SafetyZone
 ) -> DiagnosticStatus:
     """The state of safety: level, a sentence, and key-values for programs.
 
@@ -131,30 +131,30 @@ def diagnosis(
     """
     bad = [view for view in views if view.sight != Sight.FREE]
     blind = any(view.sight != Sight.CLOSE for view in bad)
-    level = DiagnosticStatus.WARN if bad or moment.refused else DiagnosticStatus.OK
+    level = DiagnosticStatus.WARN if bad or snapshot.refused else DiagnosticStatus.OK
     if verdict == Verdict.EMERGENCY_STOP or blind:
         level = DiagnosticStatus.ERROR
     return DiagnosticStatus(
         level=level,
         name="safety_stop",
-        message=_sentence(say, verdict, views, moment),
+        message=_sentence(say, verdict, views, snapshot),
         values=[
-            KeyValue(key=key, value=value) for key, value in _values(verdict, views, moment, zone)
+            KeyValue(key=key, value=value) for key, value in _values(verdict, views, snapshot, zone)
         ],
     )
 
 
-def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], moment: Moment) -> str:
+def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], snapshot: GateSnapshot) -> str:
     why = ", ".join(_reason(say, view) for view in views if view.sight != Sight.FREE)
     sentence = say.text(_VERDICTS[verdict], why=why)
-    if 0 < moment.allowed < 1:
-        view = views[-1 if moment.asked_m_s < 0 else 0]
-        percent = _percent(moment.allowed)
+    if 0 < snapshot.allowed < 1:
+        view = views[-1 if snapshot.asked_m_s < 0 else 0]
+        percent = _percent(snapshot.allowed)
         sentence = say.text(_SLOWED, percent=percent, why=_reason(say, view))
-    if moment.ignored:
-        sentence += say.text(_AND_IGNORED, ignored=moment.ignored, source=moment.source)
-    if moment.refused:
-        sentence += say.text(_AND_REFUSED, refused=moment.refused.words)
+    if snapshot.ignored:
+        sentence += say.text(_AND_IGNORED, ignored=snapshot.ignored, source=snapshot.source)
+    if snapshot.refused:
+        sentence += say.text(_AND_REFUSED, refused=snapshot.refused.words)
     return sentence
 
 
@@ -173,17 +173,17 @@ def _phrase(
 
 
 def _values(
-    verdict: Verdict, views: Sequence[View], moment: Moment, zone: SafetyZone
+    verdict: Verdict, views: Sequence[View], snapshot: GateSnapshot, zone: SafetyZone
 ) -> Iterator[tuple[str, str]]:
     yield "verdict", verdict.value
     for view in views:
         metres = view.reading.distance_m
         yield view.place, view.sight.value
         yield f"{view.place}_m", "" if metres is None else f"{metres:.3f}"
-    yield "source", moment.source
-    yield "ignored", moment.ignored
-    yield "refused", moment.refused.told if moment.refused else ""
-    yield "allowed", f"{moment.allowed:.2f}"
-    yield "command_age_s", "" if moment.age_s is None else f"{moment.age_s:.2f}"
+    yield "source", snapshot.source
+    yield "ignored", snapshot.ignored
+    yield "refused", snapshot.refused.told if snapshot.refused else ""
+    yield "allowed", f"{snapshot.allowed:.2f}"
+    yield "command_age_s", "" if snapshot.age_s is None else f"{snapshot.age_s:.2f}"
     yield "critical_m", f"{zone.critical_m:.6g}"
     yield "slow_m", f"{zone.slow_m:.6g}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from robot.world.paint import (
+from robot.world.textures import (
     ACROSS,
     ALONG,
     CEILING,

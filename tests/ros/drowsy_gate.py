@@ -6,7 +6,7 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from nodes.parts.life import run
+from nodes.parts.runner import run
 from nodes.safety.gate import CommandGate
 from nodes.safety_stop import SafetyStop
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 import time
 
-from nodes.parts.life import run
 from nodes.parts.node import LessonNode
+from nodes.parts.runner import run
 from nodes.parts.speech import Phrase
 
 

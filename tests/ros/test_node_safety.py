@@ -12,8 +12,8 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, Float32
 
 from nodes.parts.speech import Speech
-from nodes.safety.eyes import DistanceSensor
-from nodes.safety.moment import Moment
+from nodes.safety.distance_sensors import DistanceSensor
+from nodes.safety.snapshot import GateSnapshot
 from nodes.safety.words import diagnosis, tell_front
 from robot.safety.distance import SafetyZone, Sight, Verdict
 from tests.ros.gate import FRONT, REAR, Gate, drive, values
@@ -202,8 +202,8 @@ def test_what_is_out_of_range_is_told_in_words(
     tell_front(say, view)
     assert log.lines[-1].endswith(logged)
     verdict = Verdict.FREE if metres > 0 else Verdict.BLOCKED_FORWARD
-    assert diagnosis(say, verdict, [view], Moment(), zone).message.endswith(told)
-    slowed = diagnosis(say, Verdict.FREE, [view], Moment(allowed=0.5), zone).message
+    assert diagnosis(say, verdict, [view], GateSnapshot(), zone).message.endswith(told)
+    slowed = diagnosis(say, Verdict.FREE, [view], GateSnapshot(allowed=0.5), zone).message
     assert "inf" not in slowed
 
 

@@ -13,7 +13,7 @@ import pytest
 from tests.unit.profile_files import written
 
 PLANTED = (
-    *("nodes/__init__.py", "nodes/hello.py", "nodes/parts/life.py", "launcher/__init__.py"),
+    *("nodes/__init__.py", "nodes/hello.py", "nodes/parts/runner.py", "launcher/__init__.py"),
     *("launcher/supervisor/__main__.py", "rclpy/__init__.py", "std_msgs/__init__.py", "tui/app.py"),
     *("graph/__init__.py", "numpy.py", "yaml.py", "json.py", "psutil.py", "sitecustomize.py"),
     *("usercustomize.py", "cli/main.py", "text/__init__.py", "robot/__init__.py", "runpy.py"),

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from launcher.processes.prctl import become_subreaper
 from launcher.processes.signal import lives, send
 from launcher.processes.table import RUN_MARK, Process, processes, read_marks, read_process
-from launcher.processes.ties import become_subreaper
 from launcher.spawn_server.preload import IDLE_AFTER_S
 from launcher.spawn_server.spawner import Born, Spawner, SpawnError, SpawnRequest
 from launcher.spawn_server.start import start_spawn_server

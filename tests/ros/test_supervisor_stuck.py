@@ -155,7 +155,7 @@ async def test_a_supervisor_that_hangs_is_killed_with_all_its_nodes(
 async def test_what_a_killed_supervisor_has_left_is_named(
     stopped: SupervisorClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("launcher.client.parting.GONE_WITHIN_S", 0.5)
+    monkeypatch.setattr("launcher.client.hung_supervisor.GONE_WITHIN_S", 0.5)
     mark = {**os.environ, RUN_MARK: stopped.session.run_id}
     # One that nobody can find by its parents: it stands for another user's.
     left = await asyncio.create_subprocess_exec("sleep", "1000", env=mark, start_new_session=True)

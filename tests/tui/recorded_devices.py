@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import GraphUpdate, Sample
 from launcher.status import NodeState, NodeStatus
+from robot.frames.batches import Chunk, FrameBatcher
 from robot.frames.lines import encode
 from robot.frames.pico import PicoReader
-from robot.frames.teller import Chunk, FrameTeller
 from robot.frames.tof import TofReader
 from robot.wire import pico as wire_pico
 from robot.wire import tfluna as wire_tfluna
@@ -114,7 +114,7 @@ def of_chassis(count: int = 8) -> Sample:
         if at == 4:
             line = b"\xff\x00" + line.replace(b"3300", b"3301")
         chunks.append(Chunk(AT_S - 0.99 + at / 50, "in", line))
-    return frames("chassis", FrameTeller(PicoReader, "en").tell(chunks, AT_S))
+    return frames("chassis", FrameBatcher(PicoReader, "en").tell(chunks, AT_S))
 
 
 def of_sonar(*metres: float, language: str = "en") -> Sample:
@@ -123,7 +123,7 @@ def of_sonar(*metres: float, language: str = "en") -> Sample:
         Chunk(AT_S + at / 100, "in", wire_tfluna.encode(TofFrame(round(one * 100), 1000, 30.0)))
         for at, one in enumerate(metres)
     ]
-    return frames("sonar_front", FrameTeller(TofReader, language).tell(chunks, AT_S))
+    return frames("sonar_front", FrameBatcher(TofReader, language).tell(chunks, AT_S))
 
 
 def update(*samples: Sample, publishers: tuple[str, ...] = tuple(PORTS)) -> GraphUpdate:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from graph.data import EndpointInfo
-from graph.qos_fit import mismatches
+from graph.qos_compatibility import mismatches
 from text.i18n import set_language
 from tui.widgets.qos_words import misfit_words, pair_words
 

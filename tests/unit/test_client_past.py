@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from launcher.client.past import newer
+from launcher.client.log_history import newer
 from launcher.events import LogEvent
 from launcher.status import LogLine, Severity
 

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot.frames.batches import Chunk, FrameBatcher
 from robot.frames.lines import MOST, FrameLine, decode, encode
 from robot.frames.lsc16 import ServoReader
 from robot.frames.pico import PicoReader
 from robot.frames.protocols import FrameKind, RawReader
-from robot.frames.teller import Chunk, FrameTeller
 from robot.frames.tof import TofReader
 from robot.wire import lsc16 as wire_lsc16
 from robot.wire import pico as wire_pico
@@ -180,15 +180,15 @@ def test_ten_megabytes_of_noise_keep_less_than_a_frame() -> None:
 
 
 def test_a_batch_is_bounded_and_tells_what_it_left_out() -> None:
-    teller = FrameTeller(TofReader, "en")
+    teller = FrameBatcher(TofReader, "en")
     lines = teller.tell([Chunk(1.0, "in", NEAR * (MOST + 12))], 1.0, missed=500)
     assert [line.text for line in lines[-2:]] == ["12 more", "500 more bytes"]
     assert (len(lines), lines[-2].kind, lines[-2].count) == (MOST + 2, FrameKind.MORE, 12)
-    assert FrameTeller(TofReader, "ru").tell([], 0.0, 7)[0].text == "ещё байт: 7"
+    assert FrameBatcher(TofReader, "ru").tell([], 0.0, 7)[0].text == "ещё байт: 7"
 
 
 def test_who_comes_in_the_middle_of_a_frame_sees_no_noise() -> None:
-    teller = FrameTeller(TofReader, "en")
+    teller = FrameBatcher(TofReader, "en")
     lines = teller.tell([Chunk(1.0, "in", NEAR[4:] + NEAR)], 1.0)
     assert [line.kind for line in lines] == [FrameKind.FRAME]
     lines = teller.tell([Chunk(1.1, "in", NEAR[4:])], 1.1)
@@ -196,7 +196,7 @@ def test_who_comes_in_the_middle_of_a_frame_sees_no_noise() -> None:
 
 
 def test_noise_in_drips_is_one_line_and_both_ways_keep_their_order() -> None:
-    teller = FrameTeller(PicoReader, "en")
+    teller = FrameBatcher(PicoReader, "en")
     teller.tell([Chunk(0.5, "in", wire_pico.encode(Halt(1)))], 0.5)
     chunks = [Chunk(1.0 + at / 100, "in", b"x\n") for at in range(5)]
     chunks += [Chunk(1.1, "out", wire_pico.encode(Halt(7))), Chunk(1.2, "in", b"y\n")]
@@ -210,7 +210,7 @@ def test_noise_in_drips_is_one_line_and_both_ways_keep_their_order() -> None:
 
 
 def test_a_frame_that_does_not_end_is_given_up() -> None:
-    teller = FrameTeller(PicoReader, "en")
+    teller = FrameBatcher(PicoReader, "en")
     assert teller.tell([Chunk(1.0, "in", b"login: ")], 1.0) == []
     assert teller.tell([], 1.2) == []
     assert [line.text for line in teller.tell([], 1.4)] == ["noise 7 bytes"]

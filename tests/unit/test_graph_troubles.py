@@ -12,7 +12,7 @@ from graph.housekeeping import is_housekeeping
 from graph.messages.types import UnknownTypeError
 from graph.observer.troubles import quiet, structural
 from graph.qos import Qos, to_be_heard, to_hear
-from graph.qos_fit import mismatches
+from graph.qos_compatibility import mismatches
 from graph.scan.endpoints import TopicEnds, full_name
 
 FLOAT = "std_msgs/msg/Float32"

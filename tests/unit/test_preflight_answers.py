@@ -10,7 +10,7 @@ import pytest
 
 from cli.doctor import Level
 from cli.preflight.answers import DeviceAnswer, ask
-from cli.preflight.line import OpenPort
+from cli.preflight.open_port import OpenPort
 from robot.wire.lsc16 import Battery
 from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import Telemetry, Welcome

@@ -17,7 +17,7 @@ from cli.doctor import Finding, Level
 from cli.preflight import examine
 from cli.preflight.answers import DeviceAnswer
 from cli.preflight.holders import holders
-from cli.preflight.line import OpenPort
+from cli.preflight.open_port import OpenPort
 from cli.preflight.opening import opened
 from launcher.profile.load import Profile
 from launcher.profile.model import ProfileDocument

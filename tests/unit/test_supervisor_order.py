@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from launcher.supervisor.order import needed_by, stop_waves
+from launcher.supervisor.dependencies import stop_waves, with_needs
 
 NEEDS = {
     "sonar": (),
@@ -14,8 +14,8 @@ NEEDS = {
 
 
 def test_what_a_node_needs_comes_before_it() -> None:
-    assert needed_by(["brain"], NEEDS) == ["camera", "sonar", "safety", "drive", "brain"]
-    assert needed_by(["safety", "sonar"], NEEDS) == ["sonar", "safety"]
+    assert with_needs(["brain"], NEEDS) == ["camera", "sonar", "safety", "drive", "brain"]
+    assert with_needs(["safety", "sonar"], NEEDS) == ["sonar", "safety"]
 
 
 def test_dependants_are_stopped_first() -> None:

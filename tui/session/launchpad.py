@@ -66,7 +66,9 @@ class LivePad:
     async def prepare(self) -> None:
         """Import, here and in a supervisor, what is the same for every profile."""
         await self._start_ahead()
-        await _imported("launcher.client.client", "launcher.runs.beside", "graph.observer.observer")
+        await _imported(
+            "launcher.client.client", "launcher.runs.shared_domain", "graph.observer.observer"
+        )
         # Without ROS there is a word for it, later: the nodes' own and the observer's.
         with contextlib.suppress(ImportError):
             await _imported(*OF_ROS)
@@ -126,7 +128,7 @@ class LivePad:
 def _read(path: Path, order: Order) -> Profile:
     """Read the profile, and see that nobody else is in its domain."""
     from launcher.profile.load import load_profile
-    from launcher.runs.beside import refuse_company
+    from launcher.runs.shared_domain import refuse_shared_domain
     from launcher.serial_ports import serial_ports
 
     profile = load_profile(
@@ -137,7 +139,7 @@ def _read(path: Path, order: Order) -> Profile:
         ports=serial_ports,
     )
     if not order.beside:
-        refuse_company(profile)
+        refuse_shared_domain(profile)
     return profile
 
 

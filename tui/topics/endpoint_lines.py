@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
-from graph.qos_fit import LEASE, LIVELINESS, mismatches
+from graph.qos_compatibility import LEASE, LIVELINESS, mismatches
 from text.i18n import _, ngettext
 from text.plain import plain
 from tui.widgets.drawing import Ink, Line, fit
@@ -19,7 +19,7 @@ from tui.widgets.trouble import names
 
 if TYPE_CHECKING:
     from graph.data import EndpointInfo, TopicRow
-    from graph.qos_fit import Mismatch
+    from graph.qos_compatibility import Mismatch
 
 MARK = 2
 MOST_PAIRS = 12

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from graph.qos_fit import DEADLINE, LEASE
+from graph.qos_compatibility import DEADLINE, LEASE
 from text.i18n import N_, _, ngettext
 from text.plain import plain
 from tui.widgets.figures import seconds_text

@@ -9,7 +9,7 @@ from launcher.errors import UsageError
 from text.sentences import say
 
 
-def robot_to_hear(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
+def running_domain(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
     """Return name, domain and discovery: of the robot that Deck runs, else of the environment.
 
     Raises:

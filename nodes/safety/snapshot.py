@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from nodes.parts.refusals import Refusal
 
 
-class Moment(NamedTuple):
+class GateSnapshot(NamedTuple):
     """What the gate does just now."""
 
     source: str = ""

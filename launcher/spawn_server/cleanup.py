@@ -25,7 +25,7 @@ PATIENCE_S = 10.0
 """After that a process that SIGKILL does not end is left to the kernel."""
 
 
-def undertake(run_id: str, groups: Iterable[int]) -> None:
+def end_survivors(run_id: str, groups: Iterable[int]) -> None:
     """End every process in `groups`, and every one that is marked with `run_id`."""
     wanted = frozenset(groups)
     started = time.monotonic()

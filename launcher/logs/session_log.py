@@ -24,7 +24,7 @@ DECK = "deck"
 """Whose lines those are that the supervisor says of itself, and their `source`."""
 
 
-class LogBook:
+class SessionLog:
     """Rings and files of all nodes."""
 
     def __init__(self, nodes: Iterable[str], files: LogFiles, on_line: Callable[[], None]) -> None:

@@ -80,7 +80,7 @@ def _unknown(supervisor: FoundSupervisor) -> RunRecord:
     return RunRecord(supervisor.folder, session, (), {})
 
 
-def refuse_company(profile: Profile) -> None:
+def refuse_shared_domain(profile: Profile) -> None:
     """Make sure that a profile would have its domain to itself.
 
     Raises:

@@ -27,7 +27,7 @@ class RunningProcess(Target, Protocol):
         """Nothing of it is left: read what it has still written, and let go of it."""
 
 
-class Surroundings(Protocol):
+class NodeContext(Protocol):
     """What a node's life needs of the session around it."""
 
     clock: Clock

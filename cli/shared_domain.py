@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from launcher.errors import DomainTakenError
-from launcher.runs.beside import refuse_company
+from launcher.runs.shared_domain import refuse_shared_domain
 from text.i18n import _, said
 from text.output import say_error
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from launcher.profile.load import Profile
 
 
-def warn_of_company(profile: Profile) -> None:
+def warn_of_shared_domain(profile: Profile) -> None:
     """Name other sessions in the domain; those it cannot be shared with the supervisor refuses."""
     try:
-        refuse_company(profile)
+        refuse_shared_domain(profile)
     except DomainTakenError as taken:
         if taken.can_share:
             say_error(said(taken.args[0]))

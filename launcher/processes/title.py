@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import ctypes
 
+from launcher.processes.prctl import set_short_name
 from launcher.processes.table import NODE_MARK, RUN_MARK, SUPERVISOR_MARK, stat_fields
-from launcher.processes.ties import set_short_name
 
 ROOM_ARGUMENT = "-" * 160
 """Last argument of a command line that has room for titles."""

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
 
-def needed_by(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list[str]:
+def with_needs(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list[str]:
     """Return `names` with all that they need, however far, each after what it needs itself."""
     ordered: list[str] = []
 
@@ -36,4 +36,4 @@ def stop_waves(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list
 
 
 def _all_needs(name: str, needs: Mapping[str, Sequence[str]]) -> set[str]:
-    return set(needed_by([name], needs)) - {name}
+    return set(with_needs([name], needs)) - {name}

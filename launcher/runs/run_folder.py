@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from launcher.control.socket import SOCKET_NAME, listen
 from launcher.errors import RunDirError
-from launcher.processes.marks import show_mark
 from launcher.processes.table import SUPERVISOR_MARK
+from launcher.processes.title import show_mark
 from launcher.rundir import own_folder
 from launcher.runs.record import RECORD_NAME
 from text.sentences import Words, say
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 LOOK_EVERY_S = 1.0
 
 
-class Home:
+class RunFolder:
     """Where clients find a run: its record, and the socket to connect to."""
 
     def __init__(self, record: RunRecord) -> None:

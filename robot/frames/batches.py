@@ -30,7 +30,7 @@ class Chunk(NamedTuple):
     octets: bytes
 
 
-class FrameTeller:
+class FrameBatcher:
     """Keeps a reader for each direction."""
 
     def __init__(self, make: Callable[[str], FrameReader], language: str) -> None:

@@ -15,7 +15,7 @@ _KINDS = {".mcap": (b"\x89MCAP0\r\n", "MCAP"), ".db3": (b"SQLite format 3\x00", 
 """How a file begins that is named so, and what it is called. An MCAP file ends so, too."""
 
 
-def unfit(folder: Path, files: Iterable[Path], metadata: Mapping[str, object]) -> Words | None:
+def defect_of(folder: Path, files: Iterable[Path], metadata: Mapping[str, object]) -> Words | None:
     """Return what is wrong with one of a bag's files, None if all of them begin as they should.
 
     `metadata`: what the bag's metadata.yaml says, which names its files.
