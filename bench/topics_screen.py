@@ -24,7 +24,7 @@ from tests.tui.recorded import RecordedGraph, RecordedPad, sample, topic
 from tui.app import DeckApp
 from tui.session.orders import Order
 from tui.terminal.driver import DeckDriver
-from tui.topics.table import TopicsTable
+from tui.topics.table.table import TopicsTable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -39,7 +39,7 @@ from tui.panels.wheels.widget import WheelsPanel
 from tui.session.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
 from tui.session.isolation import isolating
 from tui.topics.screen import TopicsScreen
-from tui.topics.table import TopicsTable
+from tui.topics.table.table import TopicsTable
 
 
 @dataclass

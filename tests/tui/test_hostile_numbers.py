@@ -36,7 +36,7 @@ from tui.panels.wheels.widget import WheelsPanel, angle_words, radius_words, spe
 from tui.topics.plot.field import PlotField
 from tui.topics.plot.legend import number_text
 from tui.topics.plot.plot import TopicPlot
-from tui.topics.table_columns import age_text, bandwidth_text, hz_text
+from tui.topics.table.columns import age_text, bandwidth_text, hz_text
 from tui.widgets.drawing import Drawing
 from tui.widgets.figures import count_text, seconds_text
 from tui.widgets.trouble import no_data_words

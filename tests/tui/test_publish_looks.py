@@ -13,7 +13,7 @@ from graph.data import Publication
 from tests.tui.recorded import lesson_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
-from tui.topics.publish import PublishDialog
+from tui.topics.publish.dialog import PublishDialog
 from tui.topics.screen import TopicsScreen
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"

@@ -21,7 +21,7 @@ from tui.deck.screen import LessonDeck
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.graph.parameter_words import allowed_words
 from tui.panels.panel import trouble_of
-from tui.topics.table_columns import state_text
+from tui.topics.table.columns import state_text
 from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:

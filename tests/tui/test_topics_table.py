@@ -13,8 +13,7 @@ from textual.geometry import Region
 from graph.data import TopicRow, Trouble
 from tests.tui.recorded import TOPICS, topic
 from text.i18n import _, set_language
-from tui.topics.table import TopicsTable
-from tui.topics.table_columns import (
+from tui.topics.table.columns import (
     COLUMNS,
     age_text,
     bandwidth_text,
@@ -22,7 +21,8 @@ from tui.topics.table_columns import (
     placed,
     state_text,
 )
-from tui.topics.table_order import TopicsOrder
+from tui.topics.table.order import TopicsOrder
+from tui.topics.table.table import TopicsTable
 
 FLOAT = "std_msgs/msg/Float32"
 

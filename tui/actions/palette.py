@@ -31,7 +31,7 @@ from tui.recording.replay_actions import ReplayAction
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.themes import CYCLE
 from tui.topics.actions import TOPICS_ACTIONS, OpenPublish
-from tui.topics.publish_actions import PUBLISH_ACTIONS
+from tui.topics.publish.actions import PUBLISH_ACTIONS
 
 if TYPE_CHECKING:
     from textual.dom import DOMNode

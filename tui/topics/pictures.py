@@ -11,7 +11,7 @@ from graph.pictures.pixels import ImageError, UnknownEncodingError
 from graph.pictures.reading import read_picture
 from text.i18n import _, decimal, said
 from text.plain import plain
-from tui.topics.table_columns import hz_text
+from tui.topics.table.columns import hz_text
 from tui.widgets.image_view import Scale
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from tui.topics.detail import TopicDetail
     from tui.topics.plot.plot import TopicPlot
-    from tui.topics.table import TopicsTable
+    from tui.topics.table.table import TopicsTable
 
 
 class PlotPlace(Enum):

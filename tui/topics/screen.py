@@ -22,7 +22,7 @@ from tui.topics.echo_filter import EchoFilter
 from tui.topics.pictures import TopicPictures, carries_images, is_image
 from tui.topics.plot.plot import TopicPlot
 from tui.topics.plotting import PlotPlace, Plotting
-from tui.topics.table import TopicsTable
+from tui.topics.table.table import TopicsTable
 from tui.topics.words import size_text
 from tui.widgets.field import Field
 
@@ -303,7 +303,7 @@ class TopicsScreen(DeckScreen):
 
     def open_publish(self) -> None:
         """Open the dialog that publishes, for the chosen topic."""
-        from tui.topics.publish import PublishDialog
+        from tui.topics.publish.dialog import PublishDialog
 
         row = self.table.chosen_row
         self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))

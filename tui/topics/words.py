@@ -8,7 +8,7 @@ from rich.cells import cell_len
 
 from graph.data import Trouble
 from text.i18n import _, decimal, ngettext
-from tui.topics.table_columns import age_text, bandwidth_text, hz_text
+from tui.topics.table.columns import age_text, bandwidth_text, hz_text
 from tui.widgets.figures import count_text, seconds_text
 from tui.widgets.trouble import names, no_data_words
 

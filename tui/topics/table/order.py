@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_housekeeping
-from tui.topics.table_columns import COLUMNS, TopicColumn
+from tui.topics.table.columns import COLUMNS, TopicColumn
 
 if TYPE_CHECKING:
     from graph.data import TopicRow

@@ -18,10 +18,10 @@ from tui.dialogs.dialog import Dialog
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
-from tui.topics.publication_list import PublicationList
-from tui.topics.publish_actions import PUBLISH_ACTIONS
-from tui.topics.publish_rate import PublishRate
-from tui.topics.publish_target import PublishTarget
+from tui.topics.publish.actions import PUBLISH_ACTIONS
+from tui.topics.publish.publication_list import PublicationList
+from tui.topics.publish.rate import PublishRate
+from tui.topics.publish.target import PublishTarget
 from tui.yaml_form.form import YamlForm
 from tui.yaml_form.type_field import TypeField
 from tui.yaml_form.words import reason_words

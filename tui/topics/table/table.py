@@ -16,8 +16,8 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from text.i18n import _
-from tui.topics.table_columns import PlacedColumn, needs_mending, placed
-from tui.topics.table_order import TopicsOrder
+from tui.topics.table.columns import PlacedColumn, needs_mending, placed
+from tui.topics.table.order import TopicsOrder
 from tui.widgets.one_style import OneStyle
 from tui.widgets.words import word_strips
 

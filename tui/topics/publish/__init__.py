@@ -1,0 +1,1 @@
+"""Publishing from the topics: `dialog.PublishDialog`, and `actions` for the palette."""
