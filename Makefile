@@ -22,7 +22,7 @@ endif
 
 ROOMS := bench cli deck graph launcher nodes robot scripts tests text tui
 
-.PHONY: help setup run test lint lock clean
+.PHONY: help setup run test lint lock architecture clean
 .DEFAULT_GOAL := help
 
 help:
@@ -31,6 +31,7 @@ help:
 	@echo 'make lint   style, types and who may import whom'
 	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
 	@echo 'make lock   ask for newer libraries and write down which, with their hashes'
+	@echo 'make architecture  draw the picture in ARCHITECTURE.md anew, from the code'
 	@echo 'make clean  remove what the others made'
 
 setup: .venv/.ready
@@ -53,6 +54,9 @@ lint: .venv/.ready
 
 lock: .venv/.ready
 	@exec .venv/bin/python scripts/lock.py
+
+architecture: .venv/.ready
+	@.venv/bin/python scripts/architecture.py --write
 
 # What carries no mark of scripts/environment.py is somebody's own.
 clean:
