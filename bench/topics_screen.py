@@ -22,7 +22,7 @@ from graph.data import GraphUpdate
 from tests.e2e.terminal import Terminal
 from tests.tui.recorded import RecordedGraph, RecordedPad, sample, topic
 from tui.app import DeckApp
-from tui.session.orders import Order
+from tui.session.requests import OpenRequest
 from tui.terminal.driver import DeckDriver
 from tui.topics.table.table import TopicsTable
 
@@ -70,7 +70,7 @@ class FedApp(DeckApp):
 def child(scene: str) -> None:
     """Be the program, fed from a thread."""
     graph = RecordedGraph(update=None)
-    order = Order(Path("profiles/09-brain.yaml"))
+    order = OpenRequest(Path("profiles/09-brain.yaml"))
     app = FedApp(RecordedPad(graph=graph), order, "topics", driver_class=DeckDriver)
 
     def feed() -> None:

@@ -10,7 +10,7 @@ from launcher.errors import UsageError
 from text.i18n import _
 from text.output import say_error
 from text.sentences import say
-from tui.session.orders import Order, ReplayOrder
+from tui.session.requests import OpenRequest, ReplayRequest
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -34,8 +34,8 @@ def replay_command(options: Namespace) -> int:
         return 2
     from tui.live import run_live
 
-    order = ReplayOrder(bag, options.rate, options.loop, options.start)
-    return run_live(Order(replay=order), options.lang, options.bandwidth)
+    order = ReplayRequest(bag, options.rate, options.loop, options.start)
+    return run_live(OpenRequest(replay=order), options.lang, options.bandwidth)
 
 
 def _check(bag: Path, *, whole: bool) -> None:

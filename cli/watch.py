@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from cli.screen import has_terminal
 from text.i18n import _
 from text.output import say_error
-from tui.session.orders import Order, WatchOrder
+from tui.session.requests import OpenRequest, WatchRequest
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -27,5 +27,5 @@ def watch_command(options: Namespace) -> int:
 
     # There may be no supervisor here that does it.
     discard_unfinished()
-    order = Order(watch=WatchOrder(domain, options.discovery))
+    order = OpenRequest(watch=WatchRequest(domain, options.discovery))
     return run_live(order, options.lang, options.bandwidth)

@@ -15,18 +15,18 @@ from textual.widget import Widget
 from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
 from tui.actions import REGISTRY, Acting, Action, bindings
-from tui.actions.app import APP_ACTIONS, EmergencyStop
 from tui.dialogs.opening import OpeningScreen
-from tui.emergency.brake import Brake
+from tui.emergency.control import EmergencyControl
+from tui.faults import Faults
+from tui.frame.actions.app import APP_ACTIONS, EmergencyStop
+from tui.frame.actions.recording import RECORDING_ACTIONS
+from tui.frame.actions.replay import REPLAY_ACTIONS
 from tui.frame.replay_bar import ReplayBar
-from tui.recording.actions import RECORDING_ACTIONS
+from tui.lifecycle.sessions import Sessions
 from tui.recording.recording import Recording
-from tui.recording.replay_actions import REPLAY_ACTIONS
-from tui.session.faults import Faults
 from tui.session.feed import Feed, GraphReady
 from tui.session.messages import EmergencyChanged, LanguageChanged
-from tui.session.orders import Order
-from tui.session.sessions import Sessions
+from tui.session.requests import OpenRequest
 from tui.session.strangers import Strangers
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.harmless import Harmless
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from textual.notifications import SeverityLevel
     from textual.screen import Screen
 
-    from tui.session.faults import Journal
-    from tui.session.ports import Launchpad
+    from tui.faults import Journal
+    from tui.session.ports import SessionOpener
 
 SCREENS = {
     "picker": ("tui.picker.screen", "PickerScreen"),
@@ -58,12 +58,12 @@ SCREENS = {
 """Imported when first shown: the first frame needs only one of them."""
 
 DIALOGS = (
-    "tui.dialogs.end_session",
-    "tui.dialogs.stopping",
+    "tui.lifecycle.end_session",
+    "tui.lifecycle.stopping",
     "tui.help.screen",
-    "tui.picker.domain_taken",
-    "tui.picker.refused",
-    "tui.picker.strays",
+    "tui.lifecycle.domain_taken",
+    "tui.lifecycle.refused",
+    "tui.lifecycle.strays",
 )
 """With actions of their own, imported when first shown."""
 
@@ -72,7 +72,7 @@ STRANGERS_S = 20.0
 
 
 def _commands() -> type[Provider]:
-    from tui.actions.palette import Commands
+    from tui.palette import Commands
 
     return Commands
 
@@ -90,30 +90,28 @@ class DeckApp(App[int], Acting):
 
     def __init__(
         self,
-        pad: Launchpad,
-        order: Order,
+        opener: SessionOpener,
+        request: OpenRequest,
         first_screen: str = "deck",
         driver_class: type[Driver] | None = None,
         journal: Journal | None = None,
     ) -> None:
-        """`pad` lists and opens; an `order` that names nothing is asked for by the picker.
+        """`opener` lists and opens; a `request` that names nothing is asked for by the picker.
 
-        With a `journal` the app outlives what its widgets raise, see `tui.session.faults`.
+        With a `journal` the app outlives what its widgets raise, see `tui.faults`.
         """
         super().__init__(driver_class=driver_class)
         self.faults = Faults(self, journal)
         self.has_begun = False
         """Whether the first frame is out."""
-        self.sessions = Sessions(self, pad, order)
+        self.sessions = Sessions(self, opener, request)
         self.feed = Feed(self)
-        self.brake = Brake(self)
+        self.emergency = EmergencyControl(self)
         self.strangers = Strangers()
         self.recording = Recording(self)
         self.stall_detector = KeyStallDetector()
         self.bandwidth = Bandwidth()
         """What is written to the terminal, and how much of pictures that may be."""
-        self.last_lesson = ""
-        """The profile that was started last, where the list of lessons begins."""
         self._harmless = Harmless()
         self._key_queue = KeyQueue(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
@@ -156,7 +154,7 @@ class DeckApp(App[int], Acting):
         )
 
     async def _begin(self) -> None:
-        """Show the lesson, or the picker if none was named, and open what was ordered."""
+        """Show the lesson, or the picker if none was named, and open what was asked for."""
         self.has_begun = True
         await self.push_screen(self._made_screen(self._first_screen))
         self.sessions.begin()
@@ -174,7 +172,7 @@ class DeckApp(App[int], Acting):
 
     def lesson_opened(self, name: str) -> None:
         """Take note of the profile that has been started."""
-        self.last_lesson = name
+        self.sessions.last_lesson = name
 
     async def forget_screens(self) -> None:
         """Take away the screens of a session that is over."""
@@ -256,7 +254,7 @@ class DeckApp(App[int], Acting):
         if update is None:
             return
         try:
-            self.brake.see(update)
+            self.emergency.see(update)
         finally:
             self.feed.hand_over(update)
         front = self.feed.front
@@ -270,11 +268,11 @@ class DeckApp(App[int], Acting):
         """Name in every title, and once beside it, who publishes past the gate."""
         if words := self.strangers.words():
             self.notify(words[0], severity="error", timeout=STRANGERS_S, markup=False)
-        self.feed.tell(lambda: EmergencyChanged(self.brake.state))
+        self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
 
     def emergency_changed(self) -> None:
         """Tell every screen, and the keys: a release is possible only when engaged."""
-        self.feed.tell(lambda: EmergencyChanged(self.brake.state))
+        self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
         self.refresh_bindings()
 
     def replay_changed(self) -> None:
@@ -354,5 +352,5 @@ def run_screen(
     """
     from tui.live import run_live
 
-    order = Order(profile, attach, hardware, tuple(overrides), domain)
-    return run_live(order, lang, bandwidth)
+    request = OpenRequest(profile, attach, hardware, tuple(overrides), domain)
+    return run_live(request, lang, bandwidth)

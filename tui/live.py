@@ -20,8 +20,8 @@ from text.output import say_error
 from text.plain import plain
 from tui import clock
 from tui.app import DeckApp, every_action
-from tui.session.isolation import isolating
-from tui.session.launchpad import LivePad
+from tui.isolation import isolating
+from tui.lifecycle.opener import LiveOpener
 from tui.settings import Settings, SettingsError, load, save, settings_path
 from tui.terminal.bandwidth import Bandwidth, default_limit
 from tui.terminal.driver import DeckDriver
@@ -31,7 +31,7 @@ from tui.themes import HIGH_CONTRAST
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.session.orders import Order
+    from tui.session.requests import OpenRequest
 
 LOOK_S = 0.5
 """How often the terminal is asked whether it is still there."""
@@ -46,9 +46,9 @@ class LiveApp(DeckApp):
     """Leaves orderly whatever the terminal does, and remembers what was settled."""
 
     def __init__(
-        self, order: Order, stray: StrayOutput, settings: Settings, bandwidth: Bandwidth
+        self, request: OpenRequest, stray: StrayOutput, settings: Settings, bandwidth: Bandwidth
     ) -> None:
-        super().__init__(LivePad(), order, driver_class=DeckDriver, journal=self.note_fault)
+        super().__init__(LiveOpener(), request, driver_class=DeckDriver, journal=self.note_fault)
         self.bandwidth = bandwidth
         self.terminal_fd = stray.terminal_fd
         self._stray = stray
@@ -62,7 +62,7 @@ class LiveApp(DeckApp):
         if self._settings.theme:
             self.theme = self._settings.theme
         self.set_keymap(self._settings.keys)
-        self.last_lesson = self._settings.lesson
+        self.sessions.last_lesson = self._settings.lesson
         loop = asyncio.get_running_loop()
         for number in SIGNALS:
             loop.add_signal_handler(number, self.desert, 128 + number)
@@ -149,7 +149,7 @@ def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogL
     ]
 
 
-def run_live(order: Order, lang: str | None, bandwidth: int | None = None) -> int:
+def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = None) -> int:
     """Run the app on this terminal; return the exit code of the program.
 
     `bandwidth` is for pictures, in bytes a second, 0 for any; by default as fits the terminal.
@@ -167,7 +167,7 @@ def run_live(order: Order, lang: str | None, bandwidth: int | None = None) -> in
     set_language(detect(lang, settled=settings.language))
     limit = default_limit(os.environ) if bandwidth is None else bandwidth
     with stray, isolating():
-        app = LiveApp(order, stray, settings, Bandwidth(limit))
+        app = LiveApp(request, stray, settings, Bandwidth(limit))
         app.run()
     if app.sessions.parting_words:
         return _refused(app.sessions.parting_words, app.return_code or 0)

@@ -16,7 +16,7 @@ from graph.observer.observer import Observer
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tui.app import DeckApp
-from tui.emergency.brake import Brake
+from tui.emergency.control import EmergencyControl
 from tui.emergency.state import FOLLOWED
 from tui.emergency.words import stop_words
 from tui.session.inbox import GraphInbox
@@ -26,7 +26,7 @@ NODE = "/electronic_differential"
 
 
 class Screen:
-    """As much of the app as the brake needs, on a graph that is really observed."""
+    """As much of the app as the emergency stop needs, on a graph that is really observed."""
 
     def __init__(self, domain: int) -> None:
         self._inbox = GraphInbox(lambda: None)
@@ -35,36 +35,36 @@ class Screen:
             graph=self.observer, update=None, link=None, nodes={}, watching=True, replay=None
         )
         self.notes: list[str] = []
-        self.brake = Brake(cast("DeckApp", self))
+        self.emergency = EmergencyControl(cast("DeckApp", self))
         self._workers: list[asyncio.Future[Any]] = []
         self.observer.start(self._inbox.put)
         self.observer.follow(FOLLOWED)
-        self.brake.prepare()
+        self.emergency.prepare()
 
     @property
     def words(self) -> str:
         """The banner, empty if there is none."""
-        state = self.brake.state
+        state = self.emergency.state
         return stop_words(state, "^r")[0] if state.engaged else ""
 
     async def until(self, condition: Callable[[], object], what: str) -> None:
         """Take in what comes until the condition holds."""
         end_s = time.monotonic() + WITHIN_S
         while not condition():
-            assert time.monotonic() < end_s, f"not in time: {what}; {self.brake.state}"
+            assert time.monotonic() < end_s, f"not in time: {what}; {self.emergency.state}"
             update = self._inbox.take()
             if update is not None:
                 self.feed.update = update
-                self.brake.see(update)
+                self.emergency.see(update)
             await asyncio.sleep(0.02)
 
     def says(self, engaged: bool) -> bool:
         """Whether the node has said so."""
-        node = self.brake.state.nodes.get(NODE)
+        node = self.emergency.state.nodes.get(NODE)
         return node is not None and node.engaged == engaged
 
     def run_worker(self, work: Any, group: str) -> None:
-        assert group == "brake"
+        assert group == "emergency"
         self._workers.append(asyncio.ensure_future(work))
 
     def notify(self, words: str, **_looks: Any) -> None:
@@ -93,7 +93,7 @@ async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(
     """No gate is there to tell of it, and nobody whose word is latched."""
     with NodeProcess("nodes.electronic_differential", ros_domain):
         await screen.until(lambda: screen.says(False), "the node's word")
-        screen.brake.engage()
+        screen.emergency.engage()
         await screen.until(lambda: screen.says(True), "the stop")
         assert screen.words.startswith("■ EMERGENCY STOP since ")
         with (
@@ -108,7 +108,7 @@ async def test_a_volatile_word_of_one_who_leaves_stops_and_releases(
             other.saying("/emergency_stop", Bool(data=True)),
         ):
             await screen.until(lambda: "(by joy)" in screen.words, "the foreign stop, by name")
-        screen.brake.release()
+        screen.emergency.release()
         await screen.until(lambda: not screen.words and screen.says(False), "our release")
 
 
@@ -128,7 +128,7 @@ async def test_who_looks_later_sees_the_stop_and_releases_a_node_that_was_starte
         late = Screen(ros_domain)
         try:
             await late.until(lambda: "(from before) since" in late.words, "the stop")
-            late.brake.release()
+            late.emergency.release()
             await late.until(lambda: not late.words and late.says(False), "the release")
             assert not late.notes
         finally:
@@ -144,11 +144,11 @@ async def test_a_node_that_hangs_is_named_until_it_has_heard_of_the_release(
         NodeProcess("nodes.electronic_differential", ros_domain) as node,
         NodeProcess("nodes.safety_stop", ros_domain),
     ):
-        await screen.until(lambda: len(screen.brake.state.nodes) == 2, "both nodes")
-        screen.brake.engage()
-        await screen.until(lambda: len(screen.brake.state.holders) == 2, "the stop")
+        await screen.until(lambda: len(screen.emergency.state.nodes) == 2, "both nodes")
+        screen.emergency.engage()
+        await screen.until(lambda: len(screen.emergency.state.holders) == 2, "the stop")
         node.send(signal.SIGSTOP)
-        screen.brake.release()
+        screen.emergency.release()
         held = "released here, still held by electronic_differential"
         await screen.until(lambda: held in screen.words, "who has not released it")
         node.send(signal.SIGCONT)

@@ -20,7 +20,7 @@ from tests.ros.peer import Peer
 from tests.waiting import wait_until
 from tui.app import DeckApp
 from tui.emergency import state as emergency
-from tui.emergency.brake import Brake
+from tui.emergency.control import EmergencyControl
 
 ADD = "example_interfaces/srv/AddTwoInts"
 DRIVE = "deck_interfaces/action/DriveToPoint"
@@ -30,14 +30,14 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class App:
-    """As much of the app as the brake needs."""
+    """As much of the app as the emergency stop needs."""
 
     def __init__(self, watcher: Watcher) -> None:
         self.feed = SimpleNamespace(graph=watcher.observer, update=watcher.update, link=None)
         self.workers: list[asyncio.Task[Any]] = []
 
     def run_worker(self, work: Any, group: str) -> None:
-        assert group == "brake"
+        assert group == "emergency"
         self.workers.append(asyncio.ensure_future(work))
 
     def notify(self, words: str, **_looks: Any) -> None:
@@ -88,24 +88,24 @@ async def test_it_is_heard_at_once_while_everything_else_hangs(
     watcher: Watcher, hung: Process, ros_domain: int
 ) -> None:
     app = App(watcher)
-    brake = Brake(cast("DeckApp", app))
+    stop = EmergencyControl(cast("DeckApp", app))
     with Peer(ros_domain) as robot:
         heard: list[tuple[bool, float]] = []
         robot.node.create_subscription(
             Bool, emergency.TOPIC, lambda m: heard.append((m.data, time.monotonic())), LATCHED
         )
         watcher.wait_for(emergency.TOPIC, lambda row: row.subscribers == 1, "the robot listens")
-        brake.prepare()
+        stop.prepare()
         running, *waiting = begin_everything(watcher, hung)
         app.feed.update = watcher.update
         for count in range(1, 6):
             pressed_s = time.monotonic()
-            brake.engage()
+            stop.engage()
             await asyncio.gather(*app.workers)
             await asyncio.to_thread(wait_until, lambda n=count: len(heard) >= n, "the stop")
             assert heard[-1][0] is True
             assert heard[-1][1] - pressed_s < AT_ONCE_S
         wait_until(lambda: not watcher.update.publications, "what raced has ended")
-        assert brake.state.fallback == ""
+        assert stop.state.fallback == ""
         assert not any(future.done() for future in waiting)
         running.close()

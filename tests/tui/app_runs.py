@@ -12,9 +12,9 @@ from textual.pilot import Pilot
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.session.orders import Order
+from tui.session.requests import OpenRequest
 
-LESSON_9 = Order(Path("profiles/09-brain.yaml"))
+LESSON_9 = OpenRequest(Path("profiles/09-brain.yaml"))
 
 
 @asynccontextmanager
@@ -22,7 +22,7 @@ async def opened(
     pad: RecordedPad | None = None,
     screen: str = "deck",
     size: tuple[int, int] = (120, 40),
-    order: Order = LESSON_9,
+    order: OpenRequest = LESSON_9,
 ) -> AsyncIterator[tuple[DeckApp, Pilot[Any]]]:
     """Run the app until the recorded session, or the picker, is on the screen."""
     app = DeckApp(pad or RecordedPad(), order, screen)

@@ -29,8 +29,8 @@ from tests.tui.recorded_lesson import (
     sample,
     topic,
 )
-from tui.session.orders import Lesson, Order
 from tui.session.ports import GraphLink, SessionLink
+from tui.session.requests import Lesson, OpenRequest
 
 __all__ = [
     "LESSONS",
@@ -132,7 +132,7 @@ class RecordedPad:
     """The lessons."""
     refusal: Exception | None = None
     """Set: opening fails by this."""
-    orders: list[Order] = field(default_factory=list)
+    orders: list[OpenRequest] = field(default_factory=list)
 
     async def lessons(self) -> list[Lesson]:
         return self.known
@@ -146,7 +146,7 @@ class RecordedPad:
     async def prepare(self) -> None:
         pass
 
-    async def open(self, order: Order) -> SessionLink:
+    async def open(self, order: OpenRequest) -> SessionLink:
         self.orders.append(order)
         if self.refusal is not None:
             raise self.refusal

@@ -10,7 +10,7 @@ from typing import Any
 from graph.data import GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow, Trouble
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
 from tests.tui.recorded_image import colour_bars
-from tui.session.orders import Lesson
+from tui.session.requests import Lesson
 
 NOW_S = 1_767_225_600.0
 """Unix time of the recording: 2026-01-01 00:00:00 UTC."""

@@ -15,13 +15,13 @@ from launcher.status import SessionInfo
 from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
-from tui.session.launchpad import LivePad
-from tui.session.orders import Lesson, Order, ReplayOrder
+from tui.lifecycle.opener import LiveOpener
 from tui.session.ports import SessionLink
+from tui.session.requests import Lesson, OpenRequest, ReplayRequest
 
 
 @dataclass
-class BagPad(LivePad):
+class BagPad(LiveOpener):
     """Opens a bag as the real one does, and makes it stand still from the beginning."""
 
     position_s: float = 0.0
@@ -31,7 +31,7 @@ class BagPad(LivePad):
     def __post_init__(self) -> None:
         super().__init__()
 
-    async def open(self, order: Order) -> SessionLink:
+    async def open(self, order: OpenRequest) -> SessionLink:
         link = await super().open(order)
         replay = self._replay
         assert replay is not None
@@ -58,7 +58,7 @@ async def replayed(
 ) -> AsyncIterator[tuple[DeckApp, Pilot[Any], Replay]]:
     """Run the app until the bag is on the screen."""
     pad = BagPad(**settings)
-    app = DeckApp(pad, Order(replay=ReplayOrder(bag)), screen)
+    app = DeckApp(pad, OpenRequest(replay=ReplayRequest(bag)), screen)
     async with app.run_test(size=size) as pilot:
         await settle(pilot)
         yield app, pilot, pad.opened[0]

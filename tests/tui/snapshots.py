@@ -25,7 +25,7 @@ from tests.tui.recorded import RecordedPad
 from text.i18n import set_language
 from tui.app import DeckApp
 from tui.picker.screen import PickerScreen
-from tui.session.orders import Order
+from tui.session.requests import OpenRequest
 from tui.widgets.rows import Rows
 
 SnapCompare = Callable[..., bool]
@@ -43,7 +43,7 @@ class Look:
     def app(self, screen: str = "deck", pad: RecordedPad | None = None) -> DeckApp:
         """Return an app with the recorded lesson 9 opened, that will show `screen`."""
         set_language(self.language)
-        order = Order() if screen == "picker" else Order(Path("profiles/09-brain.yaml"))
+        order = OpenRequest() if screen == "picker" else OpenRequest(Path("profiles/09-brain.yaml"))
         return DeckApp(pad or RecordedPad(), order, screen)
 
     @staticmethod

@@ -15,9 +15,9 @@ from tests.tui.snapshots import Look, SnapCompare, every_look
 from text.i18n import N_
 from tui.actions import REGISTRY, Action, bindings
 from tui.app import DeckApp, every_action
-from tui.dialogs.stopping import StoppingScreen
 from tui.frame.key_bar import KeyBar
 from tui.help.screen import HelpScreen
+from tui.lifecycle.stopping import StoppingScreen
 from tui.teleop.actions import MoveAction
 from tui.widgets.page import Page
 

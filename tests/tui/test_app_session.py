@@ -33,18 +33,18 @@ from tui.app import DeckApp
 from tui.deck.actions import StartAll, WriteCommand
 from tui.deck.nodes_table import NodesTable
 from tui.deck.screen import LessonDeck
-from tui.dialogs.end_session import EndSessionScreen
-from tui.dialogs.stopping import StoppingScreen
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
+from tui.lifecycle.end_session import EndSessionScreen
+from tui.lifecycle.stopping import StoppingScreen
+from tui.lifecycle.strays import StraysScreen
 from tui.logs.screen import LogsScreen
 from tui.panels.head.widget import HeadPanel
 from tui.panels.wheels.widget import WheelsPanel
 from tui.picker.screen import PickerScreen
-from tui.picker.strays import StraysScreen
 from tui.session.history import LogHistory
 from tui.session.inbox import GraphInbox
-from tui.session.orders import Order
+from tui.session.requests import OpenRequest
 from tui.topics.screen import TopicsScreen
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> No
     pad = RecordedPad()
     async with opened(pad) as (app, pilot):
         app.sessions.close()
-        app.sessions.open(app.sessions.order)
+        app.sessions.open(app.sessions.request)
         await app.workers.wait_for_complete([w for w in app.workers if w.group == "leaving"])
         await settle(pilot)
         assert isinstance(app.screen, LessonDeck)
@@ -127,12 +127,12 @@ async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> No
 
 async def test_a_lesson_is_started_before_its_screen_is_drawn() -> None:
     class Watched(RecordedPad):
-        async def open(self, order: Order) -> SessionLink:
+        async def open(self, order: OpenRequest) -> SessionLink:
             panels.append(len(app.screen.query(NodesTable)))
             return await super().open(order)
 
     panels: list[int] = []
-    async with opened(Watched(), order=Order()) as (app, pilot):
+    async with opened(Watched(), order=OpenRequest()) as (app, pilot):
         app.sessions.open(LESSON_9)
         await settle(pilot)
         assert isinstance(app.screen, LessonDeck)

@@ -51,7 +51,7 @@ async def test_the_stop_stays_until_it_is_released() -> None:
     pad = RecordedPad()
     async with opened(pad) as (app, pilot):
         await pilot.press("space", "space", "escape", "2", "1")
-        assert app.brake.state.engaged
+        assert app.emergency.state.engaged
         assert GO not in pad.graph.published
         await pilot.press("ctrl+r")
         assert pad.graph.published[-1] == GO
@@ -119,7 +119,7 @@ async def test_the_release_starts_again_what_the_stop_has_ended_and_nothing_else
         await pilot.press("ctrl+r")
         await settle(pilot)
         assert link.asked[-1] == ("start", *others)
-        assert not app.brake.state.engaged
+        assert not app.emergency.state.engaged
         await pilot.press("ctrl+r")
         await settle(pilot)
         assert [asked[0] for asked in link.asked].count("start") == 1
@@ -233,7 +233,7 @@ async def test_another_session_begins_without_the_stop_of_the_one_before() -> No
     async with opened(pad) as (app, pilot):
         await pilot.press("space", "f8")
         await pilot.pause()
-        app.sessions.open(app.sessions.order)
+        app.sessions.open(app.sessions.request)
         await pilot.pause()
         await pilot.pause()
-        assert not app.brake.state.engaged
+        assert not app.emergency.state.engaged

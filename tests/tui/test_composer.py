@@ -232,10 +232,10 @@ async def test_space_types_a_space_and_ctrl_x_stops_the_robot(room: Room) -> Non
     room.screen.editor.focus()
     await room.pilot.press("a", "space", "1", "q")
     assert room.screen.editor.text == "a 1q"
-    assert not room.app.brake.state.engaged
+    assert not room.app.emergency.state.engaged
     await room.pilot.press("ctrl+x")
     await room.pilot.pause()
-    assert room.app.brake.state.engaged
+    assert room.app.emergency.state.engaged
     assert room.screen.editor.text == "a 1q"
 
 

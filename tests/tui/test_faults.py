@@ -29,15 +29,15 @@ from tui.app import DeckApp
 from tui.deck.command_line import CommandLine
 from tui.deck.screen import LessonDeck
 from tui.dialogs.safe import Plainly, SafeScreen
+from tui.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
+from tui.isolation import isolating
 from tui.panels.head.widget import HeadPanel
 from tui.panels.panel import Panel
 from tui.panels.sonar.widget import Sonar
 from tui.panels.wheels.panel import WheelsFeed
 from tui.panels.wheels.widget import WheelsPanel
-from tui.session.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
-from tui.session.isolation import isolating
 from tui.topics.screen import TopicsScreen
 from tui.topics.table.table import TopicsTable
 
@@ -274,7 +274,7 @@ async def test_a_screen_below_that_cannot_be_drawn_either_does_not_keep_the_one_
 
 async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() -> None:
     async with isolated() as deck:
-        with broken(type(deck.app.brake), "see"):
+        with broken(type(deck.app.emergency), "see"):
             samples = lesson_samples()
             turned = replace(
                 samples["/head_state"][0], value={"name": ["pan_joint"], "position": [-0.5]}

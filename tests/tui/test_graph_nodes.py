@@ -129,4 +129,4 @@ async def test_hostile_names_are_shown_as_they_are(room: Room) -> None:
 
 async def test_space_stops_the_robot_from_the_list(room: Room) -> None:
     await room.press("space")
-    assert room.app.brake.state.engaged
+    assert room.app.emergency.state.engaged

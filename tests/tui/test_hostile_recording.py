@@ -13,7 +13,7 @@ from tests.tui.snapshots import settle
 from tests.tui.test_hostile_text import SIZE, Bare, Stage, Writing
 from tests.unit.bags import BEGIN_NS, SECOND_NS, store
 from tui.app import DeckApp
-from tui.session.orders import Order, ReplayOrder
+from tui.session.requests import OpenRequest, ReplayRequest
 
 WORDS, LOG = "std_msgs/msg/String", "rcl_interfaces/msg/Log"
 
@@ -55,7 +55,7 @@ def bag(tmp_path: Path) -> Path:
 async def test_no_recording_reaches_the_terminal(
     kind: type[DeckApp], screen: str, keys: tuple[str, ...], bag: Path
 ) -> None:
-    order = Order(replay=ReplayOrder(bag))
+    order = OpenRequest(replay=ReplayRequest(bag))
     app = kind(BagPad(position_s=0.5), order, screen, driver_class=Writing)
     async with app.run_test(headless=False, size=SIZE) as pilot:
         stage = Stage(app, pilot)

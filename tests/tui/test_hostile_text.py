@@ -58,7 +58,7 @@ from tests.tui.snapshots import settle
 from text.sentences import say
 from tui.app import DeckApp
 from tui.composer.json_editor import JsonEditor
-from tui.session.orders import Lesson, Order
+from tui.session.requests import Lesson, OpenRequest
 
 SIZE = (160, 50)
 STRING = "std_msgs/msg/String"
@@ -230,7 +230,7 @@ class Stage:
 
 @asynccontextmanager
 async def on_stage(
-    kind: type[DeckApp], screen: str, pad: RecordedPad, order: Order = LESSON_9
+    kind: type[DeckApp], screen: str, pad: RecordedPad, order: OpenRequest = LESSON_9
 ) -> AsyncIterator[Stage]:
     """Open a screen on a terminal that is looked through at the end."""
     app = kind(pad, order, screen, driver_class=Writing)
@@ -301,7 +301,7 @@ async def test_a_parameter_is_opened_refused_and_left(kind: type[DeckApp]) -> No
 async def test_the_lessons_and_what_is_wrong_with_them(kind: type[DeckApp]) -> None:
     pad = hostile_pad()
     pad.refusal = StartError(say("{what}: nothing\n{what}", what=EVIL))
-    async with on_stage(kind, "picker", pad, Order()) as stage:
+    async with on_stage(kind, "picker", pad, OpenRequest()) as stage:
         await stage.press(*("down",) * 8, "enter", "escape", "up", "enter", "escape")
 
 

@@ -151,7 +151,7 @@ async def test_in_the_search_field_letters_and_space_are_text() -> None:
         await pilot.press(*"way", "space", *"is")
         assert screen.pane.view.log_filter.search == "way is"
         assert len(screen.pane.view.index.found) == 2
-        assert not app.brake.state.engaged
+        assert not app.emergency.state.engaged
         await pilot.press("enter", "f")
         assert len(screen.pane.view.index.shown) == 2
         await pilot.press("f", "N")

@@ -14,11 +14,11 @@ from textual.widgets import OptionList
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedPad
 from tui.actions import REGISTRY
-from tui.actions.palette import PLACES, entries
 from tui.app import SCREENS, DeckApp
 from tui.composer.screen import ComposerScreen
 from tui.devices.screen import DevicesScreen
-from tui.session.orders import Order
+from tui.palette import PLACES, entries
+from tui.session.requests import OpenRequest
 from tui.topics.screen import TopicsScreen
 
 
@@ -151,7 +151,7 @@ async def test_a_word_of_the_sentence_is_enough() -> None:
 
 
 async def test_beside_the_list_of_lessons_it_says_that_a_lesson_comes_first() -> None:
-    async with opened(order=Order()) as (app, pilot):
+    async with opened(order=OpenRequest()) as (app, pilot):
         await look_for(app, pilot, "plot", "Topics › Plot")
         await take(app, pilot, "Topics › Plot")
         await until(

@@ -17,13 +17,13 @@ from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from text.sentences import say
 from tui.app import DeckApp
-from tui.picker.domain_taken import DomainTakenScreen
-from tui.picker.refused import RefusedScreen
+from tui.lifecycle.domain_taken import DomainTakenScreen
+from tui.lifecycle.refused import RefusedScreen
 from tui.picker.screen import PickerScreen
-from tui.session.orders import Order
+from tui.session.requests import OpenRequest
 from tui.widgets.rows import Rows
 
-PICK = Order(hardware="mock", domain=42)
+PICK = OpenRequest(hardware="mock", domain=42)
 RUNNING = replace(
     SESSION,
     foreground=False,
@@ -78,7 +78,7 @@ async def test_the_list_comes_back_on_the_lesson_that_was_opened_last() -> None:
     async with opened(pad, order=PICK) as (app, pilot):
         await pilot.press("down", "down", "enter")
         await settle(pilot)
-        assert app.last_lesson == SESSION.name == "09-brain"
+        assert app.sessions.last_lesson == SESSION.name == "09-brain"
         await pilot.press("f8")
         await settle(pilot)
         assert isinstance(app.screen, PickerScreen)
@@ -89,7 +89,7 @@ async def test_the_list_comes_back_on_the_lesson_that_was_opened_last() -> None:
 async def test_the_whole_list_is_seen_at_80x24_whichever_lesson_is_chosen(last: str) -> None:
     many = [LESSONS[0]._replace(name=f"{at:02}", path=Path(f"{at:02}.yaml")) for at in range(13)]
     app = DeckApp(RecordedPad(known=many), PICK, "deck")
-    app.last_lesson = last
+    app.sessions.last_lesson = last
     async with app.run_test(size=(80, 24)) as pilot:
         await settle(pilot)
         assert shown(app).count("The first node") == 13 + 1
@@ -105,7 +105,7 @@ async def test_a_list_longer_than_the_screen_opens_with_all_above_that_there_is_
         for at in range(31)
     ]
     app = DeckApp(RecordedPad(known=many), PICK, "deck")
-    app.last_lesson = last
+    app.sessions.last_lesson = last
     async with app.run_test(size=(80, 24)) as pilot:
         await settle(pilot)
         assert top in shown(app).splitlines()[1]

@@ -18,7 +18,7 @@ from text.i18n import set_language
 from tui.app import DeckApp
 from tui.frame.key_bar import KeyBar
 from tui.frame.replay_bar import ReplayBar
-from tui.session.orders import Order, ReplayOrder
+from tui.session.requests import OpenRequest, ReplayRequest
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def text_of(app: DeckApp) -> str:
 
 def shown(look: Look, bag: Path, screen: str, position_s: float = 6.2) -> DeckApp:
     set_language(look.language)
-    return DeckApp(BagPad(position_s=position_s), Order(replay=ReplayOrder(bag)), screen)
+    return DeckApp(BagPad(position_s=position_s), OpenRequest(replay=ReplayRequest(bag)), screen)
 
 
 async def there(pilot: Pilot[int], position_s: float = 6.2) -> None:
@@ -135,7 +135,7 @@ async def test_the_emergency_stop_has_nothing_to_stop(drive: Path) -> None:
         await pilot.pause()
         told = [notice.message for notice in app._notifications]
         assert told == ["This is a recording: there is nothing to stop."]
-        assert not app.brake.state.engaged
+        assert not app.emergency.state.engaged
 
 
 async def test_the_footer_offers_nothing_that_needs_a_robot(drive: Path) -> None:
@@ -166,7 +166,7 @@ async def test_no_screen_advises_what_only_a_robot_takes(
     tmp_path: Path, screen: str, told: str, untrue: str
 ) -> None:
     bag = write_robot_bag(tmp_path / "drive", silent=("/ai_command",))
-    app = DeckApp(BagPad(position_s=6.0), Order(replay=ReplayOrder(bag)), screen)
+    app = DeckApp(BagPad(position_s=6.0), OpenRequest(replay=ReplayRequest(bag)), screen)
     async with app.run_test(size=(120, 40)) as pilot:
         await until(pilot, lambda: told in text_of(app))
         assert untrue not in text_of(app)
@@ -185,7 +185,7 @@ async def test_the_panels_show_what_was_recorded(drive: Path) -> None:
 @pytest.mark.parametrize("name", ["nothing", "link to itself"])
 async def test_what_is_no_bag_ends_with_a_word_and_two(tmp_path: Path, name: str) -> None:
     (tmp_path / "link to itself").symlink_to(tmp_path / "link to itself")
-    app = DeckApp(BagPad(), Order(replay=ReplayOrder(tmp_path / name)), "deck")
+    app = DeckApp(BagPad(), OpenRequest(replay=ReplayRequest(tmp_path / name)), "deck")
     async with app.run_test() as pilot:
         await until(pilot, lambda: app.sessions.parting_words)
     assert app.return_code == 2

@@ -134,7 +134,7 @@ async def test_another_session_begins_without_the_strangers_of_the_one_before() 
         await pilot.press("f8")
         await settle(pilot)
         pad.graph = RecordedGraph()
-        app.sessions.open(app.sessions.order)
+        app.sessions.open(app.sessions.request)
         await settle(pilot)
         assert not app.strangers.now
 

@@ -30,8 +30,8 @@ from tests.tui.snapshots import Look, SnapCompare, every_look
 from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
+from tui.emergency.gate import gate_in, gate_words
 from tui.teleop.actions import OpenTeleop
-from tui.teleop.gate import gate_in, gate_words
 from tui.teleop.keys import FIRST_HOLD_S, Move
 from tui.teleop.route import DRIVE_TYPE
 from tui.teleop.widget import TeleopPanel

@@ -246,7 +246,7 @@ async def test_the_filter_narrows_down_as_one_types_and_escape_ends_it(room: Roo
     await room.pilot.pause()
     assert [row.name for row in room.screen.table.shown] == ["/audio/mic_raw"]
     assert room.screen.filter.value == "audio mic"
-    assert not room.app.brake.state.engaged
+    assert not room.app.emergency.state.engaged
     await room.pilot.press("enter")
     assert room.screen.table.has_focus
     await room.pilot.press("escape")
@@ -265,11 +265,11 @@ async def test_what_is_typed_without_a_pause_after_the_key_is_in_the_filter(room
 
 async def test_space_stops_the_robot_from_table_and_tree(room: Room) -> None:
     for widget in (room.screen.table, room.screen.detail.echo):
-        room.app.brake.forget()
+        room.app.emergency.forget()
         widget.focus()
         await room.pilot.press("space")
         await room.pilot.pause()
-        assert room.app.brake.state.engaged
+        assert room.app.emergency.state.engaged
 
 
 async def test_keys_sort_turn_round_and_show_the_topics_of_ros_itself(room: Room) -> None:

@@ -61,7 +61,7 @@ async def test_what_is_typed_after_a_key_that_moves_the_cursor_is_not_lost(app: 
 
 async def test_the_stop_waits_for_no_key(app: DeckApp) -> None:
     type_at_once(app, "f3", "slash", "a", "space", "b")
-    await until(lambda: app.brake.state.engaged, "the stop")
+    await until(lambda: app.emergency.state.engaged, "the stop")
     await until_filter_is(app, "ab")
 
 

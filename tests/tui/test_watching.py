@@ -26,7 +26,7 @@ from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.title_bar import TitleBar
-from tui.session.orders import Order, WatchOrder
+from tui.session.requests import OpenRequest, WatchRequest
 from tui.session.watching import WATCH, watched
 
 NOTHING = lesson_update(topics=(), samples={}, nodes=(), services=())
@@ -62,7 +62,7 @@ def pad(update: GraphUpdate) -> RecordedPad:
 
 def app_of(look: Look, watching: RecordedPad) -> DeckApp:
     app = look.app("deck", watching)
-    return DeckApp(watching, Order(watch=WatchOrder(42)), app._first_screen)
+    return DeckApp(watching, OpenRequest(watch=WatchRequest(42)), app._first_screen)
 
 
 @asynccontextmanager
@@ -169,18 +169,18 @@ async def test_the_emergency_stop_does_not_claim_to_stop_the_nodes_of_others() -
         await pilot.press("space")
         for _round in range(5):
             await pilot.pause()
-        fallback = pilot.app.brake.state.fallback  # type: ignore[attr-defined]
+        fallback = pilot.app.emergency.state.fallback  # type: ignore[attr-defined]
         assert "started no node" in fallback
 
 
 async def test_the_picker_s_first_row_looks_at_the_domain() -> None:
     found = pad(robot())
-    app = DeckApp(found, Order())
+    app = DeckApp(found, OpenRequest())
     async with app.run_test(size=(120, 40)) as pilot:
         await settle(pilot)
         await pilot.press("home", "enter")
         await settle(pilot)
-        assert found.orders[0].watch == WatchOrder(42)
+        assert found.orders[0].watch == WatchRequest(42)
         assert app.feed.session is not None
         assert app.feed.session.run_id == WATCH
 

@@ -7,14 +7,14 @@ import subprocess
 import sys
 
 from launcher.status import SessionInfo
-from tui.session.launchpad import LivePad
+from tui.lifecycle.opener import LiveOpener
 
 OPENED = """
 import asyncio, sys
-from tui.session.launchpad import LivePad
+from tui.lifecycle.opener import LiveOpener
 
 async def main():
-    pad = LivePad()
+    pad = LiveOpener()
     pad._start_ahead = lambda: asyncio.sleep(0)
     await pad.prepare()
     before = set(sys.modules)
@@ -37,5 +37,5 @@ def test_a_lesson_that_is_chosen_from_the_list_has_its_screen_imported_by_then()
 
 def test_whoever_looks_on_changes_no_setting_of_what_is_started_later() -> None:
     before = dict(os.environ)
-    LivePad().observe(SessionInfo("run", "", "lesson", discovery="localhost"))
+    LiveOpener().observe(SessionInfo("run", "", "lesson", discovery="localhost"))
     assert dict(os.environ) == before

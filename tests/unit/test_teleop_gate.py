@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from text.i18n import set_language
-from tui.teleop.gate import Gate, gate_words
+from tui.emergency.gate import Gate, gate_words
 
 
 @pytest.fixture(autouse=True)

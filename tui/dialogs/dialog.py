@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from textual.containers import Vertical, VerticalScroll
 from textual.content import Content
@@ -13,6 +13,7 @@ from textual.widgets import Static
 from text.i18n import N_
 from text.plain import plain
 from tui.actions import Acting, Action, bindings
+from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.widgets.working import Working
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.binding import BindingType
 
-    from tui.app import DeckApp
     from tui.session.messages import LanguageChanged
 
 Answer = TypeVar("Answer")
@@ -68,9 +68,9 @@ class Dialog(ModalScreen[Answer], Acting, Working):
     """
 
     @property
-    def deck(self) -> DeckApp:
+    def deck(self) -> Host:
         """The app."""
-        return cast("DeckApp", self.app)
+        return host_of(self)
 
     @abstractmethod
     def title_words(self) -> str:

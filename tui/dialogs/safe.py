@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from textual.content import Content
 from textual.screen import Screen
@@ -10,13 +10,13 @@ from textual.widget import Widget
 
 from text.i18n import _
 from text.plain import plain
-from tui.actions.app import EmergencyRelease, EmergencyStop, Quit
 from tui.frame import title
+from tui.frame.actions.app import EmergencyRelease, EmergencyStop, Quit
+from tui.frame.host import Host, host_of
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from tui.app import DeckApp
 
 LOOK_S = 0.5
 """How often what it says is looked at again."""
@@ -33,7 +33,7 @@ class Plainly(Widget):
 
     def render(self) -> Content:
         """Draw them."""
-        deck = cast("DeckApp", self.app)
+        deck = host_of(self)
         return Content("\n".join(plain(line, 400) for line in safe_lines(deck)))
 
 
@@ -45,7 +45,7 @@ class SafeScreen(Screen[None]):
         yield Plainly()
 
 
-def safe_lines(deck: DeckApp) -> list[str]:
+def safe_lines(deck: Host) -> list[str]:
     """Return what is to be known: that a screen failed, what runs, and the keys."""
     session = deck.feed.session
     runs = "" if session is None else session.name

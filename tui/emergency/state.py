@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.i18n import N_
 from text.plain import plain
+from tui.emergency.gate import STOPPED, Gate, gate_in, held_words, refused_words
 from tui.emergency.nodes import NodeStop, present, told
-from tui.teleop.gate import STOPPED, Gate, gate_in, held_words, refused_words
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample

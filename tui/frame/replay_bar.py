@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar
 
 from textual.content import Content
 from textual.style import Style
 from textual.widget import Widget
 
 from text.i18n import _, decimal
-from tui.recording.replay_actions import Back, Faster, Forward, Loop, Slower, Step
+from tui.frame.actions.replay import Back, Faster, Forward, Loop, Slower, Step
+from tui.frame.host import host_of
 from tui.recording.words import length_words
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
     from graph.replay.replay import Replay
     from graph.replay.state import ReplayState
-    from tui.app import DeckApp
 
 LOOK_S = 0.25
 """How often the bar looks where the recording is."""
@@ -88,7 +88,7 @@ class ReplayBar(Widget):
             self._state = state
             self.refresh()
             if state.damage:
-                cast("DeckApp", self.app).sessions.tell_damage(state.damage)
+                host_of(self).sessions.tell_damage(state.damage)
             if state.paused != paused_before:
                 self.screen.refresh_bindings()
 
@@ -163,7 +163,7 @@ class ReplayBar(Widget):
 
     def _keys(self) -> Iterator[Content]:
         """Yield what can be done besides what the footer shows, most wanted first."""
-        app = cast("DeckApp", self.app)
+        app = host_of(self)
         words = self.get_visual_style("replay-bar--words")
         bold = self.get_visual_style("replay-bar--key")
         for action in (Step, Back, Forward, Slower, Faster, Loop):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on
 from textual.events import ScreenResume
@@ -10,6 +10,7 @@ from textual.screen import Screen
 
 from tui.actions import Acting
 from tui.frame import title
+from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.replay_bar import ReplayBar
 from tui.frame.title_bar import TitleBar
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from tui.actions import Action
-    from tui.app import DeckApp
     from tui.session.feed import Feed
 
 BREAKPOINTS = [(0, "-tiny"), (60, "-compact"), (100, "-home"), (160, "-wide")]
@@ -57,9 +57,9 @@ class DeckScreen(Screen[None], Acting, Working):
     _styled_for: tuple[str, frozenset[str], frozenset[str]] | None = None
 
     @property
-    def deck(self) -> DeckApp:
+    def deck(self) -> Host:
         """The app."""
-        return cast("DeckApp", self.app)
+        return host_of(self)
 
     @property
     def feed(self) -> Feed:

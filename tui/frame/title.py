@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 
 from text.i18n import _, ngettext, pick, said
 from text.plain import plain
-from tui.actions.app import (
+from tui.deck.watched import robot_nodes
+from tui.emergency.state import held_reason
+from tui.emergency.words import stop_words
+from tui.frame.actions.app import (
     EmergencyRelease,
     ShowComposer,
     ShowDeck,
@@ -17,27 +20,24 @@ from tui.actions.app import (
     ShowLogs,
     ShowTopics,
 )
-from tui.deck.watched import robot_nodes
-from tui.emergency.state import held_reason
-from tui.emergency.words import stop_words
 from tui.session.hardware_words import hardware_words
 
 if TYPE_CHECKING:
     from launcher.status import SessionInfo
-    from tui.app import DeckApp
     from tui.emergency.state import Emergency
+    from tui.frame.host import Host
     from tui.frame.title_bar import TitleBar
 
 TABS = (ShowDeck, ShowTopics, ShowComposer, ShowLogs, ShowGraph, ShowFlow, ShowDevices)
 COMING = frozenset({"waiting", "starting", "backoff"})
 
 
-def show(bar: TitleBar, app: DeckApp, front: str) -> None:
+def show(bar: TitleBar, app: Host, front: str) -> None:
     """Show all of it on a bar; `front`: the screen there that is in front."""
     bar.show(tabs(app, front), states(app), look(app), aside(app))
 
 
-def tabs(app: DeckApp, front: str) -> Sequence[tuple[str, str, bool]]:
+def tabs(app: Host, front: str) -> Sequence[tuple[str, str, bool]]:
     """Return (text, action, in front) of every screen of the session."""
     return [
         (f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front)
@@ -45,26 +45,26 @@ def tabs(app: DeckApp, front: str) -> Sequence[tuple[str, str, bool]]:
     ]
 
 
-def look(app: DeckApp) -> str:
+def look(app: Host) -> str:
     """Return how the title looks.
 
     `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while that holds.
     """
     if app.feed.link is None:
         return "state"
-    if app.brake.state.engaged:
+    if app.emergency.state.engaged:
         return "stop"
     if app.strangers.now:
         return "danger"
-    return "alarm" if app.brake.state.blocked else "state"
+    return "alarm" if app.emergency.state.blocked else "state"
 
 
-def starting(app: DeckApp) -> bool:
+def starting(app: Host) -> bool:
     """Tell whether a node is still to come: it waits, starts, or will be started again."""
     return any(node.state.value in COMING for node in app.feed.nodes.values())
 
 
-def states(app: DeckApp) -> Sequence[str]:
+def states(app: Host) -> Sequence[str]:
     """Return what is to be said, from long to short; the first that fits is shown."""
     session = app.feed.session
     if session is None:
@@ -72,16 +72,16 @@ def states(app: DeckApp) -> Sequence[str]:
             return (said(app.feed.ended), _("ended"))
         opening = app.sessions.opening
         return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
-    if app.brake.state.engaged:
-        return _where(session, stop_words(app.brake.state, app.keys_of(EmergencyRelease)[0]))
+    if app.emergency.state.engaged:
+        return _where(session, stop_words(app.emergency.state, app.keys_of(EmergencyRelease)[0]))
     if app.strangers.now:
         return _where(session, app.strangers.words())
-    if app.brake.state.blocked:
-        return _where(session, _held(app.brake.state))
+    if app.emergency.state.blocked:
+        return _where(session, _held(app.emergency.state))
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)
 
 
-def aside(app: DeckApp) -> str:
+def aside(app: Host) -> str:
     """Return what is to be said beside an alarm, if it costs no tab its name: what is recorded."""
     # No more than its size: with longer words it would be told only on wide terminals.
     return "".join(app.recording.words[-1:]) if look(app) != "state" else ""
@@ -103,7 +103,7 @@ def _held(state: Emergency) -> Sequence[str]:
     return (f"⚠ {reason[:1].upper()}{reason[1:]}",)
 
 
-def _watched(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+def _watched(app: Host, session: SessionInfo) -> Sequence[str]:
     """Return the domain, and how many nodes others have started in it."""
     update = app.feed.update
     count = 0 if update is None else len(robot_nodes(update))
@@ -118,7 +118,7 @@ def _replayed(session: SessionInfo) -> Sequence[str]:
     return (_("recording {name}").format(name=name), name)
 
 
-def _recorded(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+def _recorded(app: Host, session: SessionInfo) -> Sequence[str]:
     """Return what runs, after what is recorded of it."""
     recorded = app.recording.words
     if not recorded:
@@ -130,7 +130,7 @@ def _recorded(app: DeckApp, session: SessionInfo) -> Sequence[str]:
     return (*everything, *short, recorded[-1])
 
 
-def _running(app: DeckApp, session: SessionInfo) -> Sequence[str]:
+def _running(app: Host, session: SessionInfo) -> Sequence[str]:
     if app.feed.watching:
         return _watched(app, session)
     nodes = app.feed.nodes.values()

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Static
 
 from text.plain import plain
+from tui.frame.host import Host, host_of
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.widget import Widget
 
     from graph.data import GraphUpdate
-    from tui.app import DeckApp
 
 LONGEST = 300
 
@@ -75,9 +75,9 @@ class GraphPane(Vertical, Working):
         """Whether ROS's own things are shown."""
 
     @property
-    def deck(self) -> DeckApp:
+    def deck(self) -> Host:
         """The app."""
-        return cast("DeckApp", self.app)
+        return host_of(self)
 
     @property
     def graph_now(self) -> GraphUpdate | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.containers import Vertical
 from textual.widgets import Static
@@ -11,6 +11,7 @@ from textual.widgets import Static
 from text.i18n import _, ngettext, said
 from text.plain import plain
 from tui import clock
+from tui.frame.host import host_of
 from tui.graph.pane import LONGEST, Words
 from tui.graph.parameter_words import allowed_words, value_text
 from tui.widgets.rows import Cell, Column, Row, Rows
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import ParameterRow, ParametersResult, Sample
-    from tui.app import DeckApp
 
 ROOMY = 70
 """Cells from which on there are columns for type and limits."""
@@ -92,7 +92,7 @@ class GraphParameters(Vertical, Working):
 
     def read(self, node: str) -> None:
         """Ask the node for its parameters; what was read before is shown until it answers."""
-        graph = cast("DeckApp", self.app).feed.graph
+        graph = host_of(self).feed.graph
         if node != self._node:
             self.forget()
         self._node = node
@@ -175,7 +175,7 @@ class GraphParameters(Vertical, Working):
 
     def _why_empty(self) -> tuple[str, str]:
         if self._result is None:
-            if cast("DeckApp", self.app).feed.graph is None:
+            if host_of(self).feed.graph is None:
                 return _("no lesson is running"), ""
             return _("the node is being asked"), _("A node that hangs answers nothing.")
         if self._result.error:

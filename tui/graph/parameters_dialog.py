@@ -5,19 +5,21 @@ from __future__ import annotations
 import asyncio
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from text.i18n import _, ngettext, said
 from text.os_words import os_reason
 from text.plain import plain
+from tui.frame.host import host_of
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.graph.path import PathDialog
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from textual.app import App
+
     from graph.data import ParameterRow, Value
-    from tui.app import DeckApp
     from tui.graph.parameters import GraphParameters
 
 LONGEST = 400
@@ -25,7 +27,7 @@ SHOWN = 3
 """Refusals that are told one by one."""
 
 
-def edit(app: DeckApp, table: GraphParameters) -> None:
+def edit(app: App[Any], table: GraphParameters) -> None:
     """Ask for another value of the chosen parameter."""
     row = table.chosen
     if row is not None:
@@ -33,7 +35,7 @@ def edit(app: DeckApp, table: GraphParameters) -> None:
         app.push_screen(ParameterDialog(table.node, row, apply))
 
 
-def save(app: DeckApp, table: GraphParameters) -> None:
+def save(app: App[Any], table: GraphParameters) -> None:
     """Ask for a file, and write all parameters into it."""
     if not table.rows:
         app.notify(_("There are no parameters to save."), severity="warning", markup=False)
@@ -50,7 +52,7 @@ def save(app: DeckApp, table: GraphParameters) -> None:
     app.push_screen(PathDialog(_("Save parameters"), words, path, take), tell)
 
 
-def load(app: DeckApp, table: GraphParameters) -> None:
+def load(app: App[Any], table: GraphParameters) -> None:
     """Ask for a file, and set what it has for this node."""
     if not table.node:
         return
@@ -65,13 +67,13 @@ def load(app: DeckApp, table: GraphParameters) -> None:
     app.push_screen(dialog)
 
 
-async def _apply(app: DeckApp, table: GraphParameters, row: ParameterRow, value: Value) -> str:
+async def _apply(app: App[Any], table: GraphParameters, row: ParameterRow, value: Value) -> str:
     return await _set(app, table, {row.name: value})
 
 
-async def _set(app: DeckApp, table: GraphParameters, values: Mapping[str, Value]) -> str:
+async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value]) -> str:
     """Set them, read the node anew; return what was refused and why."""
-    graph, node = app.feed.graph, table.node
+    graph, node = host_of(app).feed.graph, table.node
     if graph is None:
         return _("no lesson is running")
     result = await asyncio.wrap_future(graph.set_parameters(node, values))
@@ -107,7 +109,7 @@ class _Saving:
         return ""
 
 
-async def _load(app: DeckApp, table: GraphParameters, path: str) -> str:
+async def _load(app: App[Any], table: GraphParameters, path: str) -> str:
     from graph.calls.parameters_file import load_file
     from graph.messages.yaml_faults import YamlError
 

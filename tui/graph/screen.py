@@ -98,7 +98,7 @@ class GraphScreen(GraphFrame):
     @on(Rows.Opened, "#graph-parameters")
     def _edited(self) -> None:
         if self.node_pane is not None:
-            graph_parameters.edit(self.deck, self.node_pane.parameters)
+            graph_parameters.edit(self.app, self.node_pane.parameters)
 
     @on(GraphTypeTree.Wanted)
     async def _type_wanted(self, message: GraphTypeTree.Wanted) -> None:
@@ -112,7 +112,7 @@ class GraphScreen(GraphFrame):
 
     @on(ActionPane.CancelWanted)
     def _cancel_wanted(self, message: ActionPane.CancelWanted) -> None:
-        self.deck.push_screen(CancelGoalScreen(message.goal, message.state), self._cancel)
+        self.app.push_screen(CancelGoalScreen(message.goal, message.state), self._cancel)
 
     def _cancel(self, goal: SeenGoal | None) -> None:
         if goal is not None and self.feed.graph is not None:
@@ -142,7 +142,7 @@ class GraphScreen(GraphFrame):
         from tui.topics.screen import TopicsScreen
 
         await self.deck.show_screen("topics")
-        screen = self.deck.get_screen("topics")
+        screen = self.app.get_screen("topics")
         if isinstance(screen, TopicsScreen):
             screen.filter.value = ""
             screen.table.filter("")
@@ -222,9 +222,9 @@ class GraphScreen(GraphFrame):
     def save_parameters(self) -> None:
         """Ask for a file, and write the node's parameters into it."""
         if self.node_pane is not None:
-            graph_parameters.save(self.deck, self.node_pane.parameters)
+            graph_parameters.save(self.app, self.node_pane.parameters)
 
     def load_parameters(self) -> None:
         """Ask for a file, and set what it has for the node."""
         if self.node_pane is not None:
-            graph_parameters.load(self.deck, self.node_pane.parameters)
+            graph_parameters.load(self.app, self.node_pane.parameters)

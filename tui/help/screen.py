@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.screen import ModalScreen
 
 from text.i18n import N_, _
 from tui.actions import Acting, Action, bindings, bound
+from tui.frame.actions.replay import ReplayAction
+from tui.frame.host import host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import DeckScreen
 from tui.frame.title_bar import TitleBar
-from tui.recording.replay_actions import ReplayAction
 from tui.widgets.page import Entry, Page
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from textual.binding import BindingType
     from textual.screen import Screen
 
-    from tui.app import DeckApp
     from tui.session.messages import LanguageChanged
 
 
@@ -98,14 +98,14 @@ class HelpScreen(ModalScreen[None], Acting):
 
     def _everywhere(self) -> list[type[Action[Any]]]:
         """Return what the app can do; what is for recordings only beside one."""
-        replayed = cast("DeckApp", self.app).feed.replay is not None
+        replayed = host_of(self).feed.replay is not None
         actions = list(bound(self.app))
         return [each for each in actions if replayed or not issubclass(each, ReplayAction)]
 
     def _section(self, heading: str, actions: list[type[Action[Any]]]) -> Iterable[Entry]:
         if actions:
             yield Entry(name=heading)
-        app = cast("DeckApp", self.app)
+        app = host_of(self)
         for action in actions:
             keys = "  ".join(app.keys_of(action))
             yield Entry(_(action.tooltip), _(action.title), keys)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
 from tui import clock
-from tui.actions.app import ShowComposer
 from tui.composer.outcome import Outcome
 from tui.composer.outcome_story import FOLLOWED, Story
+from tui.frame.actions.app import ShowComposer
+from tui.frame.host import host_of
 from tui.panels.panel import Panel, row_of
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
     from graph.data import GraphUpdate, Sample
     from robot.commands.schema import LlmResponse
-    from tui.app import DeckApp
 
 
 class LlmFeed(Panel):
@@ -67,7 +67,7 @@ class LlmFeed(Panel):
     def _say(self) -> None:
         trail = self.query_one(Outcome)
         if self._story is None:
-            key = cast("DeckApp", self.app).keys_of(ShowComposer)[0]
+            key = host_of(self).keys_of(ShowComposer)[0]
             trail.show(_("Nothing has come yet; {key} opens the Composer.").format(key=key), ())
             return
         at = clock.time_of_day(self._story.sent_s)

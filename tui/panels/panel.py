@@ -12,7 +12,7 @@ from textual.content import Content
 from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
-from tui.session.faults import bear
+from tui.faults import bear
 
 if TYPE_CHECKING:
     from textual.visual import VisualType

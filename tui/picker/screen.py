@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import work
 from textual.containers import Horizontal, VerticalScroll
@@ -15,13 +15,14 @@ from launcher.errors import LauncherError
 from text.i18n import N_, _, ngettext, pick, said
 from text.plain import plain
 from tui.actions import Acting, Action, bindings
-from tui.dialogs.end_session import started
+from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import BREAKPOINTS, HEIGHTS
 from tui.frame.title_bar import TitleBar
+from tui.lifecycle.end_session import started
 from tui.panels.registry import entry_of
 from tui.session.hardware_words import hardware_words
-from tui.session.orders import WatchOrder
+from tui.session.requests import WatchRequest
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
@@ -30,9 +31,8 @@ if TYPE_CHECKING:
     from textual.binding import BindingType
 
     from launcher.status import SessionInfo
-    from tui.app import DeckApp
     from tui.session.messages import LanguageChanged
-    from tui.session.orders import Lesson, Order
+    from tui.session.requests import Lesson, OpenRequest
 
 RUNNING = "running:"
 WATCHED = "watch:"
@@ -52,7 +52,7 @@ class StartLesson(Action["PickerScreen"]):
     @classmethod
     def possible(cls, target: PickerScreen) -> bool | None:
         """Not a broken one."""
-        return True if target.order() is not None else None
+        return True if target.request() is not None else None
 
     @classmethod
     async def run(cls, target: PickerScreen) -> None:
@@ -93,9 +93,9 @@ class PickerScreen(Screen[None], Acting, Working):
         """What is looked at without a lesson; None if the one that is set cannot be."""
 
     @property
-    def deck(self) -> DeckApp:
+    def deck(self) -> Host:
         """The app."""
-        return cast("DeckApp", self.app)
+        return host_of(self)
 
     def compose(self) -> ComposeResult:
         """Put the list beside what is said of the chosen lesson."""
@@ -121,13 +121,13 @@ class PickerScreen(Screen[None], Acting, Working):
     async def look(self) -> None:
         """Ask for the lessons and for what runs."""
         with suppress(LauncherError):
-            self._domain = self.deck.sessions.pad.domain(self.deck.sessions.order.domain)
-        self._lessons = await self.deck.sessions.pad.lessons()
+            self._domain = self.deck.sessions.opener.domain(self.deck.sessions.request.domain)
+        self._lessons = await self.deck.sessions.opener.lessons()
         self._offer()
-        self._sessions = await self.deck.sessions.pad.running()
+        self._sessions = await self.deck.sessions.opener.running()
         self._offer()
         if self.is_current:
-            await self.deck.sessions.pad.prepare()
+            await self.deck.sessions.opener.prepare()
 
     def _offer(self) -> None:
         """Draw what is known, the likeliest row chosen, unless a person has chosen another."""
@@ -142,7 +142,7 @@ class PickerScreen(Screen[None], Acting, Working):
         """Return the row to begin with: what runs, the lesson of the last time, or the first."""
         if self._sessions:
             return f"{RUNNING}{self._sessions[0].name}"
-        last = self.deck.last_lesson
+        last = self.deck.sessions.last_lesson
         named = [_key(lesson) for lesson in self._lessons if lesson.name == last]
         return next(iter(named or map(_key, self._lessons)), "")
 
@@ -163,22 +163,22 @@ class PickerScreen(Screen[None], Acting, Working):
         self.query_one(Rows).show([Column("", 4, right=True), Column("")], rows)
         self._show_about()
 
-    def order(self) -> Order | None:
+    def request(self) -> OpenRequest | None:
         """Return what Enter would open; None where that is nothing."""
         session, lesson = self._chosen_session(), self._chosen_lesson()
         if self._chosen == WATCHED and self._domain is not None:
-            return self.deck.sessions.order._replace(watch=WatchOrder(self._domain))
+            return self.deck.sessions.request._replace(watch=WatchRequest(self._domain))
         if session is not None:
-            return self.deck.sessions.order._replace(attach=session.name)
+            return self.deck.sessions.request._replace(attach=session.name)
         if lesson is not None and not lesson.error:
-            return self.deck.sessions.order._replace(profile=lesson.path)
+            return self.deck.sessions.request._replace(profile=lesson.path)
         return None
 
     def open_chosen(self) -> None:
         """Open what is chosen."""
-        order = self.order()
-        if order is not None:
-            self.deck.sessions.open(order)
+        request = self.request()
+        if request is not None:
+            self.deck.sessions.open(request)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Draw anew."""

@@ -138,7 +138,7 @@ class Recording:
 
 
 def _toggle() -> type:
-    from tui.recording.actions import RecordToggle
+    from tui.frame.actions.recording import RecordToggle
 
     return RecordToggle
 

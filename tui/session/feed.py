@@ -132,7 +132,7 @@ class Feed:
 
     def _show_remains(self, nodes: Mapping[str, NodeStatus]) -> None:
         # The first frame does without.
-        from tui.session.remains import ended_nodes, silent_graph
+        from tui.session.ended import ended_nodes, silent_graph
 
         self._remains = ended_nodes(nodes, self.ended)
         self._tell_status(frozenset(nodes))

@@ -1,7 +1,7 @@
 """The two seams of the screen: what it needs of the supervisor and of the ROS graph.
 
 `launcher.client.client.SupervisorClient` and `graph.observer.observer.Observer` fit them, and so do
-the recorded ones of the tests. A `Launchpad` lists what can be opened and opens it. For type
+the recorded ones of the tests. A `SessionOpener` lists what can be opened and opens it. For type
 checkers only: whoever runs needs none of it.
 """
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from graph.publishing.dead_man_switch import Holding
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
-    from tui.session.orders import Lesson, Order
+    from tui.session.requests import Lesson, OpenRequest
 
 
 class SessionLink(Protocol):
@@ -32,7 +32,7 @@ class SessionLink(Protocol):
 
     @property
     def nodes(self) -> Mapping[str, NodeStatus]:
-        """Every node by its name in the profile's order, kept current."""
+        """Every node by its name in the profile's request, kept current."""
 
     @property
     def strays(self) -> tuple[Stray, ...]:
@@ -140,7 +140,7 @@ class GraphLink(Protocol):
         """Tell no more of a goal; one that has not ended is cancelled."""
 
 
-class Launchpad(Protocol):
+class SessionOpener(Protocol):
     """What can be opened, and the opening of it."""
 
     async def lessons(self) -> list[Lesson]:
@@ -155,7 +155,7 @@ class Launchpad(Protocol):
     async def prepare(self) -> None:
         """Make ready what can be, so that `open` is quick; to be called while a person chooses."""
 
-    async def open(self, order: Order) -> SessionLink:
+    async def open(self, request: OpenRequest) -> SessionLink:
         """Start the profile or attach to the session; raises a `LauncherError` with the reason."""
 
     def observe(self, session: SessionInfo) -> GraphLink:

@@ -6,7 +6,7 @@ allows, so that a screen that hangs, or is no more, leaves no command behind.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar
 
 from textual.content import Content
 from textual.message import Message
@@ -18,11 +18,12 @@ from text.i18n import N_, _
 from text.plain import plain
 from tui import clock
 from tui.actions import REGISTRY, Acting, bindings
-from tui.actions.app import EmergencyRelease
+from tui.emergency.gate import Gate, gate_in, gate_words
+from tui.frame.actions.app import EmergencyRelease
+from tui.frame.host import Host, host_of
 from tui.panels.panel import newest, row_of
 from tui.panels.wheels.reading import Wheels, wheels_in
 from tui.teleop.actions import TELEOP_ACTIONS, MoveAction, OpenTeleop
-from tui.teleop.gate import Gate, gate_in, gate_words
 from tui.teleop.keys import NOTHING, Move, TeleopLimits
 from tui.teleop.route import (
     DRIVE_TYPE,
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from textual.timer import Timer
 
     from graph.data import GraphUpdate, Sample
-    from tui.app import DeckApp
 
 LOOK_S = 0.05
 """How often it is looked whether a key is still down, while any is."""
@@ -85,8 +85,8 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         return True
 
     @property
-    def _deck(self) -> DeckApp:
-        return cast("DeckApp", self.app)
+    def _deck(self) -> Host:
+        return host_of(self)
 
     @property
     def limits(self) -> TeleopLimits:
@@ -131,7 +131,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         at_s = now_s if at_s is None else min(at_s, now_s)
         deck = self._deck
         graph = deck.feed.graph
-        if graph is None or not self._route.topic or deck.brake.state.engaged:
+        if graph is None or not self._route.topic or deck.emergency.state.engaged:
             self.redraw()
             return
         if deck.stall_detector.may_precede(at_s):
@@ -251,7 +251,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
     def _told(self) -> tuple[str, str]:
         """Say what is to be known now, the gravest first, and how it looks."""
-        if self._deck.brake.state.engaged:
+        if self._deck.emergency.state.engaged:
             key = self._deck.keys_of(EmergencyRelease)[0]
             return _("emergency stop: nothing moves; {key} releases").format(key=key), "stop"
         if not self._route.topic:

@@ -19,7 +19,7 @@ from textual.widget import Widget
 from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
-from tui.session.faults import bear
+from tui.faults import bear
 from tui.widgets.one_style import OneStyle
 from tui.widgets.trouble import no_data_words, trouble_words
 from tui.widgets.words import word_strips

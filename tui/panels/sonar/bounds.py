@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from robot.topics import SAFETY_STATE
+from tui.emergency.gate import Gate, gate_in
 from tui.panels.panel import newest, row_of
 from tui.panels.sonar.words import COURSE, FREE_FROM_M, Bounds
-from tui.teleop.gate import Gate, gate_in
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate

@@ -13,9 +13,9 @@ from graph.messages.yaml_form import filled
 from graph.messages.yaml_text import is_cut
 from text.i18n import _, decimal, ngettext
 from tui.actions import bindings
-from tui.actions.app import EmergencyStop
 from tui.dialogs.dialog import Dialog
 from tui.frame import title
+from tui.frame.actions.app import EmergencyStop
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.topics.publish.actions import PUBLISH_ACTIONS

@@ -8,10 +8,10 @@ from text.i18n import N_
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.app import DeckApp
+    from tui.frame.host import Host
 
 
-class RecordToggle(Action["DeckApp"]):
+class RecordToggle(Action["Host"]):
     """Begin to record, or end it."""
 
     id = "recording.toggle"
@@ -21,22 +21,22 @@ class RecordToggle(Action["DeckApp"]):
     priority = True
 
     @classmethod
-    def possible(cls, target: DeckApp) -> bool | None:
+    def possible(cls, target: Host) -> bool | None:
         """Only while a robot is shown, not its recording."""
         return target.feed.link is not None and target.feed.replay is None
 
     @classmethod
-    def label(cls, target: DeckApp) -> str:
+    def label(cls, target: Host) -> str:
         """By what it would do now."""
         return N_("End recording") if target.recording.active else cls.title
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Begin, or end."""
         target.recording.toggle()
 
 
-class RecordWithoutImages(Action["DeckApp"]):
+class RecordWithoutImages(Action["Host"]):
     """Begin to record all but pictures, which are most of what a robot with a camera says."""
 
     id = "recording.without_images"
@@ -47,12 +47,12 @@ class RecordWithoutImages(Action["DeckApp"]):
     footer = False
 
     @classmethod
-    def possible(cls, target: DeckApp) -> bool | None:
+    def possible(cls, target: Host) -> bool | None:
         """Only while nothing is recorded yet."""
         return RecordToggle.possible(target) and not target.recording.active
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Begin."""
         target.recording.toggle(images=False)
 

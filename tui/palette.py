@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
 from text.i18n import NAMES, _, in_every_language
 from tui.actions import Action, bound
-from tui.actions.app import (
+from tui.composer.actions import COMPOSER_ACTIONS
+from tui.deck.actions import DECK_ACTIONS
+from tui.devices.actions import DEVICES_ACTIONS
+from tui.flow.actions import FLOW_ACTIONS
+from tui.frame.actions.app import (
     ShowComposer,
     ShowDeck,
     ShowDevices,
@@ -21,24 +25,21 @@ from tui.actions.app import (
     ShowScreen,
     ShowTopics,
 )
-from tui.composer.actions import COMPOSER_ACTIONS
-from tui.deck.actions import DECK_ACTIONS
-from tui.devices.actions import DEVICES_ACTIONS
-from tui.flow.actions import FLOW_ACTIONS
+from tui.frame.actions.replay import ReplayAction
+from tui.frame.host import host_of
 from tui.graph.actions import GRAPH_ACTIONS
 from tui.logs.actions import LOGS_ACTIONS
-from tui.recording.replay_actions import ReplayAction
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.themes import CYCLE
 from tui.topics.actions import TOPICS_ACTIONS, OpenPublish
 from tui.topics.publish.actions import PUBLISH_ACTIONS
 
 if TYPE_CHECKING:
+    from textual.app import App
     from textual.dom import DOMNode
     from textual.fuzzy import Matcher
     from textual.screen import Screen
 
-    from tui.app import DeckApp
 
 Actions = tuple[type[Action[Any]], ...]
 Run = Callable[[], Awaitable[None] | None]
@@ -113,12 +114,12 @@ class Entry:
         return f"{self.title} ({best})" if matcher.match(best) > 0 else self.title
 
 
-def entries(app: DeckApp, front: Screen[Any]) -> Iterable[Entry]:
+def entries(app: App[Any], front: Screen[Any]) -> Iterable[Entry]:
     """Yield what can be done now, then what is impossible in `front` now, or is done elsewhere."""
     yield from _possible(front)
     yield from _possible(app)
     for code, name in NAMES.items():
-        run = partial(app.speak, code)
+        run = partial(host_of(app).speak, code)
         yield Entry(name, (name,), _("Use this language."), run)
     for theme in sorted(app.available_themes):
         names = tuple(words.format(name=theme) for words in in_every_language("Theme: {name}"))
@@ -151,38 +152,38 @@ def _possible(target: DOMNode) -> Iterable[Entry]:
             yield _entry(action, _(action.label(target)), run=partial(action.run, target))
 
 
-def _impossible(app: DeckApp, target: DOMNode) -> Iterable[Entry]:
+def _impossible(app: App[Any], target: DOMNode) -> Iterable[Entry]:
     for action in bound(target):
         if not action.palette or action.possible(target):
             continue
-        if app.feed.replay is None and issubclass(action, ReplayAction):
+        if host_of(app).feed.replay is None and issubclass(action, ReplayAction):
             continue
         title = _("{title} (not possible now)").format(title=_(action.title))
         told = f"{title}. {_(action.tooltip)}"
         yield _entry(action, title, run=partial(_tell, app, told), weight=IMPOSSIBLE)
 
 
-def _tell(app: DeckApp, words: str) -> None:
+def _tell(app: App[Any], words: str) -> None:
     app.notify(words, severity="warning")
 
 
-def _elsewhere(app: DeckApp, place: Place, action: type[Action[Any]]) -> Entry:
+def _elsewhere(app: App[Any], place: Place, action: type[Action[Any]]) -> Entry:
     title = f"{place.name} › {_(action.title)}"
     go = partial(_go, app, place, action)
     return _entry(action, title, run=go, weight=ELSEWHERE)
 
 
-async def _go(app: DeckApp, place: Place, action: type[Action[Any]]) -> None:
+async def _go(app: App[Any], place: Place, action: type[Action[Any]]) -> None:
     """Bring the screen of an action to the front, and there do it if nothing can go wrong."""
-    if not app.feed.opened:
+    if not host_of(app).feed.opened:
         told = _("{title} is on the screen {place}: open a lesson first.")
         _tell(app, told.format(title=_(action.title), place=place.name))
         return
-    await app.show_screen(place.show.screen)
+    await host_of(app).show_screen(place.show.screen)
     app.call_after_refresh(_arrive, app, place, action)
 
 
-async def _arrive(app: DeckApp, place: Place, action: type[Action[Any]]) -> None:
+async def _arrive(app: App[Any], place: Place, action: type[Action[Any]]) -> None:
     front = app.screen
     if front is not app.get_screen(place.show.screen):
         return
@@ -194,7 +195,7 @@ async def _arrive(app: DeckApp, place: Place, action: type[Action[Any]]) -> None
         if first is action:
             return
     told = _("{title} is here: {key}.") if possible else _("{title} is here, not possible now.")
-    words = told.format(title=_(action.title), key=app.keys_of(action)[0])
+    words = told.format(title=_(action.title), key=host_of(app).keys_of(action)[0])
     app.notify(f"{words} {_(action.tooltip)}")
 
 
@@ -203,7 +204,7 @@ class Commands(Provider):
 
     async def discover(self) -> Hits:
         """Yield what is offered before anything is typed."""
-        for entry in entries(cast("DeckApp", self.app), self.screen):
+        for entry in entries(self.app, self.screen):
             if entry.offered:
                 yield DiscoveryHit(entry.title, entry.run, help=entry.sentence)
 
@@ -211,7 +212,7 @@ class Commands(Provider):
         """Yield what is called something like `query`, or say that nothing is."""
         matcher = self.matcher(query)
         found = False
-        for entry in entries(cast("DeckApp", self.app), self.screen):
+        for entry in entries(self.app, self.screen):
             score = entry.score(matcher)
             if score > 0:
                 found = True

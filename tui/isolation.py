@@ -2,7 +2,7 @@
 
 Textual 8 has no hook for them: whatever a message handler raises ends the widget's own loop, and
 the app, and a widget that cannot be drawn leaves the whole screen undrawn. Everything private of
-Textual that this takes is in this file and `tui.session.faults`; a test tells when it has gone.
+Textual that this takes is in this file and `tui.faults`; a test tells when it has gone.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from textual.message_pump import MessagePump
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.session.faults import bear, faults_of
+from tui.faults import bear, faults_of
 
 if TYPE_CHECKING:
     from textual.geometry import Region

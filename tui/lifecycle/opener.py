@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from text.i18n import language
 from tui.panels.registry import PANELS
-from tui.session.orders import Lesson
+from tui.session.requests import Lesson
 from tui.session.watching import watched
 
 if TYPE_CHECKING:
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from launcher.profile.catalog import ProfileEntry
     from launcher.profile.load import Profile
     from launcher.status import SessionInfo
-    from tui.session.orders import Order, ReplayOrder
+    from tui.lifecycle.replay import ReplayLink
     from tui.session.ports import GraphLink, SessionLink
-    from tui.session.replay import ReplayLink
+    from tui.session.requests import OpenRequest, ReplayRequest
 
 OF_ROS = ("rclpy.node", "rclpy.event_handler", "rclpy.serialization", "sensor_msgs.msg")
 """What the observer needs in nearly every lesson."""
@@ -36,7 +36,7 @@ OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
 """What shows a lesson, besides its panels."""
 
 
-class LivePad:
+class LiveOpener:
     """Opens what the launcher has."""
 
     def __init__(self) -> None:
@@ -82,32 +82,32 @@ class LivePad:
 
                 self._ahead = await asyncio.to_thread(StartingSupervisor)
 
-    async def open(self, order: Order) -> SessionLink:
+    async def open(self, request: OpenRequest) -> SessionLink:
         """Start the profile, attach to the session, open the recording, or look at the domain."""
         self._replay = None
-        if order.replay is not None:
-            recording = await asyncio.to_thread(_opened_bag, order.replay)
+        if request.replay is not None:
+            recording = await asyncio.to_thread(_opened_bag, request.replay)
             self._replay = recording.replay
             return recording
-        if order.watch is not None:
+        if request.watch is not None:
             await _imported("graph.observer.observer")
-            return watched(*order.watch)
-        if order.profile is not None:
+            return watched(*request.watch)
+        if request.profile is not None:
             await self._start_ahead()
         await _imported("launcher.client.client")
         from launcher.client import client
 
-        if order.profile is None:
-            link = await client.attach(order.attach)
+        if request.profile is None:
+            link = await client.attach(request.attach)
         else:
-            link = await self._launch(order.profile, order)
+            link = await self._launch(request.profile, request)
         await _imported("graph.observer.observer")
         return link
 
-    async def _launch(self, profile: Path, order: Order) -> SupervisorClient:
+    async def _launch(self, profile: Path, request: OpenRequest) -> SupervisorClient:
         from launcher.client import client
 
-        read = await asyncio.to_thread(_read, profile, order)
+        read = await asyncio.to_thread(_read, profile, request)
         ahead, self._ahead = self._ahead, None
         return await client.launch(
             read,
@@ -125,7 +125,7 @@ class LivePad:
         return Observer(session.domain, session.discovery)
 
 
-def _read(path: Path, order: Order) -> Profile:
+def _read(path: Path, request: OpenRequest) -> Profile:
     """Read the profile, and see that nobody else is in its domain."""
     from launcher.profile.load import load_profile
     from launcher.runs.shared_domain import refuse_shared_domain
@@ -133,24 +133,24 @@ def _read(path: Path, order: Order) -> Profile:
 
     profile = load_profile(
         path,
-        hardware=order.hardware,
-        overrides=order.overrides,
-        domain=order.domain,
+        hardware=request.hardware,
+        overrides=request.overrides,
+        domain=request.domain,
         ports=serial_ports,
     )
-    if not order.beside:
+    if not request.beside:
         refuse_shared_domain(profile)
     return profile
 
 
-def _opened_bag(order: ReplayOrder) -> ReplayLink:
+def _opened_bag(request: ReplayRequest) -> ReplayLink:
     from graph.bag.errors import BagError
     from graph.replay.replay import Replay
     from launcher.errors import UsageError
-    from tui.session.replay import ReplayLink
+    from tui.lifecycle.replay import ReplayLink
 
     try:
-        replay = Replay(order.bag, rate=order.rate, loop=order.loop, start_s=order.start_s)
+        replay = Replay(request.bag, rate=request.rate, loop=request.loop, start_s=request.start_s)
     except BagError as error:
         raise UsageError(error.words) from error
     return ReplayLink(replay)

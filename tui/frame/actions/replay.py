@@ -9,21 +9,21 @@ from tui.actions.action import Action
 
 if TYPE_CHECKING:
     from graph.replay.replay import Replay
-    from tui.app import DeckApp
+    from tui.frame.host import Host
 
 SKIP_S = 5.0
 
 
-class ReplayAction(Action["DeckApp"]):
+class ReplayAction(Action["Host"]):
     """Something that needs a recording on the screen."""
 
     @classmethod
-    def possible(cls, target: DeckApp) -> bool | None:
+    def possible(cls, target: Host) -> bool | None:
         """Only in a replay."""
         return target.feed.replay is not None
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Do it."""
         if target.feed.replay is not None:
             cls.do(target.feed.replay)
@@ -46,7 +46,7 @@ class PlayPause(ReplayAction):
     priority = True
 
     @classmethod
-    def label(cls, target: DeckApp) -> str:
+    def label(cls, target: Host) -> str:
         """By what it would do now."""
         replay = target.feed.replay
         return N_("Play") if replay is not None and replay.state.paused else cls.title

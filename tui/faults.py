@@ -1,6 +1,6 @@
 """What fails on the screen: told once, in the place where it is, while all the rest goes on.
 
-A fault of a panel must not take the emergency stop away. `tui.session.isolation` brings every
+A fault of a panel must not take the emergency stop away. `tui.isolation` brings every
 exception that Textual would end the app by to `Faults.caught`.
 """
 

@@ -18,23 +18,25 @@ if TYPE_CHECKING:
     from graph.replay.replay import Replay
     from launcher.status import SessionInfo, Stray
     from tui.app import DeckApp
-    from tui.session.orders import Order
-    from tui.session.ports import Launchpad, SessionLink
+    from tui.session.ports import SessionLink, SessionOpener
+    from tui.session.requests import OpenRequest
 
 
 class Sessions:
     """The way into a session and out of it."""
 
-    def __init__(self, app: DeckApp, pad: Launchpad, order: Order) -> None:
-        """`pad` lists and opens; an `order` that names nothing is asked for by the picker."""
+    def __init__(self, app: DeckApp, opener: SessionOpener, request: OpenRequest) -> None:
+        """`opener` lists and opens; a `request` that names nothing is asked for by the picker."""
         self._app = app
-        self.pad = pad
-        self.order = order
-        """What every order has: hardware, overrides, domain; and what was named to begin with."""
-        self.picking = not _name_of(order)
+        self.opener = opener
+        self.request = request
+        """What every request has: hardware, overrides, domain; and what was named to begin with."""
+        self.picking = not _name_of(request)
         """Whether the picker is where one comes from, and goes back to."""
-        self.opening = "" if self.picking else _name_of(order)
+        self.opening = "" if self.picking else _name_of(request)
         """What is being opened, empty if nothing is."""
+        self.last_lesson = ""
+        """The profile that was started last, where the list of lessons begins."""
         self.parting_words = ""
         """Said on the terminal after the screen has gone."""
         self._strays_asked: set[Stray] = set()
@@ -50,11 +52,11 @@ class Sessions:
     def begin(self) -> None:
         """Open what was named, if anything was."""
         if not self.picking:
-            self.open(self.order)
+            self.open(self.request)
 
-    def open(self, order: Order) -> None:
+    def open(self, request: OpenRequest) -> None:
         """Start or attach to a session and show it until it ends."""
-        self._app.run_worker(self._open(order), exclusive=True, group="session")
+        self._app.run_worker(self._open(request), exclusive=True, group="session")
 
     def close(self) -> None:
         """Stop the nodes that this screen has started, or let go of the others; then pick anew."""
@@ -90,19 +92,19 @@ class Sessions:
         if strays:
             self._app.run_worker(self._ask_about(strays), group="strays")
 
-    async def _open(self, order: Order) -> None:
+    async def _open(self, request: OpenRequest) -> None:
         app = self._app
-        self.opening = _name_of(order)
+        self.opening = _name_of(request)
         # The screens of the session before may be on their way out.
         async with self._going_back:
             pass
-        opening = asyncio.create_task(self.pad.open(order))
+        opening = asyncio.create_task(self.opener.open(request))
         try:
             if self.picking:
                 await app.show_screen("deck")
             link = await opening
         except DomainTakenError as error:
-            await self._ask_for_domain(order, error)
+            await self._ask_for_domain(request, error)
             return
         except LauncherError as error:
             await self._refuse(error)
@@ -110,14 +112,14 @@ class Sessions:
         finally:
             opening.cancel()
             self.opening = ""
-        if order.profile is not None:
+        if request.profile is not None:
             app.lesson_opened(link.session.name)
-        app.brake.forget()
+        app.emergency.forget()
         app.strangers.forget()
-        app.feed.connect(link, self.pad.observe(link.session))
+        app.feed.connect(link, self.opener.observe(link.session))
         if app.feed.replay is not None:
             await self._show_recording(link.session)
-        app.brake.prepare()
+        app.emergency.prepare()
         app.refresh_bindings()
         await app.feed.listen()
         app.refresh_bindings()
@@ -147,27 +149,27 @@ class Sessions:
             self.parting_words = reason
             self._app.exit(return_code=error.exit_code)
             return
-        from tui.picker.refused import RefusedScreen
+        from tui.lifecycle.refused import RefusedScreen
 
         await self._back_to_picker()
         self._app.push_screen(RefusedScreen(reason))
 
-    async def _ask_for_domain(self, order: Order, error: DomainTakenError) -> None:
+    async def _ask_for_domain(self, request: OpenRequest, error: DomainTakenError) -> None:
         """Offer a domain in which there is no other session."""
-        from tui.picker.domain_taken import Answer, DomainTakenScreen
+        from tui.lifecycle.domain_taken import Answer, DomainTakenScreen
 
-        answer = await self._app.push_screen_wait(DomainTakenScreen(_name_of(order), error))
+        answer = await self._app.push_screen_wait(DomainTakenScreen(_name_of(request), error))
         if answer is Answer.APART:
-            self.open(order._replace(domain=error.free))
+            self.open(request._replace(domain=error.free))
         elif answer is Answer.TOGETHER:
-            self.open(order._replace(beside=True))
+            self.open(request._replace(beside=True))
         elif self.picking:
             await self._back_to_picker()
         else:
             await self._refuse(error)
 
     async def _ask_about(self, strays: tuple[Stray, ...]) -> None:
-        from tui.picker.strays import StraysScreen
+        from tui.lifecycle.strays import StraysScreen
 
         wanted = await self._app.push_screen_wait(StraysScreen(strays))
         link = self._app.feed.link
@@ -216,7 +218,7 @@ class Sessions:
 
     async def _stop(self, link: SessionLink) -> None:
         """Stop the nodes, with a dialog that shows what is waited for."""
-        from tui.dialogs.stopping import StoppingScreen
+        from tui.lifecycle.stopping import StoppingScreen
 
         app, graph = self._app, self._app.feed.graph
         self._stopping = link
@@ -234,7 +236,7 @@ class Sessions:
             await dialog.dismiss()
 
     async def _end_of_others(self) -> None:
-        from tui.dialogs.end_session import EndSessionScreen
+        from tui.lifecycle.end_session import EndSessionScreen
 
         link = self._app.feed.link
         if link is None or not self._app.feed.of_others:
@@ -272,10 +274,10 @@ def words_of(error: LauncherError) -> str:
     return "\n".join(lines)
 
 
-def _name_of(order: Order) -> str:
-    if order.replay is not None:
+def _name_of(request: OpenRequest) -> str:
+    if request.replay is not None:
         # Path.resolve() raises for a link to itself.
-        return Path(os.path.realpath(order.replay.bag)).stem
-    if order.watch is not None:
+        return Path(os.path.realpath(request.replay.bag)).stem
+    if request.watch is not None:
         return WATCH
-    return order.attach or (order.profile or Path()).stem
+    return request.attach or (request.profile or Path()).stem

@@ -29,7 +29,7 @@ WHY_S = 20.0
 """How long it is told what else the stop has ended, and why."""
 
 
-class Brake:
+class EmergencyControl:
     """Engages and releases; its `state` is what the banner shows."""
 
     def __init__(self, app: DeckApp) -> None:
@@ -45,7 +45,7 @@ class Brake:
         sent = self._publish(engaged=True)
         self._end_publications()
         self._set(self.state.pressed(clock.now()))
-        self._app.run_worker(self._stop(sent), group="brake")
+        self._app.run_worker(self._stop(sent), group="emergency")
 
     def release(self) -> None:
         """Let the wheels turn again, and nothing turn them by itself."""
@@ -55,7 +55,7 @@ class Brake:
         self._set(self.state.released(self._released_s))
         self._say_released()
         if ended:
-            self._app.run_worker(self._start_again(ended), group="brake")
+            self._app.run_worker(self._start_again(ended), group="emergency")
 
     def see(self, update: GraphUpdate) -> None:
         """Take in what others have done, and insist on a release that a node has not heard."""
@@ -80,7 +80,7 @@ class Brake:
 
     def _say_released(self) -> None:
         self._said_s = clock.now()
-        self._app.run_worker(self._reached(self._publish(engaged=False)), group="brake")
+        self._app.run_worker(self._reached(self._publish(engaged=False)), group="emergency")
 
     def forget(self) -> None:
         """Start anew with another session."""

@@ -24,7 +24,7 @@ class Lesson(NamedTuple):
     """Why it cannot be started: `file:line:column: field: message`; empty if it can."""
 
 
-class ReplayOrder(NamedTuple):
+class ReplayRequest(NamedTuple):
     """A recording to be played, and how."""
 
     bag: Path
@@ -33,7 +33,7 @@ class ReplayOrder(NamedTuple):
     start_s: float = 0.0
 
 
-class WatchOrder(NamedTuple):
+class WatchRequest(NamedTuple):
     """A domain in which others have started nodes."""
 
     domain: int
@@ -41,7 +41,7 @@ class WatchOrder(NamedTuple):
     """`localhost` for this machine only, `subnet` for the network too."""
 
 
-class Order(NamedTuple):
+class OpenRequest(NamedTuple):
     """What is to be opened: a profile to be started, or what is there without being started."""
 
     profile: Path | None = None
@@ -49,7 +49,7 @@ class Order(NamedTuple):
     hardware: str = "mock"
     overrides: tuple[str, ...] = ()
     domain: int | None = None
-    replay: ReplayOrder | None = None
-    watch: WatchOrder | None = None
+    replay: ReplayRequest | None = None
+    watch: WatchRequest | None = None
     beside: bool = False
     """Whether it may be started beside other sessions in its domain."""

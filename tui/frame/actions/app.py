@@ -8,10 +8,10 @@ from text.i18n import N_, _
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.app import DeckApp
+    from tui.frame.host import Host
 
 
-class AppAction(Action["DeckApp"]):
+class AppAction(Action["Host"]):
     """Something that the app does, whichever screen is in front."""
 
 
@@ -19,7 +19,7 @@ class SessionAction(AppAction):
     """Something that needs a session."""
 
     @classmethod
-    def possible(cls, target: DeckApp) -> bool | None:
+    def possible(cls, target: Host) -> bool | None:
         """Only while a session is shown."""
         return target.feed.link is not None
 
@@ -35,15 +35,15 @@ class EmergencyStop(SessionAction):
     priority = True
 
     @classmethod
-    def shown(cls, target: DeckApp) -> bool:
+    def shown(cls, target: Host) -> bool:
         """Not beside a recording."""
         return target.feed.replay is None
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Engage it; an engaged one is told again."""
         if target.feed.replay is None:
-            target.brake.engage()
+            target.emergency.engage()
         else:
             target.notify(_("This is a recording: there is nothing to stop."), markup=False)
 
@@ -59,22 +59,22 @@ class EmergencyRelease(SessionAction):
     priority = True
 
     @classmethod
-    def possible(cls, target: DeckApp) -> bool | None:
+    def possible(cls, target: Host) -> bool | None:
         """Only while it is engaged."""
         live = target.feed.link is not None and target.feed.replay is None
-        return live and target.brake.state.engaged
+        return live and target.emergency.state.engaged
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Release it."""
-        target.brake.release()
+        target.emergency.release()
 
 
 class OpenedAction(AppAction):
     """Something that needs a session, which may have ended."""
 
     @classmethod
-    def possible(cls, target: DeckApp) -> bool | None:
+    def possible(cls, target: Host) -> bool | None:
         """Only while a session, or its remains, are shown."""
         return target.feed.opened
 
@@ -85,7 +85,7 @@ class ShowScreen(OpenedAction):
     screen = ""
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Show it."""
         await target.show_screen(cls.screen)
 
@@ -171,7 +171,7 @@ class ShowHelp(AppAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Open the help page of the screen in front."""
         target.show_help()
 
@@ -188,7 +188,7 @@ class ShowPalette(AppAction):
     palette = False
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Open it."""
         target.show_palette()
 
@@ -203,7 +203,7 @@ class SwitchLanguage(AppAction):
     priority = True
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Speak the other language."""
         target.switch_language()
 
@@ -218,7 +218,7 @@ class SwitchTheme(AppAction):
     priority = True
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Take the next theme."""
         target.next_theme()
 
@@ -232,7 +232,7 @@ class CloseSession(OpenedAction):
     tooltip = N_("Back to the list of lessons; nodes that this screen has started are stopped.")
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Stop, or let go of, the session and show the picker."""
         target.sessions.close()
 
@@ -246,12 +246,12 @@ class EndSession(SessionAction):
     tooltip = N_("End a session that was started elsewhere; says whose it is, and asks.")
 
     @classmethod
-    def possible(cls, target: DeckApp) -> bool | None:
+    def possible(cls, target: Host) -> bool | None:
         """Only beside a session of a supervisor that is not this screen's."""
         return target.feed.of_others
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Ask, and end it."""
         target.sessions.end_of_others()
 
@@ -266,7 +266,7 @@ class Redraw(AppAction):
     priority = True
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Draw."""
         target.redraw()
 
@@ -283,12 +283,12 @@ class Quit(AppAction):
     priority = True
 
     @classmethod
-    def label(cls, target: DeckApp) -> str:
+    def label(cls, target: Host) -> str:
         """By whether anything ends by it."""
         return N_("Detach") if target.feed.of_others else cls.title
 
     @classmethod
-    async def run(cls, target: DeckApp) -> None:
+    async def run(cls, target: Host) -> None:
         """Stop orderly; asked again, stop at once."""
         target.sessions.leave()
 
