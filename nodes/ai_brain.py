@@ -22,63 +22,46 @@ from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message, to_message
-from nodes.parts.speech import Phrase
 from robot.commands.brain import Decision, decide, spoken
 from robot.safety.distance import Reading, look
 from robot.sound import text_in
 from robot.topics import AI_COMMAND, CAMERA, MICROPHONE, SONAR_FRONT, SPEAKER
 from robot.words import WORDS, parse_word
+from text.i18n import N_
 
 LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0
 FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]
 """The course's own nodes know Russian words only."""
 
-_STARTED = Phrase("The brain is awake and waits for a voice", "Мозг проснулся и ждёт голоса")
-_HEARD = Phrase('Heard: "{words}"', "Слышу: «{words}»")
-_NO_WORDS = Phrase(
-    "Hearing sound and no words: nothing recognises speech yet",
-    "Слышу звук, а не слова: распознавать речь пока нечем",
-)
+_STARTED = N_("The brain is awake and waits for a voice")
+_HEARD = N_('Heard: "{words}"')
+_NO_WORDS = N_("Hearing sound and no words: nothing recognises speech yet")
 _SAY_EVERY_S = 10.0
-_THINKING = Phrase(
-    "Thinking with the voice, {picture} and {distance}",
-    "Думаю: голос, {picture} и {distance}",
-)
-_PICTURE = Phrase("a picture", "кадр")
-_NO_PICTURE = Phrase("no picture", "без кадра")
-_DISTANCE = Phrase("{metres:.2f} m ahead", "{metres:.2f} м впереди")
-_NOTHING_NEAR = Phrase("nothing in range ahead", "преград впереди не видно")
-_TOO_CLOSE = Phrase("something too close to measure ahead", "слишком близкая преграда впереди")
-_NOT_VALID = Phrase("no valid distance ahead", "без верного расстояния впереди")
-_NO_DISTANCE = Phrase("no distance", "без расстояния")
+_THINKING = N_("Thinking with the voice, {picture} and {distance}")
+_PICTURE = N_("a picture")
+_NO_PICTURE = N_("no picture")
+_DISTANCE = N_("{metres:.2f} m ahead")
+_NOTHING_NEAR = N_("nothing in range ahead")
+_TOO_CLOSE = N_("something too close to measure ahead")
+_NOT_VALID = N_("no valid distance straight ahead")
+_NO_DISTANCE = N_("no distance")
 _THOUGHTS = {
-    Decision.LOOK_AND_GO: Phrase(
-        "The way is free: I look round and drive on", "Путь свободен: осмотрюсь и поеду вперёд"
-    ),
-    Decision.OBSTACLE: Phrase("An obstacle is near: I stop", "Препятствие близко: останавливаюсь"),
-    Decision.BLIND: Phrase(
-        "I do not know what is ahead: I stop", "Не знаю, что впереди: останавливаюсь"
-    ),
-    Decision.OBEY: Phrase("As you say", "Как скажете"),
+    Decision.LOOK_AND_GO: N_("The way is free: I look round and drive on"),
+    Decision.OBSTACLE: N_("An obstacle is near: I stop"),
+    Decision.BLIND: N_("I do not know what is ahead: I stop"),
+    Decision.OBEY: N_("As you say"),
 }
 _REPLIES = {
-    Decision.LOOK_AND_GO: Phrase("I look round and drive on.", "Осматриваюсь и еду вперёд."),
-    Decision.OBSTACLE: Phrase(
-        "There is something in front of me, I stand still.", "Передо мной препятствие, стою."
-    ),
-    Decision.BLIND: Phrase(
-        "I cannot see what is ahead, I stand still.", "Не вижу, что впереди, стою."
-    ),
-    Decision.OBEY: Phrase("As you say.", "Как скажете."),
+    Decision.LOOK_AND_GO: N_("I look round and drive on."),
+    Decision.OBSTACLE: N_("There is something in front of me, I stand still."),
+    Decision.BLIND: N_("I cannot see what is ahead, I stand still."),
+    Decision.OBEY: N_("As you say."),
 }
-_DECIDED = Phrase("Decision: {thought}", "Решение: {thought}")
-_HEAD_ASKED = Phrase(
-    "Asking the head for pan {pan}°, tilt {tilt}°",
-    "Прошу голову повернуться: pan {pan}°, tilt {tilt}°",
-)
-_HEAD_DONE = Phrase("The head has turned", "Голова повернулась")
-_HEAD_REFUSED = Phrase("The head refused", "Голова отказалась")
-_HEAD_TROUBLE = Phrase("The head does not turn: {trouble}", "Голова не поворачивается: {trouble}")
+_DECIDED = N_("Decision: {thought}")
+_HEAD_ASKED = N_("Asking the head for pan {pan}°, tilt {tilt}°")
+_HEAD_DONE = N_("The head has turned")
+_HEAD_REFUSED = N_("The head refused")
+_HEAD_TROUBLE = N_("The head does not turn: {trouble}")
 
 
 class AiBrain(LessonNode):
@@ -157,7 +140,7 @@ class AiBrain(LessonNode):
             self.say.warn(_HEAD_REFUSED)
 
 
-def _ahead(metres: float | None) -> Phrase:
+def _ahead(metres: float | None) -> str:
     if metres is None:
         return _NO_DISTANCE
     if math.isnan(metres):

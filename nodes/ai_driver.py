@@ -15,19 +15,13 @@ from nodes.driving.repeat import REPEAT_FOR_S, DriveRepeater
 from nodes.parts.node import LessonNode
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from robot.topics import AI_COMMAND
 from robot.words import WORDS, parse_word
+from text.i18n import N_
 
-_STARTED = Phrase("Translating words into motion: {words}", "Перевожу слова в движение: {words}")
-_DRIVE = Phrase(
-    'Heard "{word}": speed {speed:.2f} m/s, steering {steering:.2f} rad',
-    "Команда «{word}»: скорость {speed:.2f} м/с, руль {steering:.2f} рад",
-)
-_UNKNOWN = Phrase(
-    'Unknown command "{word}", nothing is done. Known: {words}',
-    "Неизвестная команда «{word}», ничего не делаю. Знаю: {words}",
-)
+_STARTED = N_("Translating words into motion: {words}")
+_DRIVE = N_('Heard "{word}": speed {speed:.2f} m/s, steering {steering:.2f} rad')
+_UNKNOWN = N_('Unknown command "{word}", nothing is done. Known: {words}')
 
 
 class AiDriver(LessonNode):

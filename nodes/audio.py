@@ -24,14 +24,11 @@ from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sound import from_message, to_message
-from nodes.parts.speech import Phrase
 from robot.sound import LEVEL_S, RATE_HZ, SAMPLE, LevelMeter, text_in
 from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
+from text.i18n import N_
 
-_STARTED = Phrase(
-    "Sound goes to {microphone} and comes from {speaker}",
-    "Звук идёт в {microphone} и приходит из {speaker}",
-)
+_STARTED = N_("Sound goes to {microphone} and comes from {speaker}")
 _SAY_EVERY_S = 5.0
 _FRESH_S = 0.5
 """Without a block for longer than one takes and this, there is no level."""

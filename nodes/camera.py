@@ -27,26 +27,18 @@ from nodes.parts.parameters import Choice, Number, Switch, Text, Whole
 from nodes.parts.pictures import CHANNELS, fit
 from nodes.parts.qos import NEWEST
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from robot.topics import CAMERA
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _LOOK_EVERY_S = 0.5
 
-_STARTED = Phrase(
-    "The camera publishes {width}x{height} {encoding} from {source}",
-    "Камера публикует {width}x{height} {encoding} из {source}",
-)
-_SILENT = Phrase(
-    "{source} is open, but no picture came for {seconds:g} s",
-    "{source} открыт, но кадров нет уже {seconds:g} с",
-)
-_SINCE = Phrase(
-    "connected to {source} for {seconds:.0f} s", "подключено: {source}, {seconds:.0f} с"
-)
-_NOT_YET = Phrase("not yet connected to {source}", "ещё не подключено: {source}")
+_STARTED = N_("The camera publishes {width}x{height} {encoding} from {source}")
+_SILENT = N_("{source} is open, but no picture came for {seconds:g} s")
+_SINCE = N_("connected to {source} for {seconds:.0f} s")
+_NOT_YET = N_("not yet connected to {source}")
 
 
 class Camera(LessonNode):

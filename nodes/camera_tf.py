@@ -17,21 +17,15 @@ from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number, Text, Value
 from nodes.parts.qos import LATCHED
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from robot.motion.geometry import quaternion_from_rpy
 from robot.topics import TF_STATIC
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_PUBLISHED = Phrase(
-    "{child} sits at x {x:g}, y {y:g}, z {z:g} m from {parent}",
-    "{child} стоит в точке x {x:g}, y {y:g}, z {z:g} м от {parent}",
-)
-_SAME = Phrase(
-    "parameters parent and child are both {parent}, but must differ",
-    "параметры parent и child оба равны {parent}, а должны различаться",
-)
+_PUBLISHED = N_("{child} sits at x {x:g}, y {y:g}, z {z:g} m from {parent}")
+_SAME = N_("parameters parent and child are both {parent}, but must differ")
 
 
 def _metres(name: str, default: float, about: str) -> Number:
@@ -62,7 +56,7 @@ class CameraTf(LessonNode):
         self._publisher = self.create_publisher(TFMessage, TF_STATIC, LATCHED)
         self._publish()
 
-    def contradiction(self, values: Mapping[str, Value]) -> Phrase | None:
+    def contradiction(self, values: Mapping[str, Value]) -> str | None:
         """A frame has no place in itself."""
         return _SAME if values["parent"] == values["child"] else None
 

@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from rclpy.action.server import ServerGoalHandle
     from rclpy.task import Future
 
-    from nodes.parts.speech import Phrase
     from robot.words import DriveSetpoint
 
 _FINEST_M, _COARSEST_M = 0.02, 2.0
@@ -183,7 +182,7 @@ class DriveToPointNode(LessonNode):
         )
         return GoalResponse.REJECT
 
-    def _refusal(self, goal: DriveToPoint.Goal) -> Phrase | None:
+    def _refusal(self, goal: DriveToPoint.Goal) -> str | None:
         if not all(map(math.isfinite, (goal.x, goal.y, goal.tolerance))):
             return words.NO_NUMBERS
         here = self._odometry.pose or Pose()
@@ -240,7 +239,7 @@ class DriveToPointNode(LessonNode):
             self._ask_for(goal.approach.command(pose))
             goal.tell(pose)
 
-    def _finish(self, phrase: Phrase) -> None:
+    def _finish(self, phrase: str) -> None:
         """Stop, and end the goal of the moment as the phrase says; nothing if there is none."""
         goal, self._goal = self._goal, None
         if goal is None:

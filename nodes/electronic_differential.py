@@ -27,7 +27,6 @@ from nodes.parts.qos import DEPTH
 from nodes.parts.refusals import MAX_WHEEL_SPEED, CommandRefusals
 from nodes.parts.runner import run
 from nodes.parts.sole_publisher import SolePublisher
-from nodes.parts.speech import Phrase
 from nodes.parts.stall_detector import StallDetector
 from robot.joints import DRIVE_JOINTS
 from robot.kinematics import (
@@ -41,45 +40,39 @@ from robot.kinematics import (
 from robot.limits import RIM_M_S, SPEED, STEERING, Limits
 from robot.topics import DRIVE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
+from text.i18n import N_
 
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach everybody."""
 
-_STARTED = Phrase(
-    "The electronic differential listens to {topic}", "Электронный дифференциал слушает {topic}"
+_STARTED = N_("The electronic differential listens to {topic}")
+_STANDING = N_(
+    "Standing: {speed:.2f} m/s, steering {steering:.2f} rad"
+    " -> left {left:.2f}, right {right:.2f} m/s"
 )
-_NUMBERS = (
-    ": {speed:.2f} m/s, steering {steering:.2f} rad -> left {left:.2f}, right {right:.2f} m/s",
-    ": {speed:.2f} м/с, руль {steering:.2f} рад -> левое {left:.2f}, правое {right:.2f} м/с",
+_STRAIGHT = N_(
+    "Straight: {speed:.2f} m/s, steering {steering:.2f} rad"
+    " -> left {left:.2f}, right {right:.2f} m/s"
 )
-_STANDING = Phrase("Standing" + _NUMBERS[0], "Стоим" + _NUMBERS[1])
-_STRAIGHT = Phrase("Straight" + _NUMBERS[0], "Едем прямо" + _NUMBERS[1])
-_LEFT = Phrase("Turning left" + _NUMBERS[0], "Поворот налево" + _NUMBERS[1])
-_RIGHT = Phrase("Turning right" + _NUMBERS[0], "Поворот направо" + _NUMBERS[1])
-_TOO_MUCH = Phrase(
+_LEFT = N_(
+    "Turning left: {speed:.2f} m/s, steering {steering:.2f} rad"
+    " -> left {left:.2f}, right {right:.2f} m/s"
+)
+_RIGHT = N_(
+    "Turning right: {speed:.2f} m/s, steering {steering:.2f} rad"
+    " -> left {left:.2f}, right {right:.2f} m/s"
+)
+_TOO_MUCH = N_(
     "Asked for {speed:.2f} m/s and {steering:.2f} rad, limited to {fastest:g} m/s"
-    " and {sharpest:g} rad",
-    "Запрошено {speed:.2f} м/с и {steering:.2f} рад, ограничено до {fastest:g} м/с"
-    " и {sharpest:g} рад",
+    " and {sharpest:g} rad"
 )
-_TOO_FAST = Phrase(
-    "The outer wheel would make {speed:.2f} m/s of {fastest:.2f}: both are slowed",
-    "Внешнее колесо делало бы {speed:.2f} м/с из {fastest:.2f}: замедляю оба",
-)
-_SILENT = Phrase("No command for {max_age:g} s: stop", "Нет команд дольше {max_age:g} с: стоп")
-_EMERGENCY = Phrase(
-    "EMERGENCY STOP: the wheels stand until it is released",
-    "АВАРИЙНЫЙ СТОП: колёса стоят, пока его не снимут",
-)
-_RELEASED = Phrase(
-    "The emergency stop is released; waiting for a new command",
-    "Аварийный стоп снят; жду новой команды",
-)
-_NO_GATE = Phrase(
+_TOO_FAST = N_("The outer wheel would make {speed:.2f} m/s of {fastest:.2f}: both are slowed")
+_SILENT = N_("No command for {max_age:g} s: stop")
+_EMERGENCY = N_("EMERGENCY STOP: the wheels stand until it is released")
+_RELEASED = N_("The emergency stop is released; waiting for a new command")
+_NO_GATE = N_(
     "Nobody publishes {topic}: the wheels stand. Deck's safety_stop does with gate: true, that of"
-    " the course does not; drive_topic: /drive in the profile drives without a gate",
-    "{topic} никто не публикует: колёса стоят. Это делает safety_stop из Deck с gate: true, узел из"
-    " курса этого не делает; без узла безопасности ехать можно с drive_topic: /drive в профиле",
+    " the course does not; drive_topic: /drive in the profile drives without a gate"
 )
 _GATE_WITHIN_S = 5.0
 """Which is long for a gate that starts with the others."""

@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from nodes.parts.parameters import Value
-    from nodes.parts.speech import Phrase
 
 _SETTLE_S = 0.1
 """A command is 14 ms on the wire, and a servo lags behind what it is told."""
@@ -94,7 +93,7 @@ class HeadController(LessonNode):
         else:
             self._start(self._servos)
 
-    def contradiction(self, values: Mapping[str, Value]) -> Phrase | None:
+    def contradiction(self, values: Mapping[str, Value]) -> str | None:
         """Two joints at one servo, or one without room."""
         return words.contradiction(values)
 
@@ -157,7 +156,7 @@ class HeadController(LessonNode):
         )
         return False
 
-    def _refuse(self, phrase: Phrase, asked: HeadPose, **values: object) -> None:
+    def _refuse(self, phrase: str, asked: HeadPose, **values: object) -> None:
         self.say.warn(phrase, every_s=0.0, pan=asked.pan, tilt=asked.tilt, **values)
 
     # ---------------------------------------------------------------- movements

@@ -7,10 +7,10 @@ import sys
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
-_AWAKE = Phrase("Hello! The first node is awake.", "Привет! Первый узел проснулся.")
-_COUNT = Phrase("{seconds:g} s passed, all is well.", "Прошло {seconds:g} с, всё хорошо.")
+_AWAKE = N_("Hello! The first node is awake.")
+_COUNT = N_("{seconds:g} s passed, all is well.")
 
 
 class HelloNode(LessonNode):

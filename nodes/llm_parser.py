@@ -25,7 +25,6 @@ from nodes.parts.node import LessonNode
 from nodes.parts.parameters import Number
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from robot.commands.schema import (
     MAX_COMMANDS,
     CommandError,
@@ -37,28 +36,19 @@ from robot.commands.schema import (
 )
 from robot.topics import LLM_RAW_JSON, LLM_RESULT
 from robot.words import DriveSetpoint
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_STARTED = Phrase("Waiting for JSON on {topic}", "Жду JSON в {topic}")
-_THOUGHT = Phrase(
-    'The model thinks: "{thought}" ({count} commands)',
-    "Мысль модели: «{thought}» (команд: {count})",
-)
-_REFUSED = Phrase("Refused, nothing is done: {problem}", "Отказ, ничего не сделано: {problem}")
-_DRIVE = Phrase(
-    "Chassis: speed {speed:g} m/s, steering {steering:g} rad",
-    "Шасси: скорость {speed:g} м/с, руль {steering:g} рад",
-)
-_HEAD = Phrase("Head: asked for pan {pan}°, tilt {tilt}°", "Голова: прошу pan {pan}°, tilt {tilt}°")
-_HEAD_DONE = Phrase(
-    "Head: pan {pan}°, tilt {tilt}° done", "Голова: pan {pan}°, tilt {tilt}° готово"
-)
-_HEAD_REFUSED = Phrase(
-    "Head: pan {pan}°, tilt {tilt}° refused", "Голова: pan {pan}°, tilt {tilt}° — отказ"
-)
-_HEAD_TROUBLE = Phrase("Head: {trouble}", "Голова: {trouble}")
+_STARTED = N_("Waiting for JSON on {topic}")
+_THOUGHT = N_('The model thinks: "{thought}" ({count} commands)')
+_REFUSED = N_("Refused, nothing is done: {problem}")
+_DRIVE = N_("Chassis: speed {speed:g} m/s, steering {steering:g} rad")
+_HEAD = N_("Head: asked for pan {pan}°, tilt {tilt}°")
+_HEAD_DONE = N_("Head: pan {pan}°, tilt {tilt}° done")
+_HEAD_REFUSED = N_("Head: pan {pan}°, tilt {tilt}° refused")
+_HEAD_TROUBLE = N_("Head: {trouble}")
 _RESULTS = 2 * MAX_COMMANDS
 """Queue of results: a response brings forth more of them at once than an ordinary queue holds."""
 
@@ -94,11 +84,10 @@ class LlmParser(LessonNode):
         self._execute(response)
 
     def _refuse(self, problems: Sequence[Problem]) -> None:
-        russian = self.say.language == "ru"
         reports = []
         for problem in problems:
             place = f"{problem.line}:{problem.column} {problem.field}".rstrip()
-            words = problem.in_russian() if russian else problem.message
+            words = problem.in_language(self.say.language)
             self.say.error(_REFUSED, problem=f"{place}: {words}")
             reports.append(
                 {

@@ -19,19 +19,14 @@ from nodes.parts.parameters import Number, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sound import from_message, to_message
-from nodes.parts.speech import Phrase
 from robot.sound import LEVEL_S, mock_level_dbfs
 from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
+from text.i18n import N_
 
-_STARTED = Phrase("Microphone and loudspeaker are on", "Микрофон и динамик включены")
-_SAID = Phrase(
-    'Somebody said into the microphone: "{words}"', "Человек сказал в микрофон: «{words}»"
-)
-_PLAYED = Phrase('The loudspeaker plays: "{words}"', "Динамик воспроизводит: «{words}»")
-_PHRASE = Phrase(
-    "VOICE_COMMAND: have a look round and tell me what is there",
-    "VOICE_COMMAND: осмотрись и расскажи, что там",
-)
+_STARTED = N_("Microphone and loudspeaker are on")
+_SAID = N_('Somebody said into the microphone: "{words}"')
+_PLAYED = N_('The loudspeaker plays: "{words}"')
+_PHRASE = N_("VOICE_COMMAND: have a look round and tell me what is there")
 
 _LOOK_EVERY_S = 0.5
 """For a first listener."""

@@ -19,17 +19,14 @@ from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Choice, Number, Text, Whole
 from nodes.parts.qos import NEWEST
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from nodes.simulated.room_scene import RoomScene
 from nodes.simulated.scene import MovingScene
 from robot.topics import CAMERA
+from text.i18n import N_
 
 FILM, ROOM = "film", "room"
 
-_STARTED = Phrase(
-    "The camera films {width}x{height} {encoding}, {rate:g} pictures a second",
-    "Камера снимает {width}x{height} {encoding}, {rate:g} кадров в секунду",
-)
+_STARTED = N_("The camera films {width}x{height} {encoding}, {rate:g} pictures a second")
 
 
 class MockCamera(LessonNode):

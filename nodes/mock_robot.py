@@ -23,7 +23,6 @@ from nodes.parts.node import LessonNode, NodeUsageError
 from nodes.parts.parameters import Choice, Number, Setting, Text, Whole
 from nodes.parts.qos import DEPTH, LATCHED
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from nodes.simulated.device_fault import FAULTS, FINE, FaultyLine
 from nodes.simulated.map_message import occupancy_grid
 from nodes.simulated.motors import MockMotors
@@ -35,6 +34,7 @@ from robot.world.grid import grid_of
 from robot.world.pico import SimulatedPico
 from robot.world.servos import SimulatedServos
 from robot.world.world import STEP_S, SimulatedSonar, World
+from text.i18n import N_
 from text.os_words import os_reason
 
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
@@ -42,18 +42,10 @@ _BEHIND_S = 0.5
 """A computer that slept for longer does not catch up."""
 _POSE_EVERY = 5
 
-_STARTED = Phrase(
-    "The simulated robot is in {folder}: {devices}",
-    "Имитатор робота — в {folder}: {devices}",
-)
-_NO_FOLDER = Phrase(
-    "cannot make devices in {folder}: {problem}; set the parameter folder",
-    "не могу создать устройства в {folder}: {problem}; задайте параметр folder",
-)
-_FAULT = Phrase("{device} is now: {fault}", "{device}: теперь {fault}")
-_COLLISION = Phrase(
-    "The robot ran into something (number {count})", "Робот во что-то врезался (раз: {count})"
-)
+_STARTED = N_("The simulated robot is in {folder}: {devices}")
+_NO_FOLDER = N_("cannot make devices in {folder}: {problem}; set the parameter folder")
+_FAULT = N_("{device} is now: {fault}")
+_COLLISION = N_("The robot ran into something (number {count})")
 
 
 def default_folder() -> Path:

@@ -19,18 +19,16 @@ from nodes.parts.node import LessonNode, change_period
 from nodes.parts.parameters import Choice, Number, Text, Value
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from robot.topics import SONAR_FRONT
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_STARTED = Phrase("The sonar publishes {topic}", "Сонар публикует {topic}")
-_DISTANCE = Phrase("Distance {metres:.2f} m", "Расстояние {metres:.2f} м")
-_ORDER = Phrase(
-    "parameter min_distance is {min_distance:g}, but must be below max_distance {max_distance:g}",
-    "параметр min_distance равен {min_distance:g}, а должен быть меньше max_distance"
-    " {max_distance:g}",
+_STARTED = N_("The sonar publishes {topic}")
+_DISTANCE = N_("Distance {metres:.2f} m")
+_ORDER = N_(
+    "parameter min_distance is {min_distance:g}, but must be below max_distance {max_distance:g}"
 )
 _LOG_EVERY_S = 0.9
 
@@ -62,7 +60,7 @@ class MockSonar(LessonNode):
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
         self.say.info(_STARTED, topic=topic)
 
-    def contradiction(self, values: Mapping[str, Value]) -> Phrase | None:
+    def contradiction(self, values: Mapping[str, Value]) -> str | None:
         """The nearest distance must be nearer than the farthest."""
         return None if float(values["min_distance"]) < float(values["max_distance"]) else _ORDER
 

@@ -24,25 +24,19 @@ from nodes.parts.parameters import Choice, Number, Text, Whole
 from nodes.parts.periodic_thread import PeriodicThread
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
 from robot.frames.tof import TofReader
 from robot.topics import SONAR_FRONT
 from robot.wire.tfluna import BAUD, Model, TofDecoder
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
 
 _LOOK_EVERY_S = 0.1
 
-_STARTED = Phrase("The sonar at {port} publishes {topic}", "Сонар на {port} публикует {topic}")
-_SILENT = Phrase(
-    "No distance from {port} for {seconds:g} s: is it a {model}, and is it wired?",
-    "Нет измерений от {port} уже {seconds:g} с: это {model}? подключён ли он?",
-)
-_GARBLED = Phrase(
-    "Bytes from {port} make no sense: wrong port, wrong baud, or a bad cable?",
-    "Данные от {port} не разобрать: не тот порт, не та скорость или плохой кабель?",
-)
+_STARTED = N_("The sonar at {port} publishes {topic}")
+_SILENT = N_("No distance from {port} for {seconds:g} s: is it a {model}, and is it wired?")
+_GARBLED = N_("Bytes from {port} make no sense: wrong port, wrong baud, or a bad cable?")
 
 
 class TofSonar(LessonNode):

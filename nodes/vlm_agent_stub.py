@@ -17,20 +17,16 @@ from nodes.parts.parameters import Number, Text, Whole
 from nodes.parts.pictures import BadPictureError, bgr
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
-from nodes.parts.speech import Phrase
 from robot.topics import CAMERA
+from text.i18n import N_
 
-_STARTED = Phrase("Waiting for pictures on {topic}", "Жду кадры в {topic}")
-_NONE = Phrase("No picture yet on {topic}", "Кадров в {topic} пока нет")
-_OLD = Phrase("No new picture on {topic} since the last one", "Новых кадров в {topic} нет")
-_SENT = Phrase(
-    "Picture {width}x{height} -> JPEG of {size:.0f} kB, would go to the vision model now",
-    "Кадр {width}x{height} -> JPEG {size:.0f} кБ, сейчас ушёл бы в модель зрения",
-)
-_BAD = Phrase("The picture is refused: {reason}", "Кадр не принят: {reason}")
-_NO_OPENCV = Phrase(
-    "Picture {width}x{height}; no JPEG without OpenCV: pip install opencv-python-headless",
-    "Кадр {width}x{height}; без OpenCV нет JPEG: pip install opencv-python-headless",
+_STARTED = N_("Waiting for pictures on {topic}")
+_NONE = N_("No picture yet on {topic}")
+_OLD = N_("No new picture on {topic} since the last one")
+_SENT = N_("Picture {width}x{height} -> JPEG of {size:.0f} kB, would go to the vision model now")
+_BAD = N_("The picture is refused: {reason}")
+_NO_OPENCV = N_(
+    "Picture {width}x{height}; no JPEG without OpenCV: pip install opencv-python-headless"
 )
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from babel.messages import Catalog
 
 ROOT = Path(__file__).parent.parent
-SOURCES = ("cli", "graph", "launcher", "text", "tui")
+SOURCES = ("cli", "graph", "launcher", "nodes", "robot", "text", "tui")
 KEYWORDS = {"_": None, "N_": None, "ngettext": (1, 2), "say": None}
 
 

@@ -9,9 +9,15 @@ from __future__ import annotations
 import gettext as _gettext
 import os
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from text.plain import filled, plain, plain_lines
+from text.sentences import Words
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 LOCALE = Path(__file__).parent / "locale"
 DOMAIN = "deck"
@@ -48,6 +54,7 @@ def set_language(code: str) -> None:
     _catalogue = _catalogue_of(code)
 
 
+@lru_cache
 def _catalogue_of(code: str) -> _gettext.NullTranslations:
     if code == "en":
         return _gettext.NullTranslations()
@@ -66,7 +73,7 @@ def _(message: str) -> str:
 
 def in_every_language(message: str) -> tuple[str, ...]:
     """Return `message` as each of `LANGUAGES` has it; what is marked by `N_` is looked for so."""
-    return tuple(_catalogue_of(code).gettext(message) for code in LANGUAGES)
+    return tuple(translated(message, code) for code in LANGUAGES)
 
 
 def ngettext(singular: str, plural: str, number: int) -> str:
@@ -79,16 +86,21 @@ def N_(message: str) -> str:  # noqa: N802 - gettext's own name
     return message
 
 
-def said(words: str) -> str:
-    """Return a sentence of the launcher (`text.sentences.say`) in the language spoken now.
+def said(words: str, code: str = "") -> str:
+    """Return a sentence (`text.sentences.say`) in this language, or in the one spoken now.
 
     Its values, and a text that is no such sentence, are made harmless.
     """
-    template = getattr(words, "template", None)
-    if template is None:
+    if not isinstance(words, Words):
         return plain_lines(words)
-    found: dict[str, object] = getattr(words, "values", {})
-    return filled(_(template), {name: _in_words(value) for name, value in found.items()})
+    code = code or _language
+    values = {name: _in_words(value, code) for name, value in words.values.items()}
+    return filled(translated(words.template, code), values)
+
+
+def translated(message: str, code: str) -> str:
+    """Return `message` in this language, whichever is spoken now."""
+    return _catalogue_of(code).gettext(message) if message else ""
 
 
 def decimal(number: str) -> str:
@@ -96,20 +108,32 @@ def decimal(number: str) -> str:
 
     Data keep their point: what is echoed, edited or sent.
     """
-    return number.replace(".", ",") if _language == "ru" else number
+    return _decimal(number, _language)
+
+
+def _decimal(number: str, code: str) -> str:
+    return number.replace(".", ",") if code == "ru" else number
 
 
 class Prose(float):
-    """A number that a template writes as `decimal` does, whatever format it asks for."""
+    """A number that a template writes as its language does, whatever format it asks for."""
+
+    code: str
+
+    def __new__(cls, number: float, code: str = "") -> Self:
+        """Without a `code`, in the language spoken now."""
+        made = super().__new__(cls, number)
+        made.code = code or _language
+        return made
 
     def __format__(self, spec: str) -> str:
-        return decimal(super().__format__(spec))
+        return _decimal(super().__format__(spec), self.code)
 
 
-def _in_words(value: object) -> object:
+def _in_words(value: object, code: str) -> object:
     if isinstance(value, str):
-        return said(value)
-    return Prose(value) if isinstance(value, float) else value
+        return said(value, code)
+    return Prose(value, code) if isinstance(value, float) else value
 
 
 def pick(texts: Mapping[str, str]) -> str:

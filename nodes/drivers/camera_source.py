@@ -10,40 +10,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nodes.parts.parameters import Text
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
 if TYPE_CHECKING:
     import cv2
 
 _TIMEOUT_MS = 5000
-_NO_CAMERA = Phrase(
-    "no such camera; plug it in, or set the parameter source (v4l2-ctl --list-devices); {others}",
-    "нет такой камеры; подключите её или задайте параметр source (v4l2-ctl --list-devices);"
-    " {others}",
+_NO_CAMERA = N_(
+    "no such camera; plug it in, or set the parameter source (v4l2-ctl --list-devices); {others}"
 )
-_NO_DEVICE = Phrase(
-    "it is no camera; v4l2-ctl --list-devices names them", "это не камера; v4l2-ctl --list-devices"
-)
-_NOT_IN_GROUP = Phrase(
-    "no permission; sudo usermod -aG video $USER, then log in again",
-    "нет прав; sudo usermod -aG video $USER, затем войдите заново",
-)
-_NO_PICTURES = Phrase(
+_NO_DEVICE = N_("it is not a camera; v4l2-ctl --list-devices names them")
+_NOT_IN_GROUP = N_("no permission; sudo usermod -aG video $USER, then log in again")
+_NO_PICTURES = N_(
     "it gives no pictures: another program is using it (fuser -v {source}), or it is another device"
-    " of the same camera (v4l2-ctl --list-devices)",
-    "она не даёт кадров: занята другой программой (fuser -v {source}) или это другое устройство"
-    " той же камеры (v4l2-ctl --list-devices)",
+    " of the same camera (v4l2-ctl --list-devices)"
 )
-_NO_FILE = Phrase("no such file", "нет такого файла")
-_NOT_READABLE = Phrase(
-    "no permission to read it (chmod +r {source})", "нет прав на чтение (chmod +r {source})"
-)
-_NO_VIDEO = Phrase(
-    "OpenCV finds no video in it; is it whole?", "OpenCV не находит в нём видео; цел ли он?"
-)
-_NO_ANSWER = Phrase(
-    "nobody answers there, or what comes is no video", "там никто не отвечает или это не видео"
-)
+_NO_FILE = N_("no such file")
+_NOT_READABLE = N_("no permission to read it (chmod +r {source})")
+_NO_VIDEO = N_("OpenCV finds no video in it; is it whole?")
+_NO_ANSWER = N_("nobody answers there, or what comes is not video")
 
 
 class SourceKind(Enum):
@@ -93,7 +78,7 @@ class CameraSource:
             capture.set(cv2.CAP_PROP_FRAME_HEIGHT, height)
         return capture
 
-    def why_not(self) -> Phrase:
+    def why_not(self) -> str:
         """Why it does not open, or gives no picture, and the mend; for `source` and `others`."""
         if self.kind is SourceKind.STREAM:
             return _NO_ANSWER

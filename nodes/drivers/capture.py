@@ -15,7 +15,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 
 from nodes.drivers.camera_source import SourceKind, cameras
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from nodes.drivers.camera_source import CameraSource
     from nodes.parts.speech import Speech
+    from text.i18n import N_
 
 THREAD = "capture"
 SILENT_S = 2.0
@@ -36,15 +37,13 @@ _EARLY = 0.25
 _SAY_EVERY_S = 10.0
 _MOST_FPS = 240.0
 
-_OPEN = Phrase("The camera is {source}", "Камера — {source}")
-_LOST = Phrase(
-    "Lost {source}: no more pictures come", "Потерян источник {source}: кадров больше нет"
-)
-_CANNOT = Phrase("Cannot open {source}: {problem}", "Не удалось открыть {source}: {problem}")
-_OVER = Phrase("{source} is at its end", "{source}: запись закончилась")
-_BROKEN = Phrase("Bad picture from {source}: {problem}", "Испорченный кадр от {source}: {problem}")
-_THERE = Phrase("there is {cameras}", "есть {cameras}")
-_NONE = Phrase("there is no camera at all (/dev/video*)", "камер нет вообще (/dev/video*)")
+_OPEN = N_("The camera is {source}")
+_LOST = N_("Lost {source}: no more pictures come")
+_CANNOT = N_("Cannot open {source}: {problem}")
+_OVER = N_("{source} is at its end")
+_BROKEN = N_("Bad picture from {source}: {problem}")
+_THERE = N_("there is {cameras}")
+_NONE = N_("there is no camera at all (/dev/video*)")
 
 
 @dataclass
@@ -194,7 +193,7 @@ class Capture:
     def _lose(self, count: int) -> None:
         self._complain(_LOST if count else _CANNOT)
 
-    def _complain(self, phrase: Phrase = _CANNOT) -> None:
+    def _complain(self, phrase: str = _CANNOT) -> None:
         self._away()
         there = ", ".join(cameras())
         others = self._say.text(_THERE if there else _NONE, cameras=there)

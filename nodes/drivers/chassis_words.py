@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -15,39 +15,28 @@ if TYPE_CHECKING:
     from nodes.parts.refusals import Refusal
     from nodes.parts.speech import Speech
     from robot.wire.pico import Telemetry
+    from text.i18n import N_
 
-STARTED = Phrase("The chassis at {port} obeys {topic}", "Шасси на {port} исполняет команды {topic}")
-COMMAND_OLD = Phrase(
-    "No wheel command for {seconds:g} s: stop", "Нет команд колёсам дольше {seconds:g} с: стоп"
+STARTED = N_("The chassis at {port} obeys {topic}")
+COMMAND_OLD = N_("No wheel command for {seconds:g} s: stop")
+TOO_FAST = N_("A wheel is asked for {speed:.1f} rad/s of {fastest:g}: both are slowed")
+EMERGENCY = N_("EMERGENCY STOP: the wheels stand until it is released")
+RELEASED = N_("The emergency stop is released; waiting for a new command")
+_REFUSED_BY_PICO = N_(
+    "The Pico has refused {count} lines: damaged on their way, or more than its config.py allows"
 )
-TOO_FAST = Phrase(
-    "A wheel is asked for {speed:.1f} rad/s of {fastest:g}: both are slowed",
-    "От колеса требуют {speed:.1f} рад/с из {fastest:g}: замедляю оба",
-)
-EMERGENCY = Phrase(
-    "EMERGENCY STOP: the wheels stand until it is released",
-    "АВАРИЙНЫЙ СТОП: колёса стоят, пока его не снимут",
-)
-RELEASED = Phrase(
-    "The emergency stop is released; waiting for a new command",
-    "Аварийный стоп снят; жду новой команды",
-)
-_REFUSED_BY_PICO = Phrase(
-    "The Pico has refused {count} lines: damaged on their way, or more than its config.py allows",
-    "Pico отверг строк: {count}; они повреждены по пути или требуют больше, чем в его config.py",
-)
-STANDS = Phrase("The wheels stand: {reasons}", "Колёса стоят: {reasons}")
-_DRIVES = Phrase("ready to drive", "готово к движению")
-_NO_ANSWER = Phrase("no Pico answers at {port}", "Pico не отвечает на {port}")
-_REFUSED = Phrase("refused: {refused}", "отказано: {refused}")
+STANDS = N_("The wheels stand: {reasons}")
+_DRIVES = N_("ready to drive")
+_NO_ANSWER = N_("no Pico answers at {port}")
+_REFUSED = N_("refused: {refused}")
 _FLAGS = {
-    "E": Phrase("emergency stop", "аварийный стоп"),
-    "W": Phrase("no drive line for 250 ms", "нет строк управления 250 мс"),
-    "L": Phrase("fault of the left motor driver", "авария драйвера левого мотора"),
-    "R": Phrase("fault of the right motor driver", "авария драйвера правого мотора"),
-    "U": Phrase("the battery is weak", "батарея разряжена"),
-    "H": Phrase("no handshake", "нет рукопожатия"),
-    "A": Phrase("waiting for a stop", "ждёт команды стоп"),
+    "E": N_("emergency stop"),
+    "W": N_("no drive line for 250 ms"),
+    "L": N_("fault of the left motor driver"),
+    "R": N_("fault of the right motor driver"),
+    "U": N_("the battery is weak"),
+    "H": N_("no handshake"),
+    "A": N_("waiting for a stop"),
 }
 _BAD = frozenset("LRUH")
 """Flags of what is not in order."""

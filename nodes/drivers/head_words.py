@@ -5,60 +5,35 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nodes.parts.parameters import Number, Setting, Switch, Text, Whole
-from nodes.parts.speech import Phrase
 from robot.limits import HEAD_ANGLE, Limits
 from robot.motion.head import HeadJoint
 from robot.wire.lsc16 import BAUD, SERVO
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from nodes.parts.parameters import Value
 
-STARTED = Phrase("The head is ready for {service}", "Голова готова, сервис {service}")
-STARTED_AT_PORT = Phrase(
+STARTED = N_("The head is ready for {service}")
+STARTED_AT_PORT = N_(
     "The head at {port}: {service}; /head_state is what was commanded, for servos do not tell"
-    " where they are",
-    "Голова на {port}: {service}; /head_state — это заданное положение: где они на деле,"
-    " сервоприводы не сообщают",
+    " where they are"
 )
-TURNING = Phrase(
-    "Turning the head to pan {pan}°, tilt {tilt}°", "Поворачиваю голову: pan {pan}°, tilt {tilt}°"
-)
-DONE = Phrase(
-    "The head is there: pan {pan}°, tilt {tilt}°", "Голова на месте: pan {pan}°, tilt {tilt}°"
-)
-WAITING = Phrase(
-    "The head is moving; pan {pan}°, tilt {tilt}° waits for its turn",
-    "Голова движется; pan {pan}°, tilt {tilt}° ждёт своей очереди",
-)
-OUT_OF_RANGE = Phrase(
+TURNING = N_("Turning the head to pan {pan}°, tilt {tilt}°")
+DONE = N_("The head is there: pan {pan}°, tilt {tilt}°")
+WAITING = N_("The head is moving; pan {pan}°, tilt {tilt}° waits for its turn")
+OUT_OF_RANGE = N_(
     "Refused: pan {pan}°, tilt {tilt}° — pan must be from {pan_low:g}° to {pan_high:g}°,"
-    " tilt from {tilt_low:g}° to {tilt_high:g}°",
-    "Отказ: pan {pan}°, tilt {tilt}° — pan нужно от {pan_low:g}° до {pan_high:g}°,"
-    " tilt — от {tilt_low:g}° до {tilt_high:g}°",
+    " tilt from {tilt_low:g}° to {tilt_high:g}°"
 )
-BUSY = Phrase(
-    "Refused: pan {pan}°, tilt {tilt}° — {count} requests are waiting already",
-    "Отказ: pan {pan}°, tilt {tilt}° — в очереди уже {count}",
-)
-NO_HEAD = Phrase(
-    "Refused: pan {pan}°, tilt {tilt}° — {reason}", "Отказ: pan {pan}°, tilt {tilt}° — {reason}"
-)
+BUSY = N_("Refused: pan {pan}°, tilt {tilt}° — {count} requests are waiting already")
+NO_HEAD = N_("Refused: pan {pan}°, tilt {tilt}° — {reason}")
 
-SAME_SERVO = Phrase(
-    "pan_servo and tilt_servo are both {pan_servo}; each joint has a servo of its own",
-    "pan_servo и tilt_servo — оба {pan_servo}; у каждого сочленения свой сервопривод",
-)
+SAME_SERVO = N_("pan_servo and tilt_servo are both {pan_servo}; each joint has a servo of its own")
 _NO_ROOM = {
-    "pan": Phrase(
-        "nothing is left between pan_min and pan_max, with pan_trim {pan_trim:g}",
-        "между pan_min и pan_max ничего не остаётся при pan_trim {pan_trim:g}",
-    ),
-    "tilt": Phrase(
-        "nothing is left between tilt_min and tilt_max, with tilt_trim {tilt_trim:g}",
-        "между tilt_min и tilt_max ничего не остаётся при tilt_trim {tilt_trim:g}",
-    ),
+    "pan": N_("nothing is left between pan_min and pan_max, with pan_trim {pan_trim:g}"),
+    "tilt": N_("nothing is left between tilt_min and tilt_max, with tilt_trim {tilt_trim:g}"),
 }
 
 
@@ -134,7 +109,7 @@ def joint(values: Mapping[str, Value], name: str) -> HeadJoint:
     )
 
 
-def contradiction(values: Mapping[str, Value]) -> Phrase | None:
+def contradiction(values: Mapping[str, Value]) -> str | None:
     """What is wrong with these parameters taken together."""
     if values["pan_servo"] == values["tilt_servo"]:
         return SAME_SERVO

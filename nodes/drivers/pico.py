@@ -11,7 +11,6 @@ import time
 from typing import TYPE_CHECKING
 
 from nodes.drivers.serial_link import SerialLink
-from nodes.parts.speech import Phrase
 from robot.frames.pico import PicoReader
 from robot.wire.pico import (
     PROTOCOL,
@@ -26,6 +25,7 @@ from robot.wire.pico import (
     Welcome,
     encode,
 )
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,20 +35,11 @@ if TYPE_CHECKING:
 _HELLO_EVERY_S = 0.3
 SILENT_AFTER_S = 0.5
 
-_WELCOME = Phrase(
-    "The Pico answers: firmware {firmware}, protocol {protocol}",
-    "Pico отвечает: прошивка {firmware}, протокол {protocol}",
+_WELCOME = N_("The Pico answers: firmware {firmware}, protocol {protocol}")
+_OTHER_PROTOCOL = N_(
+    "The Pico speaks protocol {theirs}, this program {ours}: the wheels stand; flash firmware/pico2"
 )
-_OTHER_PROTOCOL = Phrase(
-    "The Pico speaks protocol {theirs}, this program {ours}: the wheels stand;"
-    " flash firmware/pico2",
-    "Pico говорит по протоколу {theirs}, а программа — {ours}: колёса стоят;"
-    " прошейте firmware/pico2",
-)
-_SILENT = Phrase(
-    "{port} is open, but no Pico answers: another device, or no firmware on it?",
-    "{port} открыт, но Pico не отвечает: другое устройство или нет прошивки?",
-)
+_SILENT = N_("{port} is open, but no Pico answers: another device, or no firmware on it?")
 
 
 class PicoClient:

@@ -21,8 +21,8 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nodes.drivers.serial_frames import SerialFrames
 from nodes.drivers.serial_reads import SerialReads
-from nodes.parts.speech import Phrase
 from robot.frames.protocols import RawReader
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,29 +36,20 @@ _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.1, 1.0
 _WRITE_S = 0.1
 _SAY_EVERY_S = 10.0
 
-_OPEN = Phrase("Connected to {port}, {baud} baud", "Подключено: {port}, {baud} бод")
-_LOST = Phrase("Lost {port}: {problem}", "Потерян {port}: {problem}")
+_OPEN = N_("Connected to {port}, {baud} baud")
+_LOST = N_("Lost {port}: {problem}")
 _PROBLEMS = {
-    errno.ENOENT: Phrase(
-        "no such port; plug it in, or set the parameter port (ls /dev/serial/by-id)",
-        "нет такого порта; подключите его или задайте параметр port (ls /dev/serial/by-id)",
-    ),
-    errno.EACCES: Phrase(
-        "no permission; sudo usermod -aG dialout $USER, then log in again",
-        "нет прав; sudo usermod -aG dialout $USER, затем войдите заново",
-    ),
-    errno.EAGAIN: Phrase(
-        "another program is using it; close that one (fuser -v {port})",
-        "занят другой программой; закройте её (fuser -v {port})",
-    ),
-    errno.ENOTTY: Phrase("it is not a serial port", "это не последовательный порт"),
+    errno.ENOENT: N_("no such port; plug it in, or set the parameter port (ls /dev/serial/by-id)"),
+    errno.EACCES: N_("no permission; sudo usermod -aG dialout $USER, then log in again"),
+    errno.EAGAIN: N_("another program is using it; close that one (fuser -v {port})"),
+    errno.ENOTTY: N_("it is not a serial port"),
 }
 _PROBLEMS[errno.EBUSY] = _PROBLEMS[errno.EAGAIN]
 _PROBLEMS[errno.EPERM] = _PROBLEMS[errno.EACCES]
-_OTHER = Phrase("{problem}", "{problem}")
-_NOT_YET = Phrase("not yet connected to {port}", "ещё не подключено: {port}")
-_CANNOT = Phrase("Cannot open {port}: {problem}", "Не удалось открыть {port}: {problem}")
-_SINCE = Phrase("connected to {port} for {seconds:.0f} s", "подключено: {port}, {seconds:.0f} с")
+_OTHER = "{problem}"
+_NOT_YET = N_("not yet connected to {port}")
+_CANNOT = N_("Cannot open {port}: {problem}")
+_SINCE = N_("connected to {port} for {seconds:.0f} s")
 
 
 @dataclass

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 from diagnostic_msgs.msg import KeyValue
 
 from nodes.drivers.serial_link import SerialLink
-from nodes.parts.speech import Phrase
 from robot.frames.lsc16 import ServoReader
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder, ServoMove, encode
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -29,31 +29,17 @@ _ANSWER_S = 0.3
 """How long an answer takes at the most, a slow adapter included."""
 _LOW_EVERY_S = 60.0
 
-_ANSWERS = Phrase(
-    "The servo controller answers: battery {volts:.1f} V",
-    "Контроллер сервоприводов отвечает: батарея {volts:.1f} В",
-)
-WAS_AWAY = Phrase(
-    "the controller was away while the head moved", "контроллер пропадал, пока голова двигалась"
-)
-_NO_CONNECTION = Phrase("no connection to {port}", "нет связи с {port}")
-_NOT_YET = Phrase(
-    "the controller at {port} has not answered yet", "контроллер на {port} ещё не ответил"
-)
-_SILENT = Phrase(
+_ANSWERS = N_("The servo controller answers: battery {volts:.1f} V")
+WAS_AWAY = N_("the controller was away while the head moved")
+_NO_CONNECTION = N_("no connection to {port}")
+_NOT_YET = N_("the controller at {port} has not answered yet")
+_SILENT = N_(
     "{port} is open, but no LSC-16 answers: is it powered, are RX and TX both wired, {baud} baud?"
-    " (with TX alone set battery_every_s to 0)",
-    "{port} открыт, но LSC-16 не отвечает: есть ли питание, подключены ли и RX, и TX, {baud} бод?"
-    " (если подключён только TX, задайте battery_every_s 0)",
+    " (with TX alone set battery_every_s to 0)"
 )
-_GARBLED = Phrase(
-    "{port} is open, but what comes is no LSC-16: wrong port, or not {baud} baud?",
-    "{port} открыт, но там не LSC-16: не тот порт или не {baud} бод?",
-)
-_LOW = Phrase(
-    "The battery of the servos is low: {volts:.1f} V", "Батарея сервоприводов села: {volts:.1f} В"
-)
-_COMMANDED = Phrase("positions are commanded, not measured", "положения заданные, а не измеренные")
+_GARBLED = N_("{port} is open, but what comes is not LSC-16: wrong port, or not {baud} baud?")
+_LOW = N_("The battery of the servos is low: {volts:.1f} V")
+_COMMANDED = N_("positions are commanded, not measured")
 
 
 class ServoClient:
@@ -108,7 +94,7 @@ class ServoClient:
                 status.level, status.message = status.WARN, self._say.text(_LOW, volts=volts)
         return status
 
-    def _phrase(self) -> Phrase | None:
+    def _phrase(self) -> str | None:
         if not self.link.connected:
             return _NO_CONNECTION
         if not self._every_s:
@@ -118,7 +104,7 @@ class ServoClient:
             return _GARBLED if self._decoder.skipped > self._skipped else _SILENT
         return _NOT_YET if self._battery is None else None
 
-    def _told(self, phrase: Phrase) -> str:
+    def _told(self, phrase: str) -> str:
         return self._say.text(phrase, port=self.link.port, baud=self.link.baud)
 
     def _ask(self) -> None:

@@ -5,84 +5,53 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nodes.drivers.portaudio import IN, OUT
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from nodes.parts.speech import Speech
+    from text.i18n import N_
 
 OPENED = {
-    IN: Phrase("Microphone: {device}, {rate} Hz", "Микрофон: {device}, {rate} Гц"),
-    OUT: Phrase("Speaker: {device}, {rate} Hz", "Динамик: {device}, {rate} Гц"),
+    IN: N_("Microphone: {device}, {rate} Hz"),
+    OUT: N_("Speaker: {device}, {rate} Hz"),
 }
 LOST = {
-    IN: Phrase("Lost the microphone {device}: {problem}", "Потерян микрофон {device}: {problem}"),
-    OUT: Phrase("Lost the speaker {device}: {problem}", "Потерян динамик {device}: {problem}"),
+    IN: N_("Lost the microphone {device}: {problem}"),
+    OUT: N_("Lost the speaker {device}: {problem}"),
 }
 CANNOT = {
-    IN: Phrase("No microphone: {problem}", "Нет микрофона: {problem}"),
-    OUT: Phrase("No speaker: {problem}", "Нет динамика: {problem}"),
+    IN: N_("No microphone: {problem}"),
+    OUT: N_("No speaker: {problem}"),
 }
 SINCE = {
-    IN: Phrase(
-        "microphone {device}, {rate} Hz, for {seconds:.0f} s",
-        "микрофон {device}, {rate} Гц, {seconds:.0f} с",
-    ),
-    OUT: Phrase(
-        "speaker {device}, {rate} Hz, for {seconds:.0f} s",
-        "динамик {device}, {rate} Гц, {seconds:.0f} с",
-    ),
+    IN: N_("microphone {device}, {rate} Hz, for {seconds:.0f} s"),
+    OUT: N_("speaker {device}, {rate} Hz, for {seconds:.0f} s"),
 }
-OFF = Phrase("off, by the parameter", "выключен параметром")
-FAULTY = Phrase("{words}; {faults:.0f} errors a second", "{words}; ошибок в секунду: {faults:.0f}")
-OPENING = Phrase("it is being opened", "открывается")
+OFF = N_("off, by the parameter")
+FAULTY = N_("{words}; {faults:.0f} errors a second")
+OPENING = N_("it is being opened")
 
-EMPTY = Phrase("An empty message for the speaker", "Пустое сообщение для динамика")
-ODD = Phrase(
-    "{count} bytes for the speaker, but a sample has two: the last is left out",
-    "{count} байт для динамика, а в отсчёте их два: последний отброшен",
-)
-WORDS = Phrase(
-    'Words and no sound came for the speaker: "{words}"',
-    "Для динамика пришли слова, а не звук: «{words}»",
-)
-LATE = Phrase(
-    "The speaker is late: the oldest {seconds:.1f} s of sound are dropped",
-    "Динамик не успевает: отброшено {seconds:.1f} с самого старого звука",
-)
-UNPLAYED = Phrase(
-    "There is no speaker now: {seconds:.1f} s of sound are not played",
-    "Динамика сейчас нет: {seconds:.1f} с звука не сыграно",
-)
+EMPTY = N_("An empty message for the speaker")
+ODD = N_("{count} bytes for the speaker, but a sample has two: the last is left out")
+WORDS = N_('Words and no sound came for the speaker: "{words}"')
+LATE = N_("The speaker is late: the oldest {seconds:.1f} s of sound are dropped")
+UNPLAYED = N_("There is no speaker now: {seconds:.1f} s of sound are not played")
 
 _PROBLEMS = {
-    "package": Phrase(
-        "sounddevice is not installed; pip install sounddevice",
-        "не установлен sounddevice; pip install sounddevice",
-    ),
-    "library": Phrase(
-        "PortAudio is not installed; sudo apt install libportaudio2",
-        "не установлен PortAudio; sudo apt install libportaudio2",
-    ),
-    "missing": Phrase(
-        'no device "{device}"; set the parameter to one of these: {detail}',
-        "нет устройства «{device}»; задайте параметром одно из этих: {detail}",
-    ),
-    "none": Phrase(
+    "package": N_("sounddevice is not installed; pip install sounddevice"),
+    "library": N_("PortAudio is not installed; sudo apt install libportaudio2"),
+    "missing": N_('no device "{device}"; set the parameter to one of these: {detail}'),
+    "none": N_(
         "no such sound device; plug it in (arecord -l and aplay -l list them), "
-        "or sudo usermod -aG audio $USER and log in again",
-        "нет такого звукового устройства; подключите его (список: arecord -l, aplay -l) "
-        "или sudo usermod -aG audio $USER и войдите заново",
+        "or sudo usermod -aG audio $USER and log in again"
     ),
-    "busy": Phrase(
-        "another program is using it; close that one (fuser -v /dev/snd/*)",
-        "занято другой программой; закройте её (fuser -v /dev/snd/*)",
-    ),
-    "rate": Phrase("it cannot do {detail} Hz", "оно не поддерживает {detail} Гц"),
-    "gone": Phrase("it is gone; is it unplugged?", "оно пропало; его отключили?"),
-    "silent": Phrase("no sound moves any more", "звук больше не идёт"),
-    "hung": Phrase("PortAudio does not answer", "PortAudio не отвечает"),
-    "died": Phrase("PortAudio has died: {detail}", "PortAudio упал: {detail}"),
-    "other": Phrase("{detail}", "{detail}"),
+    "busy": N_("another program is using it; close that one (fuser -v /dev/snd/*)"),
+    "rate": N_("it cannot do {detail} Hz"),
+    "gone": N_("it is gone; is it unplugged?"),
+    "silent": N_("no sound moves any more"),
+    "hung": N_("PortAudio does not answer"),
+    "died": N_("PortAudio has died: {detail}"),
+    "other": N_("{detail}"),
 }
 
 

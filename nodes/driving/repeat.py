@@ -16,9 +16,9 @@ from nodes.parts.drive import to_message
 from nodes.parts.emergency import EmergencyStopListener
 from nodes.parts.parameters import Number
 from nodes.parts.qos import DEPTH
-from nodes.parts.speech import Phrase
 from robot.topics import DRIVE
 from robot.words import STOP
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
@@ -35,9 +35,7 @@ REPEAT_FOR_S = Number(
 _EVERY_S = 0.1
 _LAST_STOP = Duration(seconds=0.2)
 """How long the last stop may take to reach everybody."""
-_OVER = Phrase(
-    "The command was repeated for {seconds:g} s: stop", "Команда длилась {seconds:g} с: стоп"
-)
+_OVER = N_("The command was repeated for {seconds:g} s: stop")
 
 
 class DriveRepeater:

@@ -14,9 +14,9 @@ from rclpy.event_handler import PublisherEventCallbacks
 from std_msgs.msg import Bool
 
 from nodes.parts.qos import DEPTH, LATCHED
-from nodes.parts.speech import Phrase
 from nodes.parts.stop_memory import KeptStop, StopMemory
 from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,26 +31,22 @@ _TOLD_EVERY_S = 1.0
 _UNKNOWN = "_UNKNOWN_"
 """In the names of a node that has been heard but is not known yet (rmw)."""
 
-_REMEMBERED = Phrase(
-    "EMERGENCY STOP, given before this node was started ({at}): nothing moves until it is released",
-    "АВАРИЙНЫЙ СТОП дан до запуска этого узла ({at}): движения нет, пока его не снимут",
+_REMEMBERED = N_(
+    "EMERGENCY STOP, given before this node was started ({at}): nothing moves until it is released"
 )
-_UNREADABLE = Phrase(
+_UNREADABLE = N_(
     "It is not known whether an emergency stop was given before ({problem}):"
-    " nothing moves until one is released",
-    "Неизвестно, не был ли раньше дан аварийный стоп ({problem}): движения нет, пока его не снимут",
+    " nothing moves until one is released"
 )
-_NOT_KEPT = Phrase(
+_NOT_KEPT = N_(
     "The emergency stop holds, but cannot be written to disk ({problem}): it would not outlive"
-    " this node",
-    "Аварийный стоп действует, но не записан на диск ({problem}): перезапуска узла он не переживёт",
+    " this node"
 )
-_NOT_FORGOTTEN = Phrase(
-    "The emergency stop is released, but stays on disk ({problem}): the next start will be stopped",
-    "Аварийный стоп снят, но остался на диске ({problem}): следующий запуск будет стоять",
+_NOT_FORGOTTEN = N_(
+    "The emergency stop is released, but stays on disk ({problem}): the next start will be stopped"
 )
-_HELD = Phrase("emergency stop until it is released", "аварийный стоп, пока его не снимут")
-_FREE = Phrase("no emergency stop", "аварийного стопа нет")
+_HELD = N_("emergency stop until it is released")
+_FREE = N_("no emergency stop")
 
 
 class EmergencyStopListener:

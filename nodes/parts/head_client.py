@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from example_interfaces.srv import AddTwoInts
 
-from nodes.parts.speech import Phrase
 from robot.topics import HEAD_SERVICE
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,15 +26,10 @@ APPEAR_S = 1.0
 """How long a service that is not there may take to appear: discovery has a tail."""
 _CHECK_EVERY_S = 0.1
 
-ABSENT = Phrase(
-    "the service {service} is not there: is head_controller running?",
-    "сервиса {service} нет: запущен ли head_controller?",
-)
-LATE = Phrase(
-    "no answer from {service} for {seconds:g} s", "нет ответа от {service} дольше {seconds:g} с"
-)
+ABSENT = N_("the service {service} is not there: is head_controller running?")
+LATE = N_("no answer from {service} for {seconds:g} s")
 
-DROPPED = Phrase("dropped for newer commands", "отброшено ради новых команд")
+DROPPED = N_("dropped for newer commands")
 
 
 @dataclass(frozen=True)

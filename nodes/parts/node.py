@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import os
 import sys
 from typing import TYPE_CHECKING, ClassVar
 
@@ -16,7 +15,9 @@ from rclpy.parameter import Parameter
 
 from nodes.parts.parameters import BadValueError, Setting, Value
 from nodes.parts.qos import DEPTH
-from nodes.parts.speech import Phrase, Speech, language
+from nodes.parts.speech import Speech
+from text.i18n import N_, detect
+from text.sentences import say
 from text.suggestions import nearest
 
 if TYPE_CHECKING:
@@ -25,18 +26,11 @@ if TYPE_CHECKING:
     from rclpy.publisher import Publisher
     from rclpy.timer import Timer
 
-_BAD_VALUE = Phrase(
-    "parameter {name} is {value!r}, but must be {expected}; for example: -p {name}:={example}",
-    "параметр {name} равен {value!r}, а должен быть {expected}; например: -p {name}:={example}",
+_BAD_VALUE = N_(
+    "parameter {name} is {value!r}, but must be {expected}; for example: -p {name}:={example}"
 )
-_UNKNOWN_NEAR = Phrase(
-    "there is no parameter {name}; did you mean {near}?",
-    "нет параметра {name}; может быть, {near}?",
-)
-_UNKNOWN = Phrase(
-    "there is no parameter {name}; there are: {known}",
-    "нет параметра {name}; есть: {known}",
-)
+_UNKNOWN_NEAR = N_("there is no parameter {name}; did you mean {near}?")
+_UNKNOWN = N_("there is no parameter {name}; there are: {known}")
 _OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")
 """Beginnings of names that rclpy sees to by itself."""
 
@@ -44,8 +38,8 @@ _OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.
 class NodeUsageError(Exception):
     """The node cannot start as it was asked to; nothing is wrong with its code."""
 
-    def __init__(self, phrase: Phrase, **values: object) -> None:
-        super().__init__(phrase.en.format(**values))
+    def __init__(self, phrase: str, **values: object) -> None:
+        super().__init__(say(phrase, **values))
         self.phrase = phrase
         self.values = values
 
@@ -66,7 +60,7 @@ class LessonNode(Node):
     def __init__(self) -> None:
         super().__init__(self.NAME, automatically_declare_parameters_from_overrides=True)
         logger = self.get_logger()  # type: ignore[no-untyped-call]
-        self.say = Speech(logger, language(os.environ))
+        self.say = Speech(logger, detect())
         self._settings = {setting.name: setting for setting in self.SETTINGS}
         self._values: dict[str, Value] = {}
         self._declare()
@@ -86,7 +80,7 @@ class LessonNode(Node):
         """Current value of a `Switch`."""
         return bool(self._values[name])
 
-    def contradiction(self, _values: Mapping[str, Value]) -> Phrase | None:
+    def contradiction(self, _values: Mapping[str, Value]) -> str | None:
         """What is wrong with these values taken together, None if nothing is."""
         return None
 

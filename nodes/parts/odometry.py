@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from nav_msgs.msg import Odometry
 
 from nodes.parts.qos import NEWEST_OF_ANY
-from nodes.parts.speech import Phrase
 from robot.motion.odometry import Pose, yaw_from_quaternion
 from robot.topics import ODOMETRY
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
 
 ODOM = "odom"
 """The frame in which /odom tells where the robot is (REP-105)."""
-_NO_NUMBER = Phrase("{topic} is no number, not believed", "В {topic} не числа: сообщение не учтено")
+_NO_NUMBER = N_("{topic} is not a number, not believed")
 
 
 class OdometryListener:

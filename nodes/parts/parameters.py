@@ -12,7 +12,8 @@ from typing import Union
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
-from nodes.parts.speech import Phrase
+from text.i18n import N_
+from text.sentences import say
 
 Value = Union[bool, int, float, str]  # noqa: UP007 - evaluated, and Python 3.10 takes it
 
@@ -27,8 +28,8 @@ _KINDS = {
 class BadValueError(ValueError):
     """A value that a parameter cannot take."""
 
-    def __init__(self, expected: Phrase, **values: object) -> None:
-        super().__init__(expected.en.format(**values))
+    def __init__(self, expected: str, **values: object) -> None:
+        super().__init__(say(expected, **values))
         self.expected = expected
         """What would be right, to follow "is X, but must be"."""
         self.values = values
@@ -84,7 +85,7 @@ class Number(Setting):
             if self.low <= number <= self.high:
                 return number
         raise BadValueError(
-            Phrase("a number from {low} to {high} {unit}", "числом от {low} до {high} {unit}"),
+            N_("a number from {low} to {high} {unit}"),
             # As one types them.
             low=f"{self.low:g}",
             high=f"{self.high:g}",
@@ -121,10 +122,7 @@ class Whole(Setting):
         ):
             return value
         raise BadValueError(
-            Phrase(
-                "a whole number from {low} to {high} {unit}",
-                "целым числом от {low} до {high} {unit}",
-            ),
+            N_("a whole number from {low} to {high} {unit}"),
             low=self.low,
             high=self.high,
             unit=self.unit,
@@ -149,7 +147,7 @@ class Switch(Setting):
         """A bool, and nothing that is merely like one."""
         if isinstance(value, bool):
             return value
-        raise BadValueError(Phrase("true or false", "true или false"))
+        raise BadValueError(N_("true or false"))
 
     def expected(self) -> str:
         """The two values."""
@@ -166,9 +164,7 @@ class Text(Setting):
         """A str."""
         if isinstance(value, str) and (value.strip() or self.may_be_empty):
             return value
-        raise BadValueError(
-            Phrase("a text (in quotes if it looks like a number)", "текстом (число — в кавычках)")
-        )
+        raise BadValueError(N_("a text (in quotes if it looks like a number)"))
 
     def expected(self) -> str:
         """Whether it may be empty."""
@@ -185,9 +181,7 @@ class Choice(Setting):
         """One of `choices`."""
         if isinstance(value, str) and value in self.choices:
             return value
-        raise BadValueError(
-            Phrase("one of: {choices}", "одним из: {choices}"), choices=self.expected()
-        )
+        raise BadValueError(N_("one of: {choices}"), choices=self.expected())
 
     def expected(self) -> str:
         """The words."""

@@ -6,28 +6,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nodes.parts.speech import Phrase
+from text.i18n import N_
+from text.sentences import say
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from sensor_msgs.msg import Image
 
 CHANNELS = 3
-_BAD_ENCODING = Phrase(
-    "encoding {encoding}, but only bgr8 and rgb8 are understood",
-    "кодировка {encoding}, а понятны только bgr8 и rgb8",
-)
-_BAD_SIZE = Phrase(
-    "{width}x{height} pixels, {step} bytes a row and {size} bytes do not fit together",
-    "{width}x{height} точек, {step} байт в строке и {size} байт не подходят друг к другу",
-)
+_BAD_ENCODING = N_("encoding {encoding}, but only bgr8 and rgb8 are understood")
+_BAD_SIZE = N_("{width}x{height} pixels, {step} bytes a row and {size} bytes do not fit together")
 
 
 class BadPictureError(ValueError):
     """A message that is no picture; `phrase` and `values` say why."""
 
-    def __init__(self, phrase: Phrase, **values: object) -> None:
-        super().__init__(phrase.en.format(**values))
+    def __init__(self, phrase: str, **values: object) -> None:
+        super().__init__(say(phrase, **values))
         self.phrase = phrase
         self.values = values
 

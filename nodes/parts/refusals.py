@@ -12,8 +12,8 @@ import time
 from typing import TYPE_CHECKING, NamedTuple
 
 from nodes.parts.parameters import Number
-from nodes.parts.speech import Phrase
 from robot.limits import PICO_RAD_S, first_excess
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
@@ -39,34 +39,21 @@ _AHEAD_S = 0.5
 _ANOTHER_CLOCK_S = 30.0
 """Nothing is so long on its way."""
 
-_NO_NUMBER = Phrase(
-    "{source} asks for {value:g} {unit}, which is no number: refused, stop",
-    "{source} просит {value:g} {unit}, а это не число: отказ, стоп",
-)
-_BEYOND = Phrase(
-    "{source} asks for {value:g} {unit}, the limit is {limit:g} {unit}: refused, stop",
-    "{source} просит {value:g} {unit}, предел — {limit:g} {unit}: отказ, стоп",
-)
+_NO_NUMBER = N_("{source} asks for {value:g} {unit}, which is not a number: refused, stop")
+_BEYOND = N_("{source} asks for {value:g} {unit}, the limit is {limit:g} {unit}: refused, stop")
 _UNITS = {
-    "m/s": Phrase("m/s", "м/с"),
-    "rad": Phrase("rad", "рад"),
-    "rad/s": Phrase("rad/s", "рад/с"),
+    "m/s": N_("m/s"),
+    "rad": N_("rad"),
+    "rad/s": N_("rad/s"),
 }
-_OLD = Phrase(
-    "A command of {source} is {age:.1f} s old by its stamp and is not obeyed",
-    "Команде {source} по её метке времени {age:.1f} с, она не исполняется",
-)
-_OTHER_CLOCK = Phrase(
+_OLD = N_("A command of {source} is {age:.1f} s old by its stamp and is not obeyed")
+_OTHER_CLOCK = N_(
     "The stamps of {source} are {age:.1f} s {which} this computer's clock: it is not obeyed;"
-    " set the clocks of both computers (chrony, NTP), or leave the stamps at zero",
-    "Метки времени {source} {which} часов этого компьютера на {age:.1f} с: команды не исполняются;"
-    " сверьте часы обоих компьютеров (chrony, NTP) или оставьте метки нулевыми",
+    " set the clocks of both computers (chrony, NTP), or leave the stamps at zero"
 )
-_BEHIND, _AHEAD = Phrase("behind", "отстают от"), Phrase("ahead of", "опережают показания")
-_SHORT = Phrase(
-    "{value:g} {unit}, limit {limit:g} {unit}", "{value:g} {unit} при пределе {limit:g} {unit}"
-)
-_SHORT_STAMP = Phrase("stamp {age:.1f} s old", "метке {age:.1f} с")
+_BEHIND, _AHEAD = N_("behind"), N_("ahead of")
+_SHORT = N_("{value:g} {unit}, limit {limit:g} {unit}")
+_SHORT_STAMP = N_("stamp {age:.1f} s old")
 
 
 class Refusal(NamedTuple):

@@ -24,7 +24,8 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
 from nodes.parts.node import LessonNode, NodeUsageError
-from nodes.parts.speech import Phrase, Speech, language
+from nodes.parts.speech import Speech
+from text.i18n import N_, detect
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,10 +39,9 @@ DDS_GRACE_S = 3.0
 USAGE = 2
 """Exit code for arguments and parameters that make no sense."""
 
-_FAILED = Phrase("{problem}", "{problem}")
-_NO_ARGUMENTS = Phrase(
-    "does not know {extra}: parameters are given as --ros-args -p name:=value (see --help)",
-    "не знает {extra}: параметры задаются так: --ros-args -p имя:=значение (см. --help)",
+_FAILED = "{problem}"
+_NO_ARGUMENTS = N_(
+    "does not know {extra}: parameters are given as --ros-args -p name:=value (see --help)"
 )
 
 
@@ -59,7 +59,7 @@ def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
     try:
         return _live(node_type, arguments, ending)
     except NodeUsageError as error:
-        speech = Speech(get_logger(node_type.NAME), language(os.environ))
+        speech = Speech(get_logger(node_type.NAME), detect())
         speech.fatal(error.phrase, **error.values)
         return USAGE
     finally:

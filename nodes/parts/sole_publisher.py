@@ -10,7 +10,7 @@ import time
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from rclpy.publisher import Publisher
@@ -29,12 +29,9 @@ _FOUND_WITHIN_S = 5.0
 _FORGOTTEN_S = 25.0
 """After which the middleware has forgotten that."""
 
-_OTHERS = Phrase(
-    "{topic} is also published by {others}: the wheels obey whoever spoke last",
-    "в {topic} публикует ещё и {others}: колёса выполняют последнюю команду, чья бы она ни была",
-)
-_NO_NODE = Phrase("a program without a node's name", "программа без имени узла")
-_NAMESAKE = Phrase("another {name}", "ещё один {name}")
+_OTHERS = N_("{topic} is also published by {others}: the wheels obey whoever spoke last")
+_NO_NODE = N_("a program without a node's name")
+_NAMESAKE = N_("another {name}")
 
 
 class SolePublisher:

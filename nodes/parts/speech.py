@@ -1,37 +1,22 @@
-"""What a node says, in Russian or in English, one line a message whatever is put into it."""
+"""What a node says: its English is in the code, marked by `N_`; the catalogue has its Russian.
+
+One line a message, whatever is put into it.
+"""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from text.fractions import with_comma
+from text.i18n import said
 from text.plain import plain
+from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rclpy.impl.rcutils_logger import RcutilsLogger
 
 LONGEST = 400
 """Characters of a message; the rest is cut off."""
-
-
-@dataclass(frozen=True)
-class Phrase:
-    """One message in both languages, with fields for `str.format`."""
-
-    en: str
-    ru: str
-
-
-def language(environment: Mapping[str, str]) -> str:
-    """`ru` or `en`, by the first of DECK_LANG, LC_ALL, LC_MESSAGES and LANG that is set."""
-    for name in ("DECK_LANG", "LC_ALL", "LC_MESSAGES", "LANG"):
-        if environment.get(name):
-            return "ru" if environment[name].lower().startswith("ru") else "en"
-    return "en"
 
 
 def printable(text: str) -> str:
@@ -46,37 +31,35 @@ class Speech:
     def __init__(self, logger: RcutilsLogger, language: str) -> None:
         self._logger = logger
         self.language = language
-        self._said_s: dict[Phrase, float] = {}
+        self._said_s: dict[str, float] = {}
 
-    def text(self, phrase: Phrase, **values: object) -> str:
+    def text(self, phrase: str, **values: object) -> str:
         """The phrase in this language, printable."""
-        if self.language == "ru":
-            return printable(with_comma(phrase.ru, **values))
-        return printable(phrase.en.format(**values))
+        return printable(said(say(phrase, **values), self.language))
 
     # One line for each severity: rclpy remembers the severity of each line that logs.
 
-    def info(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
+    def info(self, phrase: str, *, every_s: float = 0.0, **values: object) -> None:
         """Log; not more often than every `every_s` seconds."""
         if self._is_due(phrase, every_s):
             self._logger.info(self.text(phrase, **values))
 
-    def warn(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> bool:
+    def warn(self, phrase: str, *, every_s: float = 0.0, **values: object) -> bool:
         """Log a warning; not more often than every `every_s` seconds. Tell whether it was."""
         if is_due := self._is_due(phrase, every_s):
             self._logger.warning(self.text(phrase, **values))
         return is_due
 
-    def error(self, phrase: Phrase, *, every_s: float = 0.0, **values: object) -> None:
+    def error(self, phrase: str, *, every_s: float = 0.0, **values: object) -> None:
         """Log an error; not more often than every `every_s` seconds."""
         if self._is_due(phrase, every_s):
             self._logger.error(self.text(phrase, **values))
 
-    def fatal(self, phrase: Phrase, **values: object) -> None:
+    def fatal(self, phrase: str, **values: object) -> None:
         """Log why the node cannot go on."""
         self._logger.fatal(self.text(phrase, **values))
 
-    def _is_due(self, phrase: Phrase, every_s: float) -> bool:
+    def _is_due(self, phrase: str, every_s: float) -> bool:
         now_s = time.monotonic()
         if every_s and now_s - self._said_s.get(phrase, -every_s) < every_s:
             return False

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from nodes.parts.speech import Phrase, Speech
+from nodes.parts.speech import Speech
 from robot.safety.distance import SafetyZone, Sight, Verdict
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -16,91 +17,50 @@ if TYPE_CHECKING:
     from nodes.safety.distance_sensors import View
     from nodes.safety.snapshot import GateSnapshot
 
-STARTED = Phrase(
-    "Watching the way: closer than {metres:g} m is danger",
-    "Слежу за дорогой: ближе {metres:g} м — опасность",
-)
-EMERGENCY = Phrase(
-    "EMERGENCY STOP: nothing moves until it is released",
-    "АВАРИЙНЫЙ СТОП: движения нет, пока его не снимут",
-)
-RELEASED = Phrase(
-    "The emergency stop is released; waiting for a new command",
-    "Аварийный стоп снят; жду новой команды",
-)
-COMMAND_CUT = Phrase(
-    "The command {speed:.2f} m/s, {steering:.2f} rad is stopped: {reason}",
-    "Команда {speed:.2f} м/с, {steering:.2f} рад остановлена: {reason}",
-)
-COMMAND_OLD = Phrase(
-    "No new command for {seconds:g} s: stop", "Нет новых команд дольше {seconds:g} с: стоп"
-)
-DRIVES = Phrase("{source} drives now", "Теперь едем по {source}")
-IGNORED = Phrase(
-    "{ignored} is ignored: {source} drives, and ranks higher",
-    "{ignored} не слушаю: едем по {source}, он главнее",
-)
-HELD_UP = Phrase(
-    "This node was held up: what has waited meanwhile is not obeyed",
-    "Узел был остановлен: того, что накопилось за это время, не слушаю",
-)
+STARTED = N_("Watching the way: closer than {metres:g} m is danger")
+EMERGENCY = N_("EMERGENCY STOP: nothing moves until it is released")
+RELEASED = N_("The emergency stop is released; waiting for a new command")
+COMMAND_CUT = N_("The command {speed:.2f} m/s, {steering:.2f} rad is stopped: {reason}")
+COMMAND_OLD = N_("No new command for {seconds:g} s: stop")
+DRIVES = N_("{source} drives now")
+IGNORED = N_("{ignored} is ignored: {source} drives, and ranks higher")
+HELD_UP = N_("This node was held up: what has waited meanwhile is not obeyed")
 
 _SIGHTS = {
-    Sight.FREE: Phrase("The way is free ({metres:.2f} m).", "Путь свободен ({metres:.2f} м)."),
-    Sight.CLOSE: Phrase(
-        "EMERGENCY BRAKE! Obstacle at {metres:.2f} m.",
-        "АВАРИЙНОЕ ТОРМОЖЕНИЕ! Препятствие в {metres:.2f} м.",
-    ),
-    Sight.INVALID: Phrase(
-        "The front sonar gives no valid distance ({metres}): treated as danger.",
-        "Передний сонар не даёт расстояния ({metres}): считаю опасностью.",
-    ),
-    Sight.SILENT: Phrase(
-        "The front sonar has been silent for {seconds:.1f} s: treated as danger.",
-        "Передний сонар молчит {seconds:.1f} с: считаю опасностью.",
-    ),
+    Sight.FREE: N_("The way is free ({metres:.2f} m)."),
+    Sight.CLOSE: N_("EMERGENCY BRAKE! Obstacle at {metres:.2f} m."),
+    Sight.INVALID: N_("The front sonar gives no valid distance ({metres}): treated as danger."),
+    Sight.SILENT: N_("The front sonar has been silent for {seconds:.1f} s: treated as danger."),
 }
 _SIGHTS_OUT_OF_RANGE = {
-    Sight.FREE: Phrase("The way is free (nothing in range).", "Путь свободен (преград не видно)."),
-    Sight.CLOSE: Phrase(
-        "EMERGENCY BRAKE! Obstacle too close to measure.",
-        "АВАРИЙНОЕ ТОРМОЖЕНИЕ! Препятствие слишком близко.",
-    ),
+    Sight.FREE: N_("The way is free (nothing in range)."),
+    Sight.CLOSE: N_("EMERGENCY BRAKE! Obstacle too close to measure."),
 }
 """Instead, by REP-117, of a distance that is infinite."""
-_SIGHT_SLOWED = Phrase(
-    "Free to move, slowed to {percent} % ({metres:.2f} m).",
-    "Ехать можно, но медленнее: {percent} % скорости ({metres:.2f} м).",
-)
+_SIGHT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
 _LOG_EVERY_S = 0.9
 
 _VERDICTS = {
-    Verdict.FREE: Phrase("motion is allowed", "движение разрешено"),
-    Verdict.BLOCKED_FORWARD: Phrase("forward is blocked: {why}", "вперёд нельзя: {why}"),
-    Verdict.BLOCKED_BACKWARD: Phrase("backward is blocked: {why}", "назад нельзя: {why}"),
-    Verdict.BLOCKED: Phrase("motion is blocked: {why}", "движение запрещено: {why}"),
-    Verdict.STARTING: Phrase(
-        "just started: nothing moves for a moment", "только что запущен: пока стоим"
-    ),
-    Verdict.EMERGENCY_STOP: Phrase(
-        "emergency stop until it is released", "аварийный стоп, пока его не снимут"
-    ),
+    Verdict.FREE: N_("motion is allowed"),
+    Verdict.BLOCKED_FORWARD: N_("forward is blocked: {why}"),
+    Verdict.BLOCKED_BACKWARD: N_("backward is blocked: {why}"),
+    Verdict.BLOCKED: N_("motion is blocked: {why}"),
+    Verdict.STARTING: N_("just started: nothing moves for a moment"),
+    Verdict.EMERGENCY_STOP: N_("emergency stop until it is released"),
 }
-_PLACES = {"front": Phrase("front", "спереди"), "rear": Phrase("rear", "сзади")}
-_SLOWED = Phrase("slowed to {percent} %: {why}", "замедлен до {percent} %: {why}")
-_AND_IGNORED = Phrase(
-    "; {ignored} is ignored: {source} drives", "; {ignored} не слушаю: едем по {source}"
-)
-_AND_REFUSED = Phrase("; refused: {refused}", "; отказано: {refused}")
+_PLACES = {"front": N_("front"), "rear": N_("rear")}
+_SLOWED = N_("slowed to {percent} %: {why}")
+_AND_IGNORED = N_("; {ignored} is ignored: {source} drives")
+_AND_REFUSED = N_("; refused: {refused}")
 _REASONS = {
-    Sight.FREE: Phrase("{place} {metres:.2f} m", "{place} {metres:.2f} м"),
-    Sight.CLOSE: Phrase("{place} {metres:.2f} m", "{place} {metres:.2f} м"),
-    Sight.INVALID: Phrase("{place} no valid distance", "{place} нет верного расстояния"),
-    Sight.SILENT: Phrase("{place} sonar is silent", "{place} сонар молчит"),
+    Sight.FREE: N_("{place} {metres:.2f} m"),
+    Sight.CLOSE: N_("{place} {metres:.2f} m"),
+    Sight.INVALID: N_("{place} no valid distance"),
+    Sight.SILENT: N_("{place} sonar is silent"),
 }
 _REASONS_OUT_OF_RANGE = {
-    Sight.FREE: Phrase("{place} nothing in range", "{place} преград не видно"),
-    Sight.CLOSE: Phrase("{place} too close to measure", "{place} слишком близко"),
+    Sight.FREE: N_("{place} nothing in range"),
+    Sight.CLOSE: N_("{place} too close to measure"),
 }
 
 
@@ -163,9 +123,7 @@ def _reason(say: Speech, view: View) -> str:
     return say.text(_phrase(view, _REASONS, _REASONS_OUT_OF_RANGE), place=place, metres=metres)
 
 
-def _phrase(
-    view: View, phrases: Mapping[Sight, Phrase], out_of_range: Mapping[Sight, Phrase]
-) -> Phrase:
+def _phrase(view: View, phrases: Mapping[Sight, str], out_of_range: Mapping[Sight, str]) -> str:
     metres = view.reading.distance_m
     if metres is not None and math.isinf(metres):
         return out_of_range.get(view.sight, phrases[view.sight])

@@ -18,13 +18,13 @@ from tf2_msgs.msg import TFMessage
 from nodes.parts.drive import FRAME, from_message
 from nodes.parts.odometry import ODOM
 from nodes.parts.qos import DEPTH
-from nodes.parts.speech import Phrase
 from robot.kinematics import turning_radius
 from robot.limits import SPEED, STEERING, first_excess
 from robot.motion.geometry import quaternion_from_rpy
 from robot.motion.odometry import Pose, advance
 from robot.topics import ODOMETRY, TF
 from robot.words import STOP
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,14 +40,8 @@ WAIT_S = 2.0
 _PERIOD_S = 0.05
 _LOOK_EVERY_S = 0.5
 
-_BEGAN = Phrase(
-    "Nobody publishes {topic}: a simulated base obeys {commands}",
-    "{topic} никто не публикует: команды {commands} исполняет имитатор базы",
-)
-_STEPPED_BACK = Phrase(
-    "Somebody else publishes {topic}: the simulated base is off",
-    "{topic} публикует кто-то другой: имитатор базы выключен",
-)
+_BEGAN = N_("Nobody publishes {topic}: a simulated base obeys {commands}")
+_STEPPED_BACK = N_("Somebody else publishes {topic}: the simulated base is off")
 
 
 class SimulatedBase:

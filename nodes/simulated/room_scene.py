@@ -10,12 +10,12 @@ from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 
 from nodes.parts.qos import DEPTH
-from nodes.parts.speech import Phrase
 from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.motion.odometry import Pose, yaw_from_quaternion
 from robot.topics import HEAD_STATE, MOCK_POSE
 from robot.world.room import LIVING_ROOM
 from robot.world.view import CameraPose, RoomView
+from text.i18n import N_
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,10 +24,7 @@ if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
 
 _PATIENCE_S = 3.0
-_NO_POSE = Phrase(
-    "Nobody publishes {topic}: the picture is that of the start (is mock_robot running?)",
-    "{topic} никто не публикует: картинка — с места старта (запущен ли mock_robot?)",
-)
+_NO_POSE = N_("Nobody publishes {topic}: the picture is that of the start (is mock_robot running?)")
 
 
 class RoomScene:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from text.i18n import N_, translated
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -19,67 +20,39 @@ if TYPE_CHECKING:
 
 TEMPLATES: Mapping[str, str] = MappingProxyType(
     {
-        "too_big": "{size} bytes are too many: {limit} at most",
-        "encoding": "the text is not UTF-8",
-        "value_expected": "a value is expected here",
-        "key_expected": "a field name in double quotes is expected here",
-        "colon_expected": "a colon is expected after the field name",
-        "comma_expected": "a comma or {closing} is expected here",
-        "string_bad": "this text in quotes is not finished, or a character in it needs a backslash",
-        "half_character": "this text holds half a character (a lone surrogate)",
-        "not_finite": "nan and infinity are no numbers that a robot can follow",
-        "decimal_comma": "write a fraction with a point: {mended}",
-        "too_deep": "nested too deeply: {limit} levels at most",
-        "text_after": "nothing may follow the end of the JSON",
-        "duplicate": "the field {name} stands here twice",
-        "missing": "the field {name} is missing",
-        "unknown": "there is no field {name}",
-        "unknown_near": "there is no field {name}: did you mean {near}?",
-        "action": "must be one of {choices}",
-        "object": "must be an object in curly brackets",
-        "list": "must be a list in square brackets",
-        "text": "must be a text in double quotes",
-        "number": "must be a number",
-        "whole": "must be a whole number",
-        "range": "must be from {low:g} to {high:g} {unit}, not {value:g}",
-        "too_many": "{count} commands are too many: {limit} at most",
-        "invalid": "is not valid",
+        "too_big": N_("{size} bytes are too many: {limit} at most"),
+        "encoding": N_("the text is not UTF-8"),
+        "value_expected": N_("a value is expected here"),
+        "key_expected": N_("a field name in double quotes is expected here"),
+        "colon_expected": N_("a colon is expected after the field name"),
+        "comma_expected": N_("a comma or {closing} is expected here"),
+        "string_bad": N_(
+            "this text in quotes is not finished, or a character in it needs a backslash"
+        ),
+        "half_character": N_("this text holds half a character (a lone surrogate)"),
+        "not_finite": N_("nan and infinity are no numbers that a robot can follow"),
+        "decimal_comma": N_("write a fraction with a point: {mended}"),
+        "too_deep": N_("nested too deeply: {limit} levels at most"),
+        "text_after": N_("nothing may follow the end of the JSON"),
+        "duplicate": N_("the field {name} stands here twice"),
+        "missing": N_("the field {name} is missing"),
+        "unknown": N_("there is no field {name}"),
+        "unknown_near": N_("there is no field {name}: did you mean {near}?"),
+        "action": N_("must be one of {choices}"),
+        "object": N_("must be an object in curly brackets"),
+        "list": N_("must be a list in square brackets"),
+        "text": N_("must be a text in double quotes"),
+        "number": N_("must be a number"),
+        "whole": N_("must be a whole number"),
+        "range": N_("must be from {low:g} to {high:g} {unit}, not {value:g}"),
+        "too_many": N_("{count} commands are too many: {limit} at most"),
+        "invalid": N_("is not valid"),
     }
 )
 """Code of a problem to its message in English, for `str.format` with the arguments."""
 
-TEMPLATES_RU: Mapping[str, str] = MappingProxyType(
-    {
-        "too_big": "{size} байт — слишком много: не больше {limit}",
-        "encoding": "текст не в UTF-8",
-        "value_expected": "здесь должно быть значение",
-        "key_expected": "здесь должно быть имя поля в двойных кавычках",
-        "colon_expected": "после имени поля должно быть двоеточие",
-        "comma_expected": "здесь должна быть запятая или {closing}",
-        "string_bad": "кавычка не закрыта, или символ нужно экранировать обратной косой чертой",
-        "half_character": "в этом тексте половина символа (одиночный суррогат)",
-        "not_finite": "nan и бесконечность недопустимы",
-        "decimal_comma": "дробь — через точку: {mended}",
-        "too_deep": "слишком глубокая вложенность: не больше {limit}",
-        "text_after": "после конца JSON ничего быть не должно",
-        "duplicate": "поле {name} здесь дважды",
-        "missing": "нет поля {name}",
-        "unknown": "неизвестное поле {name}",
-        "unknown_near": "неизвестное поле {name}: может быть, {near}?",
-        "action": "должно быть одним из: {choices}",
-        "object": "должно быть объектом в фигурных скобках",
-        "list": "должно быть списком в квадратных скобках",
-        "text": "должно быть текстом в двойных кавычках",
-        "number": "должно быть числом",
-        "whole": "должно быть целым числом",
-        "range": "должно быть от {low:g} до {high:g} {unit}, а не {value:g}",
-        "too_many": "{count} команд — слишком много: не больше {limit}",
-        "invalid": "недопустимо",
-    }
-)
-"""The same in Russian."""
-
-_UNITS_RU = MappingProxyType({"m/s": "м/с", "rad": "рад", "deg": "°"})
+_UNITS = (N_("m/s"), N_("rad"), N_("deg"))
+"""Marked for the catalogue: in Russian a unit has its own letters."""
 _LONGEST_NAME = 40
 
 
@@ -112,12 +85,11 @@ class Problem:
         message = TEMPLATES[code].format(**shown)
         return cls(field_name(path), *place, message, code, MappingProxyType(shown))
 
-    def in_russian(self) -> str:
-        """The message in Russian, without the place."""
-        unit = str(self.args.get("unit", ""))
+    def in_language(self, code: str) -> str:
+        """The message in a language, without the place."""
         # Numbers keep their point: so they are written in the JSON.
-        args = {**self.args, "unit": _UNITS_RU.get(unit, unit)}
-        return TEMPLATES_RU[self.code].format(**args)
+        args = {**self.args, "unit": translated(str(self.args.get("unit", "")), code)}
+        return translated(TEMPLATES[self.code], code).format(**args)
 
     def __str__(self) -> str:
         """Place, field and message in one line."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robot.frames.lines import MOST, WAYS, FrameLine
 from robot.frames.protocols import FrameKind, FramePhrases, noise
+from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 GIVE_UP_S = 0.3
 """The rest of a frame that has not come after this long does not come any more."""
 _PHRASES = {
-    "frames": ("{count} more", "ещё {count}"),
-    "bytes": ("{count} more bytes", "ещё байт: {count}"),
+    "frames": N_("{count} more"),
+    "bytes": N_("{count} more bytes"),
 }
 
 

@@ -12,22 +12,20 @@ from robot.wire.lsc16 import (
     ServoMove,
     decode,
 )
+from text.i18n import N_
 
 _HEAD = b"\x55\x55"
 _LENGTHS = range(2, 54)
 """What the third byte may say: params + 2, with 16 servos at most."""
 _PHRASES = {
-    "move": ("move in {time} ms: {servos}", "движение за {time} мс: {servos}"),
-    "servo": ("servo {servo} to {pulse} us", "серво {servo} → {pulse} мкс"),
-    "run": ("group {group} runs {times} times", "группа {group} выполняется, раз: {times}"),
-    "complete": (
-        "group {group} has ended ({times} times)",
-        "группа {group} закончена (раз: {times})",
-    ),
-    "stop": ("group stops", "группа остановлена"),
-    "ask": ("how is the battery?", "запрос напряжения батареи"),
-    "battery": ("battery {volts:.2f} V", "батарея {volts:.2f} В"),
-    "bad": ("NO FRAME OF AN LSC-16", "НЕ КАДР LSC-16"),
+    "move": N_("move in {time} ms: {servos}"),
+    "servo": N_("servo {servo} to {pulse} us"),
+    "run": N_("group {group} runs {times} times"),
+    "complete": N_("group {group} has ended ({times} times)"),
+    "stop": N_("group stops"),
+    "ask": N_("how is the battery?"),
+    "battery": N_("battery {volts:.2f} V"),
+    "bad": N_("NO FRAME OF AN LSC-16"),
 }
 
 

@@ -17,51 +17,26 @@ from robot.wire.pico import (
     Welcome,
     parse,
 )
+from text.i18n import N_, translated
 
 _LINE = re.compile(rb"([^\r\n]*)[\r\n]+")
 _CHECKED = re.compile(rb"\$([^$*]*)\*([0-9A-Fa-f]{4})")
 _PHRASES = {
-    "hello": ("hello, protocol {protocol}", "привет, протокол {protocol}"),
-    "drive": (
-        "drive left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad",
-        "движение: левое {left:.2f} правое {right:.2f} рад/с, руль {steering:.2f} рад",
-    ),
-    "halt": ("EMERGENCY STOP", "АВАРИЙНЫЙ СТОП"),
-    "release": ("emergency stop released", "аварийный стоп снят"),
-    "welcome": (
-        "the Pico answers: firmware {firmware}, protocol {protocol}",
-        "Pico отвечает: прошивка {firmware}, протокол {protocol}",
-    ),
-    "telemetry": (
-        "wheels left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad",
-        "колёса: левое {left:.2f} правое {right:.2f} рад/с, руль {steering:.2f} рад",
-    ),
-    "battery": (", {value:.2f} V", ", {value:.2f} В"),
-    "amperes": (", {side} {value:.2f} A", ", {side} {value:.2f} А"),
-    "left": ("left", "левый"),
-    "right": ("right", "правый"),
-    "flags": (", flags: {flags}", ", флаги: {flags}"),
-    "counts": (
-        ", obeyed {obeyed}, refused {refused}, up {uptime:.1f} s",
-        ", исполнено {obeyed}, отвергнуто {refused}, работает {uptime:.1f} с",
-    ),
-    "end": (", seq {seq}, crc ok", ", № {seq}, crc верна"),
-    "failed": (
-        "CRC FAILED: {told} came, {counted:04X} is right",
-        "CRC НЕ СОШЛАСЬ: пришла {told}, верно {counted:04X}",
-    ),
-    "unknown": ("UNKNOWN LINE, though its crc is right", "НЕИЗВЕСТНАЯ СТРОКА, хотя crc верна"),
-    "cut": ("NO WHOLE LINE", "НЕПОЛНАЯ СТРОКА"),
-}
-_FLAGS_RU = {
-    "E": "аварийный стоп",
-    "W": "нет строк управления 250 мс",
-    "L": "авария левого драйвера",
-    "R": "авария правого драйвера",
-    "U": "батарея разряжена",
-    "H": "нет рукопожатия",
-    "A": "ждёт нулевой скорости",
-    "N": "без энкодеров",
+    "hello": N_("hello, protocol {protocol}"),
+    "drive": N_("drive left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad"),
+    "halt": N_("EMERGENCY STOP"),
+    "release": N_("emergency stop released"),
+    "welcome": N_("the Pico answers: firmware {firmware}, protocol {protocol}"),
+    "telemetry": N_("wheels left {left:.2f} right {right:.2f} rad/s steering {steering:.2f} rad"),
+    "battery": N_(", {value:.2f} V"),
+    "left": N_(", left {value:.2f} A"),
+    "right": N_(", right {value:.2f} A"),
+    "flags": N_(", flags: {flags}"),
+    "counts": N_(", obeyed {obeyed}, refused {refused}, up {uptime:.1f} s"),
+    "end": N_(", seq {seq}, crc ok"),
+    "failed": N_("CRC FAILED: {told} came, {counted:04X} is right"),
+    "unknown": N_("UNKNOWN LINE, though its crc is right"),
+    "cut": N_("NO WHOLE LINE"),
 }
 
 
@@ -70,7 +45,6 @@ class PicoReader:
 
     def __init__(self, language: str) -> None:
         self._language, self._words = language, FramePhrases(language, _PHRASES)
-        self._flags = _FLAGS_RU if language == "ru" else FLAGS
         self._rest = b""
 
     def feed(self, data: bytes) -> list[FramePiece]:
@@ -142,11 +116,13 @@ class PicoReader:
             said += words("battery", value=message.battery_v)
         for side, value in (("left", message.left_a), ("right", message.right_a)):
             if value is not None:
-                said += words("amperes", side=words(side), value=value)
+                said += words(side, value=value)
         uptime_s = message.uptime_ms / 1000
         return said + words(
             "counts", obeyed=message.obeyed, refused=message.refused, uptime=uptime_s
         )
 
     def _named(self, flags: frozenset[str]) -> list[str]:
-        return [name for letter, name in self._flags.items() if letter in flags]
+        return [
+            translated(name, self._language) for letter, name in FLAGS.items() if letter in flags
+        ]

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
-from text.fractions import with_comma
+from text.i18n import N_, said
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -50,20 +51,18 @@ class FrameReader(Protocol):
 class FramePhrases:
     """Phrases of one language."""
 
-    def __init__(self, language: str, phrases: Mapping[str, tuple[str, str]]) -> None:
-        """`phrases`: key to English and Russian, for `str.format`; `language` is en or ru."""
-        self.language = language
-        self._phrases, self._at = phrases, int(language == "ru")
+    def __init__(self, language: str, phrases: Mapping[str, str]) -> None:
+        """`phrases`: key to English, for `str.format`; `language` is en or ru."""
+        self._language, self._phrases = language, phrases
 
     def __call__(self, key: str, **values: object) -> str:
         """The phrase with its values."""
-        phrase = self._phrases[key][self._at]
-        return with_comma(phrase, **values) if self._at else phrase.format(**values)
+        return said(say(self._phrases[key], **values), self._language)
 
 
 _NOISE = {
-    "one": ("noise 1 byte", "шум, байт: 1"),
-    "many": ("noise {count} bytes", "шум, байт: {count}"),
+    "one": N_("noise 1 byte"),
+    "many": N_("noise {count} bytes"),
 }
 
 
@@ -140,7 +139,7 @@ def _find(stream: bytes, head: bytes, at: int) -> int:
 class RawReader:
     """Shows bytes as they come, where nobody knows what they mean."""
 
-    _PHRASES = {"raw": ("bytes: {count}", "байт: {count}")}  # noqa: RUF012
+    _PHRASES = {"raw": N_("bytes: {count}")}  # noqa: RUF012
 
     def __init__(self, language: str) -> None:
         self._words = FramePhrases(language, self._PHRASES)

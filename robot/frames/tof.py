@@ -7,18 +7,16 @@ import math
 from robot.frames.protocols import FrameKind, FramePhrases, FramePiece, HeadedReader
 from robot.wire.crc import sum8
 from robot.wire.tfluna import SIZE, Model, TofFrame, decode
+from text.i18n import N_
 
 _HEAD = b"\x59\x59"
 _PHRASES = {
-    "distance": ("distance {metres:.2f} m", "расстояние {metres:.2f} м"),
-    "far": ("nothing in range ({centimetres} cm)", "ничего не видно ({centimetres} см)"),
-    "near": ("too close to measure ({centimetres} cm)", "слишком близко ({centimetres} см)"),
-    "none": ("no valid reading ({centimetres} cm)", "негодное измерение ({centimetres} см)"),
-    "rest": (", strength {strength}, {celsius:.1f} °C", ", сигнал {strength}, {celsius:.1f} °C"),
-    "bad": (
-        "CHECKSUM FAILED: {told:02X} came, {counted:02X} is right",
-        "СУММА НЕ СОШЛАСЬ: пришла {told:02X}, верно {counted:02X}",
-    ),
+    "distance": N_("distance {metres:.2f} m"),
+    "far": N_("nothing in range ({centimetres} cm)"),
+    "near": N_("too close to measure ({centimetres} cm)"),
+    "none": N_("no valid reading ({centimetres} cm)"),
+    "rest": N_(", strength {strength}, {celsius:.1f} °C"),
+    "bad": N_("CHECKSUM FAILED: {told:02X} came, {counted:02X} is right"),
 }
 
 

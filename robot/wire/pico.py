@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from robot.limits import Limits
 from robot.wire.line import LineSplitter, unwrap, wrap
+from text.i18n import N_
 
 PROTOCOL = 1
 """Both sides must speak the same one; otherwise the motors stay off."""
@@ -27,14 +28,14 @@ _MILLIAMPERES = Limits(-1, 65_535, "mA")
 _COUNTER = Limits(0, 0xFFFFFFFF, "")
 
 FLAGS = {
-    "E": "emergency stop latched",
-    "W": "watchdog: no drive line for 250 ms",
-    "L": "left motor driver reports a fault",
-    "R": "right motor driver reports a fault",
-    "U": "battery below its limit",
-    "H": "no handshake, or of another protocol",
-    "A": "waiting for a drive line of zero speed",
-    "N": "no encoders: speeds are those asked for",
+    "E": N_("emergency stop latched"),
+    "W": N_("watchdog: no drive line for 250 ms"),
+    "L": N_("left motor driver reports a fault"),
+    "R": N_("right motor driver reports a fault"),
+    "U": N_("battery below its limit"),
+    "H": N_("no handshake, or of another protocol"),
+    "A": N_("waiting for a drive line of zero speed"),
+    "N": N_("no encoders: speeds are those asked for"),
 }
 """Letters of the last field of telemetry; `-` stands for none of them."""
 STANDING_FLAGS = frozenset("EWLRUHA")

@@ -7,7 +7,7 @@ import time
 
 from nodes.parts.node import LessonNode
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
 
 class Sleepy(LessonNode):
@@ -20,7 +20,7 @@ class Sleepy(LessonNode):
         self.every(0.01, self._sleep)
 
     def _sleep(self) -> None:
-        self.say.info(Phrase("asleep", "сплю"))
+        self.say.info(N_("asleep"))
         time.sleep(3600)
 
 

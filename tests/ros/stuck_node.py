@@ -7,7 +7,7 @@ import sys
 
 from nodes.parts.node import LessonNode
 from nodes.parts.runner import run
-from nodes.parts.speech import Phrase
+from text.i18n import N_
 
 
 class Stuck(LessonNode):
@@ -17,7 +17,7 @@ class Stuck(LessonNode):
 
     def __init__(self) -> None:
         super().__init__()
-        self.say.info(Phrase("up", "готов"))
+        self.say.info(N_("up"))
 
     def destroy_node(self) -> None:
         """Wait for an hour; `PyDLL` keeps the lock."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 AHEAD = {
-    "nan": "with the voice, no picture and no valid distance ahead",
+    "nan": "with the voice, no picture and no valid distance straight ahead",
     "inf": "nothing in range ahead",
     "-inf": "something too close to measure ahead",
 }

@@ -169,7 +169,7 @@ def test_silence_and_nonsense_are_a_stop(stage: Stage) -> None:
     stage.wait_moving(-1)
     stage.drive(math.nan)
     stage.assert_stands()
-    stage.chassis.wait_for_words("is no number")
+    stage.chassis.wait_for_words("is not a number")
 
 
 def test_an_emergency_stop_is_latched_in_the_pico_and_survives_this_node(stage: Stage) -> None:

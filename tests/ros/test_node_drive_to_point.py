@@ -226,7 +226,7 @@ def test_odometry_that_falls_silent_or_is_no_number_ends_a_drive(
             assert status == ABORTED
             assert "No /odom for 0.5 s, 1.00 m from the point" in result.message
             wait_for_stop(drive)
-            node.wait_for_words("/odom is no number")
+            node.wait_for_words("/odom is not a number")
 
 
 def test_a_robot_that_does_not_move_ends_a_drive(peer: Peer, ros_domain: int) -> None:

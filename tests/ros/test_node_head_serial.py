@@ -224,10 +224,10 @@ def test_a_controller_that_falls_silent_is_told_and_gets_no_moves(
 def test_another_device_at_the_port_gets_no_moves(head: tuple[Head, ServoBench]) -> None:
     node, bench = head
     bench.says = encode(TofFrame(123, 1000, 25.0))
-    node.wait_says("what comes is no LSC-16")
+    node.wait_says("what comes is not LSC-16")
     assert node.turn(10, 0) == 0
     bench.says = random.Random(3).randbytes(50)
-    node.wait_told(DiagnosticStatus.ERROR, "what comes is no LSC-16")
+    node.wait_told(DiagnosticStatus.ERROR, "what comes is not LSC-16")
     assert node.turn(10, 0) == 0
     assert moves_of(bench) == []
 

@@ -38,22 +38,22 @@ def test_a_source_is_known_by_its_name(name: str, kind: SourceKind, shown: str) 
     [
         ("/dev/video99", "no such camera"),
         ("/dev/null", "no pictures"),
-        ("/dev/shm", "it is no camera"),
+        ("/dev/shm", "it is not a camera"),
         ("http://x", "nobody answers"),
     ],
 )
 def test_why_it_does_not_open_is_told(name: str, words: str) -> None:
-    assert words in CameraSource(name).why_not().en
+    assert words in CameraSource(name).why_not()
 
 
 def test_files_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "film"
-    assert CameraSource(str(path)).why_not().en == "no such file"
+    assert CameraSource(str(path)).why_not() == "no such file"
     path.touch()
-    assert "finds no video" in CameraSource(str(path)).why_not().en
+    assert "finds no video" in CameraSource(str(path)).why_not()
     monkeypatch.setattr(_camera_source.os, "access", lambda *_: False)
-    assert "chmod" in CameraSource(str(path)).why_not().en
-    assert "usermod -aG video" in CameraSource("/dev/null").why_not().en
+    assert "chmod" in CameraSource(str(path)).why_not()
+    assert "usermod -aG video" in CameraSource("/dev/null").why_not()
 
 
 def test_a_number_is_taken_for_the_name_of_a_camera() -> None:

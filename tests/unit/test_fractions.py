@@ -11,8 +11,8 @@ from cli.sessions import show
 from graph.bag.reading import open_bag
 from launcher.status import NodeState, NodeStatus, SessionInfo
 from tests.unit.bags import write_bag
-from text.fractions import with_comma
 from text.i18n import said, set_language
+from text.sentences import say
 from tui.logs.node_list import short_count
 
 if TYPE_CHECKING:
@@ -31,7 +31,9 @@ def _in_russian() -> Iterator[None]:
 
 
 def test_a_number_has_a_comma_and_a_text_keeps_its_point() -> None:
-    assert with_comma("{a:.2f} м, {b}, {c}", a=0.5, b="1.2.0", c=3) == "0,50 м, 1.2.0, 3"
+    words = say("{a:.2f}, {b}, {c}", a=0.5, b="1.2.0", c=3)
+    assert said(words) == said(words, "ru") == "0,50, 1.2.0, 3"
+    assert said(words, "en") == "0.50, 1.2.0, 3"
 
 
 def test_the_nodes_in_the_background(capsys: pytest.CaptureFixture[str]) -> None:

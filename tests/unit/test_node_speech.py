@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.parts.speech import LONGEST, Phrase, Speech, language, printable
+from nodes.parts.speech import LONGEST, Speech, printable
+from text.i18n import detect
 
-GREETING = Phrase("Hello {name}", "Привет {name}")
+GREETING = "The sonar publishes {topic}"
 
 
 class RecordingLogger:
@@ -41,26 +42,28 @@ class RecordingLogger:
     ],
 )
 def test_the_first_variable_that_is_set_decides(environment: dict[str, str], expected: str) -> None:
-    assert language(environment) == expected
+    assert detect(None, environment) == expected
 
 
 def test_each_severity_goes_its_own_way() -> None:
     logger = RecordingLogger()
     speech = Speech(logger, "ru")  # type: ignore[arg-type]
-    speech.info(GREETING, name="a")
-    speech.warn(GREETING, name="b")
-    speech.error(GREETING, name="c")
-    assert logger.lines == [("info", "Привет a"), ("warning", "Привет b"), ("error", "Привет c")]
+    speech.info(GREETING, topic="a")
+    speech.warn(GREETING, topic="b")
+    speech.error(GREETING, topic="c")
+    words = "Сонар публикует {}"
+    levels = zip(("info", "warning", "error"), "abc", strict=True)
+    assert logger.lines == [(level, words.format(name)) for level, name in levels]
 
 
 def test_a_phrase_can_be_held_back_while_others_pass() -> None:
     logger = RecordingLogger()
     speech = Speech(logger, "en")  # type: ignore[arg-type]
-    other = Phrase("Bye", "Пока")
+    other = "Bye"
     for name in "abc":
-        speech.info(GREETING, every_s=3600.0, name=name)
+        speech.info(GREETING, every_s=3600.0, topic=name)
         speech.info(other)
-    assert [text for _, text in logger.lines] == ["Hello a", "Bye", "Bye", "Bye"]
+    assert [text for _, text in logger.lines] == ["The sonar publishes a", "Bye", "Bye", "Bye"]
 
 
 @given(st.text(st.characters()))
@@ -76,8 +79,8 @@ def test_control_characters_are_shown_as_pictures() -> None:
 
 
 def test_a_fraction_is_written_in_russian_with_a_comma_and_what_one_types_with_a_point() -> None:
-    phrase = Phrase("{near:.2f} m of {topic}, {count}", "{near:.2f} м от {topic}, {count}")
+    phrase = "{near:.2f}, {topic}, {count}"
     values = {"near": 0.364, "topic": "/sonar.front", "count": 3}
     russian, english = (Speech(RecordingLogger(), code) for code in ("ru", "en"))  # type: ignore[arg-type]
-    assert russian.text(phrase, **values) == "0,36 м от /sonar.front, 3"
-    assert english.text(phrase, **values) == "0.36 m of /sonar.front, 3"
+    assert russian.text(phrase, **values) == "0,36, /sonar.front, 3"
+    assert english.text(phrase, **values) == "0.36, /sonar.front, 3"

@@ -37,6 +37,6 @@ def _message(problem: Problem) -> str:
     if language() != "ru":
         return problem.message
     try:
-        return problem.in_russian()
+        return problem.in_language(language())
     except (KeyError, ValueError, IndexError, TypeError):
         return problem.message
