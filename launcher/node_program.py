@@ -61,7 +61,7 @@ def _is_ours(file: str) -> bool:
     import runpy
 
     standard = str(runpy.__file__).rpartition("/")[0]
-    return file.startswith("<frozen runpy") or file.rpartition("/")[0] in (OURS, standard)
+    return file.startswith(("<frozen runpy", f"{OURS}/")) or file.rpartition("/")[0] == standard
 
 
 if __name__ == "__main__":

@@ -240,11 +240,11 @@ def test_a_folder_that_is_there_is_refused(tmp_path: Path) -> None:
 
 RECORD = """
 import resource, sys, time
-from graph import recording_writer
+from graph.recording import writer
 from graph.recording.recorder import Recorder
 from pathlib import Path
 if sys.argv[3] != "0":
-    recording_writer.FLUSH_S = 3600.0  # Else the time, too, decides how much is in a chunk.
+    writer.FLUSH_S = 3600.0  # Else the time, too, decides how much is in a chunk.
     resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]),) * 2)
 recorder = Recorder(int(sys.argv[1]), "localhost", Path(sys.argv[2]))
 recorder.start()
