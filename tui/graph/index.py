@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.housekeeping import is_housekeeping
-from tui.graph.place import Kind
+from tui.graph.place import LISTED, Kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
+    from tui.graph.place import Place
 
     Typed = TopicRow | ServiceRow | ActionRow
 
@@ -22,6 +24,45 @@ class Entry(NamedTuple):
     detail: str = ""
     """Its type, or for a type how many things have it."""
     housekeeping: bool = False
+
+
+class GraphIndex:
+    """All there is of each kind, and what of it is listed."""
+
+    def __init__(self) -> None:
+        self.everything = False
+        """Whether ROS's own things are listed."""
+        self.listed: dict[Kind, list[Entry]] = {}
+        """All there is of each kind."""
+        self._installed: tuple[str, ...] = ()
+        """Every type there is on this computer, once somebody has asked for all."""
+
+    def take(self, update: GraphUpdate | None) -> None:
+        """List what is in this graph from now on."""
+        self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
+
+    async def find_installed(self) -> None:
+        """Find the types that are installed, though nobody uses them, for the next `take`."""
+        from graph.messages.browse import interfaces
+
+        self._installed = await asyncio.to_thread(interfaces)
+
+    def all_of(self, kind: Kind) -> list[Entry]:
+        """Return everything of a kind."""
+        return self.listed.get(kind, [])
+
+    def fitting(self, kind: Kind, words: str = "") -> list[Entry]:
+        """Return what is listed of a kind by these words."""
+        return chosen_of(self.all_of(kind), words, everything=self.everything)
+
+    def reveal(self, place: Place, words: str) -> bool:
+        """See that a place is listed; return whether it is by these words too."""
+        entry = next((one for one in self.all_of(place.kind) if one.name == place.name), None)
+        if entry is None:
+            return False
+        if entry.housekeeping:
+            self.everything = True
+        return bool(chosen_of([entry], words, everything=True))
 
 
 def entries(update: GraphUpdate | None, kind: Kind, installed: Iterable[str] = ()) -> list[Entry]:

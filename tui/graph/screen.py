@@ -6,32 +6,43 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.binding import Binding
-from textual.widgets import Input
+from textual.containers import Horizontal
+from textual.widgets import Input, Static, TextArea
 
 from graph.housekeeping import is_housekeeping
-from text.i18n import N_
+from text.i18n import N_, _
 from tui.actions import bindings
+from tui.frame.screen import DeckScreen
 from tui.graph import parameters_dialog as graph_parameters
 from tui.graph.action import ActionPane
-from tui.graph.actions import GRAPH_ACTIONS
-from tui.graph.frame import GraphFrame
+from tui.graph.actions import GRAPH_ACTIONS, Housekeeping
+from tui.graph.ask import AskPane
+from tui.graph.detail import GraphDetail
 from tui.graph.goal import CancelGoalScreen
-from tui.graph.index import chosen_of
+from tui.graph.index import GraphIndex
+from tui.graph.list import GraphList
 from tui.graph.map import GraphMap, middle_of
-from tui.graph.pane import GraphPane
+from tui.graph.node import NodePane
 from tui.graph.parameters import PARAMETER_EVENTS
 from tui.graph.place import LISTED, Kind, Place
 from tui.graph.tabs import GraphTabs
+from tui.graph.trail import Trail
 from tui.graph.type_tree import GraphTypeTree
+from tui.graph.words import why_empty
+from tui.widgets.field import Field
 from tui.widgets.rows import Rows
 
 if TYPE_CHECKING:
-    from graph.data import SeenGoal
+    from textual.app import ComposeResult
+
+    from graph.data import GraphUpdate, SeenGoal
+    from tui.graph.index import Entry
+    from tui.graph.pane import GraphPane
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 
-class GraphScreen(GraphFrame):
-    """Follows links, goes back, and asks what is to be asked."""
+class GraphScreen(DeckScreen):
+    """Kinds and filter above a list and the detail of the chosen one, or above the drawing."""
 
     tab: ClassVar[str] = "graph"
     about: ClassVar[str] = N_(
@@ -44,6 +55,172 @@ class GraphScreen(GraphFrame):
         # An action on Tab takes away what every screen does with it where the action cannot be.
         Binding("tab", "app.focus_next", show=False),
     ]
+
+    DEFAULT_CSS = """
+    GraphScreen {
+        #graph-bar { height: 1; }
+        #graph-filter { width: 1fr; margin-left: 1; }
+        #graph-count { width: auto; padding: 0 1; color: $text-muted; }
+        #graph-body { height: 1fr; }
+        #graph-detail { width: 1fr; height: 1fr; border-left: solid $panel; }
+        GraphList { width: 26; height: 1fr; }
+        GraphMap { display: none; }
+    }
+    GraphScreen.-map {
+        #graph-body { display: none; }
+        GraphMap { display: block; }
+    }
+    GraphScreen.-tall, GraphScreen.-high {
+        AskPane GraphLinks { max-height: 8; }
+        .ask-right { border-top: solid $panel; }
+    }
+    GraphScreen.-wide {
+        .ask-body { layout: horizontal; }
+        .ask-right { border-top: none; border-left: solid $panel; }
+    }
+    GraphScreen.-tiny GraphList { width: 14; }
+    GraphScreen.-home GraphList { width: 40; }
+    GraphScreen.-wide GraphList { width: 60; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.trail = Trail()
+        self.index = GraphIndex()
+        self._detail = GraphDetail()
+        self._goals_of: set[str] = set()
+        """Whose goals were asked for."""
+
+    def compose_body(self) -> ComposeResult:
+        """Kinds and filter above list and detail."""
+        with Horizontal(id="graph-bar"):
+            yield GraphTabs()
+            yield Field(id="graph-filter", compact=True, select_on_focus=False)
+            yield Static(id="graph-count", markup=False)
+        with Horizontal(id="graph-body"):
+            yield GraphList()
+            yield self._detail
+        yield GraphMap()
+
+    # What is in front
+
+    @property
+    def names(self) -> GraphList:
+        """The names of one kind."""
+        return self.query_one(GraphList)
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether letters go into a text."""
+        return isinstance(self.focused, (Input, TextArea))
+
+    @property
+    def filter(self) -> Input:
+        """Where the words of the filter are typed."""
+        return self.query_one("#graph-filter", Input)
+
+    @property
+    def map(self) -> GraphMap:
+        """The drawing."""
+        return self.query_one(GraphMap)
+
+    @property
+    def draws(self) -> bool:
+        """Whether the drawing is in front."""
+        return self.has_class("-map")
+
+    @property
+    def pane(self) -> GraphPane | None:
+        """The detail in front."""
+        return self._detail.pane_of(self.trail.here)
+
+    @property
+    def shows_pane(self) -> bool:
+        """Whether the detail is seen: neither the map nor an empty list is in its place."""
+        return self.pane is not None and self.pane.display and not self.draws
+
+    @property
+    def node_pane(self) -> NodePane | None:
+        """The detail in front, if it is a node's."""
+        pane = self.pane
+        return pane if isinstance(pane, NodePane) else None
+
+    @property
+    def is_settling(self) -> bool:
+        """Whether what belongs to the chosen place is still to be loaded."""
+        return self.pane is not None and self.pane.is_settling
+
+    @property
+    def shows_parameters(self) -> bool:
+        """Whether parameters are in front."""
+        pane = self.node_pane
+        return pane is not None and pane.shows_parameters and self.shows_pane
+
+    @property
+    def is_in_list(self) -> bool:
+        """Whether keys go to the list of names."""
+        return self.focused is self.names
+
+    @property
+    def ask_pane(self) -> AskPane | None:
+        """The detail in front, if something can be asked there."""
+        pane = self.pane
+        return pane if isinstance(pane, AskPane) else None
+
+    def watch_goals(self) -> set[str]:
+        """Return the action that is shown."""
+        here = self.trail.here
+        return {here.name} if here is not None and here.kind is Kind.ACTION else set()
+
+    def follow_topics(self) -> set[str]:
+        """Return where nodes tell that a parameter has changed, shown now or in a moment."""
+        return {PARAMETER_EVENTS}
+
+    # What is shown
+
+    def take(self, update: GraphUpdate | None) -> None:
+        """Show this graph from now on."""
+        self.index.take(update)
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Show list and detail as things stand."""
+        if not self.is_mounted:
+            return
+        kind, words = self.trail.kind, self.filter.value
+        self.filter.placeholder = _("filter: words of a name or a type")
+        counts = {each: len(self.index.fitting(each)) for each in self.index.listed}
+        self.query_one(GraphTabs).show(kind, counts)
+        shown = self.index.fitting(kind, words)
+        self._count(len(shown), len(self.index.all_of(kind)))
+        self.names.show_entries(kind, shown, self.trail.chosen.get(kind, ""), words)
+        if self.names.chosen_name and not self.trail.chosen.get(kind):
+            self.trail.choose(self.names.chosen_name)
+        self._show_detail(shown)
+        if self.watch_goals() != self._goals_of:
+            self._goals_of = self.watch_goals()
+            self.topics_changed()
+        if self.draws:
+            update = self.feed.update
+            middle = middle_of(update, self.trail.here)
+            self.map.show_node(update, middle, everything=self.index.everything)
+
+    def _show_detail(self, shown: list[Entry]) -> None:
+        pane, here = self.pane, self.trail.here
+        if pane is not None and here is not None and self.names.chosen_name:
+            self._detail.show_place(pane, here.name, everything=self.index.everything)
+            return
+        key, kind = self.deck.keys_of(Housekeeping)[0], self.trail.kind
+        words = why_empty(self.feed, kind, self.index.all_of(kind), all_key=key)
+        self._detail.show_words(*(words if not shown else ("", "")))
+
+    def _count(self, shown: int, everything: int) -> None:
+        words = _("{shown} of {n}").format(shown=shown, n=everything)
+        count = self.query_one("#graph-count", Static)
+        if words != count.content:
+            count.update(words)
+
+    # What happens
 
     def on_mount(self) -> None:
         """Begin in the list."""
@@ -71,8 +248,7 @@ class GraphScreen(GraphFrame):
     def on_language_changed(self, message: LanguageChanged) -> None:
         """Say everything anew."""
         super().on_language_changed(message)
-        for pane in self.query(GraphPane):
-            pane.relabel()
+        self._detail.relabel()
         self.redraw()
 
     @on(Rows.Highlighted, "GraphList")
@@ -130,6 +306,8 @@ class GraphScreen(GraphFrame):
     def _filter_done(self) -> None:
         self.names.focus()
 
+    # What is done
+
     async def go(self, place: Place) -> None:
         """Go where a link leads: here, or to the screen of topics."""
         if place.kind is Kind.TOPIC:
@@ -170,13 +348,8 @@ class GraphScreen(GraphFrame):
     def _arrive(self) -> None:
         """Show the chosen place, though a filter or the lack of `everything` had hidden it."""
         here = self.trail.here
-        if here is not None:
-            listed = {entry.name: entry for entry in self.listed.get(here.kind, [])}
-            entry = listed.get(here.name)
-            if entry is not None and entry.housekeeping:
-                self.everything = True
-            if entry is None or not chosen_of([entry], self.filter.value, everything=True):
-                self.filter.value = ""
+        if here is not None and not self.index.reveal(here, self.filter.value):
+            self.filter.value = ""
         self.redraw()
         (self.map if self.draws else self.names).focus()
         self.refresh_bindings()
@@ -213,11 +386,15 @@ class GraphScreen(GraphFrame):
 
     def toggle_everything(self) -> None:
         """Show or hide what ROS itself needs."""
-        self.everything = not self.everything
-        if self.everything:
+        self.index.everything = not self.index.everything
+        if self.index.everything:
             # It reads the directories of all packages.
-            self.run_worker(self.find_installed(), group="load", exit_on_error=False)
+            self.run_worker(self._find_installed(), group="load", exit_on_error=False)
         self.redraw()
+
+    async def _find_installed(self) -> None:
+        await self.index.find_installed()
+        self.take(self.feed.update)
 
     def save_parameters(self) -> None:
         """Ask for a file, and write the node's parameters into it."""

@@ -1,0 +1,60 @@
+"""The detail beside the list: a pane for each kind of thing, or words where nothing is chosen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from textual.widgets import ContentSwitcher
+
+from tui.graph.action import ActionPane
+from tui.graph.node import NodePane
+from tui.graph.pane import Words
+from tui.graph.place import Kind
+from tui.graph.service import ServicePane
+from tui.graph.type import TypePane
+
+if TYPE_CHECKING:
+    from tui.graph.pane import GraphPane
+    from tui.graph.place import Place
+
+PANES: dict[Kind, type[GraphPane]] = {
+    Kind.NODE: NodePane,
+    Kind.SERVICE: ServicePane,
+    Kind.ACTION: ActionPane,
+    Kind.TYPE: TypePane,
+}
+WORDS = "graph-words"
+
+
+class GraphDetail(ContentSwitcher):
+    """Shows one place at a time; its panes keep what was filled into them."""
+
+    def __init__(self) -> None:
+        self._panes = {kind: pane(id=f"graph-{kind.value}") for kind, pane in PANES.items()}
+        super().__init__(Words(id=WORDS), *self._panes.values(), id="graph-detail", initial=WORDS)
+
+    def pane_of(self, place: Place | None) -> GraphPane | None:
+        """Return the pane that shows places of this kind, None while there is none."""
+        pane = None if place is None else self._panes.get(place.kind)
+        return pane if pane is not None and pane.is_mounted else None
+
+    def show_words(self, headline: str, way_out: str) -> None:
+        """Say why nothing is shown."""
+        self._bring(WORDS)
+        self.query_one(f"#{WORDS}", Words).show(headline, way_out)
+
+    def show_place(self, pane: GraphPane, name: str, *, everything: bool) -> None:
+        """Show what has this full name in its pane, with ROS's own things if `everything`."""
+        self._bring(pane.id)
+        pane.everything = everything
+        pane.show_name(name)
+
+    def relabel(self) -> None:
+        """Say everything anew."""
+        for pane in self._panes.values():
+            pane.relabel()
+
+    def _bring(self, shown: str | None) -> None:
+        if self.current != shown:
+            self.current = shown
+            self.screen.refresh_bindings()
