@@ -22,7 +22,7 @@ from graph.observer.requests import (
     ObserverError,
     Perform,
     PreparePublisher,
-    PublishOnce,
+    PublishMessage,
     RequestQueue,
 )
 from graph.ros import open_ros
@@ -123,7 +123,7 @@ class Observer:
         waits. The future raises PublishError, UnknownTypeError, FieldError or
         ObserverError.
         """
-        request = PublishOnce(topic, type_name, value, latched)
+        request = PublishMessage(topic, type_name, value, latched)
         if latched:
             # An emergency stop is one of these.
             self._requests.hurry(request, lambda node: node.outbox.knows_latched(topic, type_name))

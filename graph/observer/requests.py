@@ -68,7 +68,7 @@ class PreparePublisher:
 
 
 @dataclass(frozen=True)
-class PublishOnce:
+class PublishMessage:
     """Publish one message."""
 
     topic: str

@@ -16,14 +16,14 @@ from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import SERVICES, graph_update
 from tests.tui.snapshots import Look
 from tui.frame.key_bar import KeyBar
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 
 SERVICE, ADD = "/set_head_position", "example_interfaces/srv/AddTwoInts"
 ACTION, DRIVE = "/drive_to_point", "deck_interfaces/action/DriveToPoint"
 
 
 @asynccontextmanager
-async def at(place: Place, graph: RecordedGraph | None = None) -> AsyncIterator[Room]:
+async def at(place: GraphPlace, graph: RecordedGraph | None = None) -> AsyncIterator[Room]:
     """Open the screen with the form of this place filled in by its defaults."""
     async with opened(graph) as room:
         await room.screen.go(place)
@@ -34,13 +34,13 @@ async def at(place: Place, graph: RecordedGraph | None = None) -> AsyncIterator[
 
 @pytest.fixture
 async def service() -> AsyncIterator[Room]:
-    async with at(Place(Kind.SERVICE, SERVICE)) as room:
+    async with at(GraphPlace(GraphKind.SERVICE, SERVICE)) as room:
         yield room
 
 
 @pytest.fixture
 async def action() -> AsyncIterator[Room]:
-    async with at(Place(Kind.ACTION, ACTION)) as room:
+    async with at(GraphPlace(GraphKind.ACTION, ACTION)) as room:
         yield room
 
 
@@ -62,7 +62,7 @@ async def test_a_service_is_called_and_its_answer_shown_with_its_time(service: R
 
 async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
     async with opened() as room:
-        await room.screen.go(Place(Kind.SERVICE, SERVICE))
+        await room.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
         await room.wait_for("✓ fits ")
         assert "tab Fill in" in footer(room)
         await room.press("tab")
@@ -73,7 +73,7 @@ async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
         await room.press(*"1234567", "enter", "8")
         assert pane.form.text.startswith("1234567\n8")
         assert room.app.screen is room.screen
-        assert room.screen.trail.here == Place(Kind.SERVICE, SERVICE)
+        assert room.screen.trail.here == GraphPlace(GraphKind.SERVICE, SERVICE)
         await room.press("escape")
         assert room.screen.is_in_list
 
@@ -83,16 +83,18 @@ async def test_tab_goes_on_from_the_form_to_the_time_out_and_from_a_list_to_its_
         await room.press("tab")
         assert room.screen.focused not in {None, room.screen.names}
         await room.press("escape")
-        await room.screen.go(Place(Kind.SERVICE, SERVICE))
+        await room.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
         await room.wait_for("✓ fits ")
         await room.press("tab", "tab", "backspace", "9")
         assert timeout_field(room).value == "9"
 
 
 @pytest.mark.parametrize(("language", "words"), [("en", "tab Fill in"), ("ru", "tab Заполнить")])
-@pytest.mark.parametrize("place", [Place(Kind.SERVICE, SERVICE), Place(Kind.ACTION, ACTION)])
+@pytest.mark.parametrize(
+    "place", [GraphPlace(GraphKind.SERVICE, SERVICE), GraphPlace(GraphKind.ACTION, ACTION)]
+)
 async def test_the_footer_of_a_small_terminal_says_where_tab_leads(
-    language: str, words: str, place: Place
+    language: str, words: str, place: GraphPlace
 ) -> None:
     async with opened(look=Look((80, 24), language)) as room:
         await room.screen.go(place)
@@ -150,10 +152,10 @@ async def test_the_time_out_is_chosen_below_the_form_and_each_service_keeps_its_
     await service.press("backspace", "3", "0", "ctrl+s")
     await service.wait_for("Still waiting: 0 s of 30 s")
     assert service.graph.waited_s == [30.0]
-    await service.screen.go(Place(Kind.SERVICE, "/camera/set_parameters"))
+    await service.screen.go(GraphPlace(GraphKind.SERVICE, "/camera/set_parameters"))
     await service.wait_for("fits rcl_interfaces/srv/SetParameters")
     assert timeout_field(service).value == "5"
-    await service.screen.go(Place(Kind.SERVICE, SERVICE))
+    await service.screen.go(GraphPlace(GraphKind.SERVICE, SERVICE))
     await service.wait_for("Still waiting: 0 s of 30 s")
     assert timeout_field(service).value == "30"
 
@@ -239,11 +241,11 @@ async def test_what_was_typed_is_there_when_one_comes_back(service: Room) -> Non
 
 
 async def test_names_lead_to_the_type_and_to_the_server(service: Room) -> None:
-    await service.screen.go(Place(Kind.TYPE, ADD))
+    await service.screen.go(GraphPlace(GraphKind.TYPE, ADD))
     await service.wait_for("response")
     assert "int64" in service.seen()
     await service.press("escape")
-    assert service.screen.trail.here == Place(Kind.SERVICE, SERVICE)
+    assert service.screen.trail.here == GraphPlace(GraphKind.SERVICE, SERVICE)
 
 
 async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: Room) -> None:
@@ -417,21 +419,21 @@ async def test_what_is_asked_belongs_to_its_place(action: Room) -> None:
     await action.wait_for("#1")
     await action.press("escape", "left")
     await action.wait_for("not called yet")
-    assert action.screen.trail.kind is Kind.SERVICE
+    assert action.screen.trail.kind is GraphKind.SERVICE
 
 
 async def test_all_types_that_are_installed_can_be_looked_into(service: Room) -> None:
     await service.press("escape", "right", "right")
-    assert service.screen.trail.kind is Kind.TYPE
+    assert service.screen.trail.kind is GraphKind.TYPE
     assert "geometry_msgs/msg/Twist" not in service.seen()
     await service.press("a")
     twist = "geometry_msgs/msg/Twist"
-    await service.wait(lambda: twist in [one.name for one in service.screen.listed[Kind.TYPE]])
+    await service.wait(lambda: twist in [one.name for one in service.screen.listed[GraphKind.TYPE]])
     await service.choose("geometry_msgs/msg/Twist")
     await service.wait_for("geometry_msgs/Vector3")
     await service.press("enter", "right")
     await service.wait_for("float64 = 0.0")
     await service.press("enter")
-    assert service.screen.trail.here == Place(Kind.TYPE, "geometry_msgs/msg/Vector3")
+    assert service.screen.trail.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Vector3")
     await service.press("escape")
-    assert service.screen.trail.here == Place(Kind.TYPE, "geometry_msgs/msg/Twist")
+    assert service.screen.trail.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Twist")

@@ -15,14 +15,14 @@ from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
 
 Step = Callable[[GraphScreen, RecordedGraph], object]
-NODE = Place(Kind.NODE, "/safety_stop")
-SERVICE = Place(Kind.SERVICE, "/set_head_position")
-ACTION = Place(Kind.ACTION, "/drive_to_point")
-TYPE = Place(Kind.TYPE, "sensor_msgs/msg/JointState")
+NODE = GraphPlace(GraphKind.NODE, "/safety_stop")
+SERVICE = GraphPlace(GraphKind.SERVICE, "/set_head_position")
+ACTION = GraphPlace(GraphKind.ACTION, "/drive_to_point")
+TYPE = GraphPlace(GraphKind.TYPE, "sensor_msgs/msg/JointState")
 
 
 def app_of(look: Look, update: GraphUpdate | None = None) -> DeckApp:
@@ -30,7 +30,7 @@ def app_of(look: Look, update: GraphUpdate | None = None) -> DeckApp:
     return look.app("graph", RecordedPad(graph=graph))
 
 
-def at(place: Place, *steps: str | Step) -> Callable[[Pilot[Any]], Awaitable[None]]:
+def at(place: GraphPlace, *steps: str | Step) -> Callable[[Pilot[Any]], Awaitable[None]]:
     """Go to a place, then press keys and take steps."""
 
     async def before(pilot: Pilot[Any]) -> None:
@@ -205,7 +205,7 @@ def test_hostile_names(drawn: bool, snap_compare: SnapCompare) -> None:
         subscribes=("/\u202enwod_edispu", "/日本語"),
     )
     app = app_of(look, graph_update(nodes=(evil, replace(NODE_ROWS[1], name=long))))
-    before = at(Place(Kind.NODE, evil.name), *(("M",) if drawn else ()))
+    before = at(GraphPlace(GraphKind.NODE, evil.name), *(("M",) if drawn else ()))
     assert snap_compare(app, terminal_size=look.size, run_before=before)
 
 

@@ -10,9 +10,9 @@ from textual.events import Key
 from graph.data import GraphUpdate, NodeRow
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tui.graph.map_lines import Drawing, drawing
+from tui.graph.map_lines import MapDrawing, drawing
 from tui.graph.neighbours import neighbours, node_called
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 
 BRAIN = """
 /audio/mic_raw ──────────────┐                ┌▶ /ai_command
@@ -32,14 +32,14 @@ async def room() -> AsyncIterator[Room]:
         yield opened_room
 
 
-def drawn(name: str, width: int, height: int, update: GraphUpdate | None = None) -> Drawing:
+def drawn(name: str, width: int, height: int, update: GraphUpdate | None = None) -> MapDrawing:
     update = update or graph_update()
     node = node_called(update, name)
     assert node is not None
     return drawing(name, neighbours(update, node), width, height)
 
 
-async def held(room: Room, key: str, times: int, place: Place) -> None:
+async def held(room: Room, key: str, times: int, place: GraphPlace) -> None:
     """Press a key as one that is held down, and wait for where that leads.
 
     A busy machine takes a minute for sixty keys if each is waited for.
@@ -50,7 +50,7 @@ async def held(room: Room, key: str, times: int, place: Place) -> None:
     await room.pilot.pause()
 
 
-def text(made: Drawing, width: int) -> str:
+def text(made: MapDrawing, width: int) -> str:
     rows = [[" "] * width for _row in range(made.height)]
     for piece in made.pieces:
         for at, character in enumerate(piece.text, piece.x):
@@ -84,21 +84,21 @@ def test_every_neighbour_can_be_reached() -> None:
 
 
 async def test_arrows_walk_and_enter_goes_on_from_there(room: Room) -> None:
-    assert room.screen.map.here == Place(Kind.NODE, "/safety_stop")
+    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
     await room.press("right", "up", "up", "up", "down")
-    assert room.screen.map.here == Place(Kind.NODE, "/electronic_differential")
+    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/electronic_differential")
     await room.press("enter")
-    assert room.screen.map.here == Place(Kind.NODE, "/electronic_differential")
+    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/electronic_differential")
     assert "/wheel_commands" in room.seen()
     await room.press("escape")
-    assert room.screen.map.here == Place(Kind.NODE, "/safety_stop")
+    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
 
 
 async def test_the_edge_is_not_walked_over(room: Room) -> None:
     await room.press("left", "left", "left")
     for key, times, edge in (
-        ("up", 10, Place(Kind.TOPIC, "/drive")),
-        ("down", 30, Place(Kind.NODE, "/sonar_front")),
+        ("up", 10, GraphPlace(GraphKind.TOPIC, "/drive")),
+        ("down", 30, GraphPlace(GraphKind.NODE, "/sonar_front")),
     ):
         await held(room, key, times, edge)
         await room.press(key)
@@ -106,10 +106,10 @@ async def test_the_edge_is_not_walked_over(room: Room) -> None:
 
 
 async def test_enter_on_a_service_goes_to_its_form(room: Room) -> None:
-    await room.screen.go(Place(Kind.NODE, "/head_controller"))
+    await room.screen.go(GraphPlace(GraphKind.NODE, "/head_controller"))
     await room.pilot.pause()
     await room.press("left", *("up",) * 5, "enter")
-    assert room.screen.trail.here == Place(Kind.SERVICE, "/set_head_position")
+    assert room.screen.trail.here == GraphPlace(GraphKind.SERVICE, "/set_head_position")
     assert not room.screen.draws
     await room.wait_for("fits example_interfaces/srv/AddTwoInts")
 
@@ -135,9 +135,9 @@ async def test_without_a_node_it_says_so(room: Room) -> None:
 async def test_more_neighbours_than_rows_are_scrolled(room: Room) -> None:
     hub = NodeRow("/hub", publishes=tuple(f"/topic_{n:02}" for n in range(60)))
     await room.show(graph_update(nodes=(hub,)))
-    await room.screen.go(Place(Kind.NODE, "/hub"))
+    await room.screen.go(GraphPlace(GraphKind.NODE, "/hub"))
     await room.pilot.pause()
     await room.press("right")
-    await held(room, "down", 60, Place(Kind.TOPIC, "/topic_59"))
+    await held(room, "down", 60, GraphPlace(GraphKind.TOPIC, "/topic_59"))
     assert "/topic_59" in room.seen()
     assert "/hub" in room.seen()

@@ -10,7 +10,7 @@ import pytest
 from graph.data import GraphUpdate, NodeRow
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 from tui.topics.screen import TopicsScreen
 
 
@@ -38,7 +38,7 @@ async def test_a_node_of_somebody_else_is_said_to_be_one(room: Room) -> None:
 
 async def test_what_ros_needs_is_hidden_until_it_is_asked_for(room: Room) -> None:
     await room.press("right")
-    assert room.screen.trail.kind is Kind.SERVICE
+    assert room.screen.trail.kind is GraphKind.SERVICE
     assert "/camera/set_parameters" not in room.seen()
     await room.press("a")
     assert "/camera/set_parameters" in room.seen()
@@ -58,11 +58,11 @@ async def test_a_filter_narrows_down_as_one_types_and_escape_ends_it(room: Room)
 
 async def test_enter_follows_a_link_to_a_service_and_escape_goes_back(room: Room) -> None:
     await room.choose("/head_controller")
-    await room.screen.go(Place(Kind.SERVICE, "/set_head_position"))
+    await room.screen.go(GraphPlace(GraphKind.SERVICE, "/set_head_position"))
     await room.pilot.pause()
     assert room.screen.names.chosen_name == "/set_head_position"
     await room.press("escape")
-    assert room.screen.trail.here == Place(Kind.NODE, "/head_controller")
+    assert room.screen.trail.here == GraphPlace(GraphKind.NODE, "/head_controller")
 
 
 async def test_enter_on_a_topic_goes_to_the_screen_of_topics(room: Room) -> None:
@@ -74,11 +74,11 @@ async def test_enter_on_a_topic_goes_to_the_screen_of_topics(room: Room) -> None
     await room.wait(lambda: topics.table.chosen == "/sensor/sonar_front")
     await room.press("5")
     assert room.app.screen is room.screen
-    assert room.screen.trail.here == Place(Kind.NODE, "/sonar_front")
+    assert room.screen.trail.here == GraphPlace(GraphKind.NODE, "/sonar_front")
 
 
 async def test_a_topic_of_ros_itself_is_shown_though_topics_hides_it(room: Room) -> None:
-    await room.screen.go(Place(Kind.TOPIC, "/rosout"))
+    await room.screen.go(GraphPlace(GraphKind.TOPIC, "/rosout"))
     topics = room.app.screen
     assert isinstance(topics, TopicsScreen)
     await room.wait(lambda: topics.table.chosen == "/rosout")

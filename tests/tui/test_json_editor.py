@@ -13,11 +13,11 @@ from textual.events import Paste
 
 from robot.commands.schema import CommandError, parse_llm
 from text.i18n import set_language
-from tui.composer.json_editor import JsonEditor, Place
+from tui.composer.json_editor import JsonEditor
 from tui.composer.json_tokens import tokens
 from tui.composer.templates import TEMPLATES
 from tui.composer.verdict import JsonVerdict
-from tui.widgets.marked_editor import LONGEST_COLOURED, Token
+from tui.widgets.marked_editor import LONGEST_COLOURED, TextPlace, Token
 
 
 class EditorApp(App[None]):
@@ -25,9 +25,9 @@ class EditorApp(App[None]):
 
     def __init__(self) -> None:
         super().__init__()
-        self.wanted: list[Place] = []
+        self.wanted: list[TextPlace] = []
 
-    def on_json_verdict_wanted(self, message: JsonVerdict.Wanted) -> None:
+    def on_json_verdict_problem_wanted(self, message: JsonVerdict.ProblemWanted) -> None:
         """Note which place was asked for."""
         self.wanted.append(message.place)
 
@@ -104,7 +104,7 @@ def test_templates_are_what_their_titles_say(language: str) -> None:
 async def test_a_line_with_a_problem_is_marked_and_its_value_underlined() -> None:
     app = EditorApp()
     async with app.run_test(size=(60, 12)) as pilot:
-        app.editor.show_problems([Place(2, 12)])
+        app.editor.show_problems([TextPlace(2, 12)])
         await pilot.pause()
         assert app.lines()[1] == '2✗   "speed": 5.0'
         underlined = [
@@ -149,14 +149,14 @@ async def test_a_problem_in_the_list_leads_to_its_place() -> None:
         verdict.query_one("OptionList").focus()
         await pilot.press("home", "enter")
         await pilot.pause()
-        assert app.wanted == [Place(2, 10)]
+        assert app.wanted == [TextPlace(2, 10)]
 
 
 async def test_a_place_outside_of_the_text_is_survived() -> None:
     app = EditorApp()
     async with app.run_test(size=(60, 12)) as pilot:
-        app.editor.show_problems([Place(99, 99), Place(0, 0)])
-        app.editor.go_to(Place(99, 99))
+        app.editor.show_problems([TextPlace(99, 99), TextPlace(0, 0)])
+        app.editor.go_to(TextPlace(99, 99))
         await pilot.pause()
         assert app.editor.cursor_location == (3, 0)
 

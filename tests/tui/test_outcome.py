@@ -14,7 +14,7 @@ from robot.commands.schema import parse_llm
 from tests.tui.recorded import NOW_S, joints, sample
 from text.i18n import set_language
 from tui.composer.outcome import Outcome, delay_text
-from tui.composer.outcome_story import Entry, Story
+from tui.composer.outcome_story import OutcomeEntry, Story
 
 SENT_S = NOW_S + 100
 LOOK_AND_DRIVE = parse_llm(
@@ -203,9 +203,9 @@ class OutcomeApp(App[None]):
 
 
 ENTRIES = (
-    Entry("✓", "/llm_result", "accepted: 2 commands", 0.012),
-    Entry("✗", "set_head_position", "pan -45°, tilt 10°: refused " * 4, 1.2),
-    Entry("·", "/head_state", "pan 0°, tilt 0°", None),
+    OutcomeEntry("✓", "/llm_result", "accepted: 2 commands", 0.012),
+    OutcomeEntry("✗", "set_head_position", "pan -45°, tilt 10°: refused " * 4, 1.2),
+    OutcomeEntry("·", "/head_state", "pan 0°, tilt 0°", None),
 )
 
 

@@ -13,7 +13,7 @@ from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
-from tui.panels.wheels.reading import Wheels, wheels_in
+from tui.panels.wheels.reading import WheelsReading, wheels_in
 from tui.panels.wheels.view import speed_bar
 from tui.panels.wheels.widget import WheelsPanel
 from tui.widgets.dots import Dots, rectangle
@@ -21,9 +21,9 @@ from tui.widgets.dots import Dots, rectangle
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 
 
-def turning(speed: float, steering: float) -> Wheels:
+def turning(speed: float, steering: float) -> WheelsReading:
     speeds = wheel_speeds(speed, steering)
-    return Wheels(speeds.left_m_s, speeds.right_m_s, steering)
+    return WheelsReading(speeds.left_m_s, speeds.right_m_s, steering)
 
 
 def joint_state(**more: Any) -> dict[str, Any]:
@@ -43,7 +43,7 @@ def test_a_joint_state_is_read_by_the_names_of_its_joints() -> None:
     assert wheels.right_m_s == pytest.approx(0.3492)
     assert wheels.radius_m == pytest.approx(0.4576, abs=1e-4)
     mixed = wheels_in(joint_state(name=NAMES[::-1], position=[0.5, 0, 0], velocity=[0, 9, 8]))
-    assert mixed == Wheels(8 * WHEEL_RADIUS_M, 9 * WHEEL_RADIUS_M, 0.5)
+    assert mixed == WheelsReading(8 * WHEEL_RADIUS_M, 9 * WHEEL_RADIUS_M, 0.5)
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ async def test_an_angle_that_no_wheel_can_have_is_named(width: int, height: int)
     panel = WheelsPanel()
     async with alone(panel, width, height).run_test(size=(100, 40)):
         for steering, words in ((1e308, "1e308"), (-1e308, "-1e308"), (7.0, "7")):
-            panel.show(Wheels(0.3, 0.3, steering))
+            panel.show(WheelsReading(0.3, 0.3, steering))
             shown = "\n".join(rows(panel))
             if height > 1:
                 assert f"out of range: {words} rad" in shown
@@ -79,7 +79,7 @@ async def test_an_angle_that_no_wheel_can_have_is_named(width: int, height: int)
 async def test_speeds_that_no_wheel_can_have_are_told_shortly() -> None:
     panel = WheelsPanel()
     async with alone(panel, 44, 14).run_test(size=(100, 40)):
-        panel.show(Wheels(1e308, -1.7e308, 0.5))
+        panel.show(WheelsReading(1e308, -1.7e308, 0.5))
         shown = "\n".join(rows(panel))
         assert "1e308" in shown
         assert "-1.7e308" in shown

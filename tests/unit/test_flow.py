@@ -25,8 +25,8 @@ from tests.tui.recorded_flow import (
     word,
 )
 from tui.flow.book import MOST_CHAINS, FlowBook
-from tui.flow.chains import EARLY_S, LONGEST_S, MOST_STEPS, Chain, Kind, Lane, Step
-from tui.flow.lines import Axis, columns, fit
+from tui.flow.chains import EARLY_S, LONGEST_S, MOST_STEPS, Chain, FlowStep, Lane, StepKind
+from tui.flow.lines import TimeAxis, columns, fit
 from tui.flow.reading import FlowReader, log_steps
 from tui.flow.words import said_by
 
@@ -35,19 +35,19 @@ PROGRAMS = {"brain": "nodes.ai_brain", "ai_driver": "nodes.ai_driver"}
 
 def step(
     at_s: float, lane: Lane = Lane.DRIVE, source: str = "/drive", text: str = "", **more: bool
-) -> Step:
-    return Step(at_s, lane, source, text=text, **more)
+) -> FlowStep:
+    return FlowStep(at_s, lane, source, text=text, **more)
 
 
-def mic(at_s: float, text: str = "hello") -> Step:
+def mic(at_s: float, text: str = "hello") -> FlowStep:
     return step(at_s, Lane.MIC, "/audio/mic_raw", text, begins=True)
 
 
-def said(at_s: float, text: str = "forward") -> Step:
+def said(at_s: float, text: str = "forward") -> FlowStep:
     return step(at_s, Lane.COMMAND, "/ai_command", text, begins=True)
 
 
-def book_of(*steps: Step) -> FlowBook:
+def book_of(*steps: FlowStep) -> FlowBook:
     book = FlowBook()
     book.add(steps)
     return book
@@ -87,8 +87,8 @@ def test_a_brain_may_think_for_long_before_its_command() -> None:
 
 def test_a_command_is_a_persons_whatever_seems_to_have_come_a_hair_earlier() -> None:
     wheels_s, said_s = 1.0 - EARLY_S / 2, 1.0
-    by_node = Step(said_s, Lane.COMMAND, "/ai_command", "/composer", text="left", begins=True)
-    (chain,) = book_of(by_node, Step(wheels_s, Lane.WHEELS, "/wheel_commands", "/gate")).chains
+    by_node = FlowStep(said_s, Lane.COMMAND, "/ai_command", "/composer", text="left", begins=True)
+    (chain,) = book_of(by_node, FlowStep(wheels_s, Lane.WHEELS, "/wheel_commands", "/gate")).chains
     assert [said_by(one, chain) for one in chain.steps] == ["gate", "a person"]
     (chain,) = book_of(mic(0.5), by_node).chains
     assert [said_by(one, chain) for one in chain.steps] == ["", "composer"]
@@ -167,7 +167,7 @@ def test_the_order_of_arrival_within_a_moment_does_not_matter(
 # ---------------------------------------------------------------- reading
 
 
-def read(reader: FlowReader, *samples: object) -> list[Step]:
+def read(reader: FlowReader, *samples: object) -> list[FlowStep]:
     return reader.messages(update(*samples).samples, {})  # type: ignore[arg-type]
 
 
@@ -223,8 +223,8 @@ def test_a_movement_of_the_head_is_its_beginning_and_its_end() -> None:
     poses = [(0.0, 0.0), (0.0, 0.5), (10.0, 0.55), (30.0, 0.8), (45.0, 1.0), (45.0, 1.5), (45, 2)]
     steps = read(reader, *(head(pan, at) for pan, at in poses))
     assert [(one.kind, one.time_s - NOW_S) for one in steps] == [
-        (Kind.HEAD_MOVES, pytest.approx(0.55, abs=1e-5)),
-        (Kind.HEAD_THERE, pytest.approx(1.0, abs=1e-5)),
+        (StepKind.HEAD_MOVES, pytest.approx(0.55, abs=1e-5)),
+        (StepKind.HEAD_THERE, pytest.approx(1.0, abs=1e-5)),
     ]
 
 
@@ -233,7 +233,7 @@ def test_a_head_of_which_nobody_knows_where_it_looks_does_not_move() -> None:
     reader = FlowReader()
     assert read(reader, *unknown) == []
     steps = read(reader, head(30.0, 1.5), head(30.0, 2.0))
-    assert [one.kind for one in steps] == [Kind.HEAD_MOVES, Kind.HEAD_THERE]
+    assert [one.kind for one in steps] == [StepKind.HEAD_MOVES, StepKind.HEAD_THERE]
 
 
 def test_silence_in_the_microphone_says_nothing_and_a_loud_sound_does() -> None:
@@ -272,7 +272,7 @@ def test_a_command_alone_is_a_chain() -> None:
 def test_bars_stay_on_the_axis_and_keep_their_order(
     span: float, width: int, logarithmic: bool, a: float, b: float
 ) -> None:
-    axis = Axis(span, width, logarithmic)
+    axis = TimeAxis(span, width, logarithmic)
     early, late = sorted((a * span, b * span))
     assert 0 <= axis.cell(early) <= axis.cell(late) < width
     bar = axis.bar(early, late)

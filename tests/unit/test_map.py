@@ -14,12 +14,12 @@ from robot.motion.odometry import Point, Pose
 from robot.world.grid import grid_of
 from robot.world.room import LIVING_ROOM
 from tui.panels.map.canvas import Canvas
-from tui.panels.map.field import Extent, Field, bar_length_m, fitted
+from tui.panels.map.field import Extent, Viewport, bar_length_m, fitted
 from tui.panels.map.layers import Layers
 from tui.panels.map.legend import column, entries, rows, scale_bar
 from tui.panels.map.reading import Ground, goal_in, ground_in, pose_in
 from tui.panels.map.scene import FRONT, REAR, Scene, draw_scene, robot_corners
-from tui.panels.map.trail import LEAST_M, MOST, Trail
+from tui.panels.map.trail import LEAST_M, MOST, DrivenPath
 from tui.widgets.drawing import Line, cells_of
 
 ROOM = Extent(-1.0, 4.0, -2.0, 2.0)
@@ -41,7 +41,7 @@ def signs(lines: list[Line], char: str) -> list[tuple[int, int]]:
     return [(x, y) for y, text in enumerate(texts) for x, one in enumerate(text) if one == char]
 
 
-def drawn(scene: Scene, view: Field) -> list[Line]:
+def drawn(scene: Scene, view: Viewport) -> list[Line]:
     canvas = Canvas(view.columns, view.rows)
     draw_scene(canvas, view, scene)
     return canvas.lines()
@@ -77,7 +77,7 @@ def test_a_metre_is_as_long_across_as_upwards_with_x_right_and_y_up() -> None:
 
 @pytest.mark.parametrize("dots_per_m", [0.001, 0.3, 2.9, 12.0, 35.0, 900.0])
 def test_the_scale_bar_is_as_long_as_it_says(dots_per_m: float) -> None:
-    view = Field(0.0, 0.0, dots_per_m, 40, 12)
+    view = Viewport(0.0, 0.0, dots_per_m, 40, 12)
     metres = bar_length_m(view, 12)
     assert 12 / 2.6 <= metres * dots_per_m / 2 <= 12 + 1e-9
     bar = scale_bar(view)
@@ -136,7 +136,7 @@ def test_the_walls_are_where_the_room_has_them(size: tuple[int, int]) -> None:
     assert ground is not None
     assert ground.extent is not None
     view = fitted(ground.extent, *size)
-    lines = Layers().canvas(view, ground, Trail()).lines()
+    lines = Layers().canvas(view, ground, DrivenPath()).lines()
     texts = ["".join(ink.text for ink in line) for line in lines]
     for x_m, y_m, stands in (
         (4.0, 0.0, True),
@@ -164,7 +164,7 @@ def test_a_turned_map_is_turned() -> None:
 
 def test_the_path_is_drawn_on_as_it_would_be_drawn_at_once() -> None:
     view = fitted(ROOM, 30, 10)
-    trail, growing = Trail(), Layers()
+    trail, growing = DrivenPath(), Layers()
     for step in range(200):
         trail.add(1.5 + math.cos(step / 20), math.sin(step / 20) + (2.0 if step == 120 else 0.0))
         together = growing.canvas(view, None, trail).lines()
@@ -176,7 +176,7 @@ def test_the_path_is_drawn_on_as_it_would_be_drawn_at_once() -> None:
 
 
 def test_a_path_is_thinned_torn_and_bounded() -> None:
-    trail = Trail()
+    trail = DrivenPath()
     trail.add(0.0, 0.0)
     assert not trail.add(LEAST_M / 2, 0.0)
     for step in range(1, 5 * MOST):

@@ -79,7 +79,7 @@ class Templates(ComposerAction):
         target.choose_template()
 
 
-class Older(ComposerAction):
+class OlderSent(ComposerAction):
     """What was sent before."""
 
     id = "composer.older"
@@ -94,7 +94,7 @@ class Older(ComposerAction):
         target.recall(older=True)
 
 
-class Newer(ComposerAction):
+class NewerSent(ComposerAction):
     """Back towards what was being written."""
 
     id = "composer.newer"
@@ -128,4 +128,4 @@ class NextProblem(ComposerAction):
         target.go_to_next_problem()
 
 
-COMPOSER_ACTIONS = (Send, SendAnyway, Templates, Older, Newer, NextProblem)
+COMPOSER_ACTIONS = (Send, SendAnyway, Templates, OlderSent, NewerSent, NextProblem)

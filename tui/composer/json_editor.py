@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 from robot.limits import MAX_BYTES
 from tui.composer.json_tokens import tokens
-from tui.widgets.marked_editor import MarkedEditor, Place
+from tui.widgets.marked_editor import MarkedEditor
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from tui.widgets.marked_editor import Token
-
-__all__ = ["JsonEditor", "Place"]
 
 
 class JsonEditor(MarkedEditor):

@@ -17,7 +17,7 @@ from text.i18n import _
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.composer.outcome_story import Entry
+    from tui.composer.outcome_story import OutcomeEntry
 
 DELAY, MARK, TOPIC = 8, 3, 18
 """Cells for the delay, for the mark between its blanks, and for the name of the topic."""
@@ -46,12 +46,12 @@ class Outcome(ScrollView, can_focus=True):
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._headline = ""
-        self._entries: tuple[Entry, ...] = ()
+        self._entries: tuple[OutcomeEntry, ...] = ()
         self._strips: list[Strip] = []
         self._off_colour = False
         """Whether the strips have the colours of another theme."""
 
-    def show(self, headline: str, entries: Sequence[Entry]) -> None:
+    def show(self, headline: str, entries: Sequence[OutcomeEntry]) -> None:
         """Show these entries; drawn only if something is new."""
         shown = (headline, tuple(entries))
         if shown != (self._headline, self._entries):
@@ -64,7 +64,7 @@ class Outcome(ScrollView, can_focus=True):
         return self._headline
 
     @property
-    def entries(self) -> tuple[Entry, ...]:
+    def entries(self) -> tuple[OutcomeEntry, ...]:
         """What is shown."""
         return self._entries
 
@@ -105,7 +105,7 @@ class Outcome(ScrollView, can_focus=True):
         for entry in self._entries:
             self._entry(entry, width)
 
-    def _entry(self, entry: Entry, width: int) -> None:
+    def _entry(self, entry: OutcomeEntry, width: int) -> None:
         base = self.rich_style
         dim = base + Style(dim=True)
         kind = base + self.get_component_rich_style(f"outcome--{KINDS[entry.mark]}", partial=True)

@@ -41,7 +41,7 @@ MOST_OF_A_KIND = 12
 
 
 @dataclass(frozen=True)
-class Entry:
+class OutcomeEntry:
     """One thing that came of it."""
 
     mark: str
@@ -75,7 +75,7 @@ class Story:
         self._target = (
             (math.radians(turns[-1].pan), math.radians(turns[-1].tilt)) if turns else None
         )
-        self._came: dict[str, list[Entry]] = {}
+        self._came: dict[str, list[OutcomeEntry]] = {}
         """Entries by topic or service."""
         self._drive: tuple[float, float] | None = None
         self._drive_s: float | None = None
@@ -101,7 +101,7 @@ class Story:
                 if delay_s >= 0:
                     read(sample, delay_s)
 
-    def entries(self, now_s: float) -> list[Entry]:
+    def entries(self, now_s: float) -> list[OutcomeEntry]:
         """Everything so far in order of time, and what is still awaited."""
         came = [entry for entries in self._came.values() for entry in entries]
         came.sort(key=lambda entry: math.inf if entry.delay_s is None else entry.delay_s)
@@ -110,30 +110,30 @@ class Story:
     def _add(self, mark: str, topic: str, text: str, delay_s: float | None) -> None:
         entries = self._came.setdefault(topic, [])
         if len(entries) < MOST_OF_A_KIND:
-            entries.append(Entry(mark, topic, text, delay_s))
+            entries.append(OutcomeEntry(mark, topic, text, delay_s))
 
-    def _awaited(self, now_s: float) -> Iterable[Entry]:
+    def _awaited(self, now_s: float) -> Iterable[OutcomeEntry]:
         late = now_s - self.sent_s >= ANSWER_WITHIN_S
         if self.failure:
-            yield Entry(
+            yield OutcomeEntry(
                 "✗", LLM_RAW_JSON, _("not sent: {reason}").format(reason=plain(self.failure))
             )
         elif LLM_RESULT in self._came:
             return
         elif DRIVE in self._came:
             if late:
-                yield Entry("·", LLM_RESULT, _("no reply: this parser does not report"))
+                yield OutcomeEntry("·", LLM_RESULT, _("no reply: this parser does not report"))
         elif not self.listeners:
             silence = _("nobody listens to {topic}: is llm_parser running?")
-            yield Entry("✗", LLM_RESULT, silence.format(topic=LLM_RAW_JSON))
+            yield OutcomeEntry("✗", LLM_RESULT, silence.format(topic=LLM_RAW_JSON))
         elif late:
             silence = _("no answer within {seconds} s: is llm_parser running? Listening: {nodes}")
             nodes = plain(", ".join(self.listeners))
-            yield Entry(
+            yield OutcomeEntry(
                 "✗", LLM_RESULT, silence.format(seconds=f"{ANSWER_WITHIN_S:g}", nodes=nodes)
             )
         else:
-            yield Entry("·", LLM_RESULT, _("waiting for an answer"))
+            yield OutcomeEntry("·", LLM_RESULT, _("waiting for an answer"))
 
     def _see_result(self, sample: Sample, delay_s: float) -> None:
         event = words.event_of(sample.value)
@@ -200,7 +200,7 @@ class Story:
             # Nobody knows yet where servos look that were not moved.
             return
         there = all(abs(a - b) < NEAR_RAD for a, b in zip(looks, self._target, strict=True))
-        entry = Entry(
+        entry = OutcomeEntry(
             "✓" if there else "·", HEAD_STATE, words.head_words(*looks), delay_s if there else None
         )
         self._came[HEAD_STATE] = [entry]

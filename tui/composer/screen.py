@@ -16,7 +16,7 @@ from text.plain import plain
 from tui import clock
 from tui.actions import bindings
 from tui.composer.actions import COMPOSER_ACTIONS, Send, SendAnyway
-from tui.composer.json_editor import JsonEditor, Place
+from tui.composer.json_editor import JsonEditor
 from tui.composer.outcome import Outcome
 from tui.composer.outcome_story import FOLLOWED, Story
 from tui.composer.sent import Sent, sent_path
@@ -24,6 +24,7 @@ from tui.composer.templates import TEMPLATES
 from tui.composer.templates_dialog import TemplatesDialog
 from tui.composer.verdict import JsonVerdict
 from tui.frame.screen import DeckScreen
+from tui.widgets.marked_editor import TextPlace
 from tui.widgets.trouble import names
 from tui.yaml_form.words import reason_words
 
@@ -166,8 +167,8 @@ class ComposerScreen(DeckScreen):
         words = _("Not pasted: {limit} bytes at most.").format(limit=MAX_BYTES)
         self.notify(words, severity="warning", markup=False)
 
-    @on(JsonVerdict.Wanted)
-    def _wanted(self, message: JsonVerdict.Wanted) -> None:
+    @on(JsonVerdict.ProblemWanted)
+    def _wanted(self, message: JsonVerdict.ProblemWanted) -> None:
         self.editor.go_to(message.place)
 
     def check(self) -> None:
@@ -179,7 +180,7 @@ class ComposerScreen(DeckScreen):
             self._response, problems = None, error.problems
         had = self.problems
         self.verdict.show(problems, len(self._response.commands) if self._response else 0)
-        self.editor.show_problems(Place(problem.line, problem.column) for problem in problems)
+        self.editor.show_problems(TextPlace(problem.line, problem.column) for problem in problems)
         if bool(had) != bool(problems):
             self.refresh_bindings()
 
@@ -242,8 +243,8 @@ class ComposerScreen(DeckScreen):
         if not self.problems:
             return
         row, column = self.editor.cursor_location
-        places = sorted(Place(problem.line, problem.column) for problem in self.problems)
-        here = Place(row + 1, column + 1)
+        places = sorted(TextPlace(problem.line, problem.column) for problem in self.problems)
+        here = TextPlace(row + 1, column + 1)
         self.editor.go_to(next((place for place in places if place > here), places[0]))
 
     def _listeners(self) -> list[str]:

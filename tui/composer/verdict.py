@@ -10,8 +10,8 @@ from textual.message import Message
 from textual.widgets import OptionList, Static
 
 from text.i18n import _, ngettext
-from tui.composer.json_editor import Place
 from tui.composer.json_words import problem_words
+from tui.widgets.marked_editor import TextPlace
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 class JsonVerdict(Vertical):
     """One line with a mark and a word, and below it every problem; Enter goes to its place."""
 
-    class Wanted(Message):
+    class ProblemWanted(Message):
         """The place of a problem is to be shown."""
 
-        def __init__(self, place: Place) -> None:
+        def __init__(self, place: TextPlace) -> None:
             super().__init__()
             self.place = place
 
@@ -87,4 +87,4 @@ class JsonVerdict(Vertical):
     def _selected(self, event: OptionList.OptionSelected) -> None:
         event.stop()
         problem = self._problems[event.option_index]
-        self.post_message(self.Wanted(Place(problem.line, problem.column)))
+        self.post_message(self.ProblemWanted(TextPlace(problem.line, problem.column)))

@@ -145,7 +145,7 @@ class RestartAll(_AskAll):
     asked = "restart"
 
 
-class MuteNode(_OfNode):
+class MuteChosenNode(_OfNode):
     """Leave out one node's lines."""
 
     id = "log.mute"
@@ -177,7 +177,7 @@ class HearOnly(_OfNode):
         target.filter_log(target.log_filter.alone(target.chosen_node))
 
 
-class Severity(DeckAction):
+class RaiseSeverity(DeckAction):
     """Leave out the least severe lines."""
 
     id = "log.severity"
@@ -193,7 +193,7 @@ class Severity(DeckAction):
         target.filter_log(target.log_filter.next_minimum())
 
 
-class HearAll(DeckAction):
+class HearAllNodes(DeckAction):
     """Leave out nothing."""
 
     id = "log.all"
@@ -257,12 +257,12 @@ DECK_ACTIONS = (
     StartNode,
     StopNode,
     RestartNode,
-    MuteNode,
+    MuteChosenNode,
     HearOnly,
     WriteCommand,
     TurnPage,
-    Severity,
-    HearAll,
+    RaiseSeverity,
+    HearAllNodes,
     StartAll,
     StopAll,
     RestartAll,

@@ -28,7 +28,7 @@ class _Chosen(FlowAction):
         return True if target.chosen_step else None
 
 
-class Older(FlowAction):
+class OlderChain(FlowAction):
     """The utterance before."""
 
     id = "flow.older"
@@ -49,7 +49,7 @@ class Older(FlowAction):
         target.go(1)
 
 
-class Newer(FlowAction):
+class NewerChain(FlowAction):
     """The utterance after."""
 
     id = "flow.newer"
@@ -69,7 +69,7 @@ class Newer(FlowAction):
         target.go(-1)
 
 
-class Pause(FlowAction):
+class PauseFlow(FlowAction):
     """Hold the timeline still."""
 
     id = "flow.pause"
@@ -138,7 +138,7 @@ class OtherLogs(FlowAction):
         target.toggle_logs()
 
 
-class Scale(FlowAction):
+class ChangeTimeScale(FlowAction):
     """A linear axis, or one that spreads the beginning."""
 
     id = "flow.scale"
@@ -169,4 +169,13 @@ class CopyChain(_Chosen):
         target.copy_chain()
 
 
-FLOW_ACTIONS = (Older, Newer, Pause, HideLane, ShowAllLanes, OtherLogs, Scale, CopyChain)
+FLOW_ACTIONS = (
+    OlderChain,
+    NewerChain,
+    PauseFlow,
+    HideLane,
+    ShowAllLanes,
+    OtherLogs,
+    ChangeTimeScale,
+    CopyChain,
+)

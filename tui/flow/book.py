@@ -13,7 +13,7 @@ from tui.flow.chains import EARLY_S, Chain
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from tui.flow.chains import Step
+    from tui.flow.chains import FlowStep
 
 MOST_CHAINS = 50
 MOST_LOOSE = 400
@@ -25,7 +25,7 @@ class FlowBook:
 
     def __init__(self) -> None:
         self._chains: list[Chain] = []
-        self._loose: deque[Step] = deque(maxlen=MOST_LOOSE)
+        self._loose: deque[FlowStep] = deque(maxlen=MOST_LOOSE)
 
     @property
     def chains(self) -> Sequence[Chain]:
@@ -37,14 +37,14 @@ class FlowBook:
         self._chains.clear()
         self._loose.clear()
 
-    def add(self, steps: Iterable[Step]) -> bool:
+    def add(self, steps: Iterable[FlowStep]) -> bool:
         """Take steps in; whether any chain is not what it was."""
         changed = False
         for step in sorted(steps):
             changed = self._place(step) or changed
         return changed
 
-    def _place(self, step: Step) -> bool:
+    def _place(self, step: FlowStep) -> bool:
         chain = self._at(step.time_s)
         if chain is not None and chain.takes(step):
             chain.add(step)
@@ -60,7 +60,7 @@ class FlowBook:
         begun = (one for one in reversed(self._chains) if one.start_s <= time_s + EARLY_S)
         return next(begun, None)
 
-    def _begin(self, first: Step) -> None:
+    def _begin(self, first: FlowStep) -> None:
         # Chains are told apart by their beginnings.
         while any(chain.start_s == first.time_s for chain in self._chains):
             first = replace(first, time_s=math.nextafter(first.time_s, math.inf))

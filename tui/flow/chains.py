@@ -49,7 +49,7 @@ class Lane(str, Enum):
     """What other nodes write into their logs."""
 
 
-class Kind(str, Enum):
+class StepKind(str, Enum):
     """What a step's content is."""
 
     TEXT = "text"
@@ -63,7 +63,7 @@ class Kind(str, Enum):
 
 
 @dataclass(frozen=True, order=True)
-class Step:
+class FlowStep:
     """One thing that happened."""
 
     time_s: float
@@ -73,7 +73,7 @@ class Step:
     """The topic, or the node that wrote the line."""
     said_by: str = field(compare=False, default="")
     """The node that published it; several, comma-separated, where that cannot be told apart."""
-    kind: Kind = field(compare=False, default=Kind.TEXT)
+    kind: StepKind = field(compare=False, default=StepKind.TEXT)
     text: str = field(compare=False, default="")
     figures: tuple[float, ...] = field(compare=False, default=())
     times: int = field(compare=False, default=1)
@@ -81,7 +81,7 @@ class Step:
     begins: bool = field(compare=False, default=False)
     """Whether it may be the first of a chain."""
 
-    def repeats(self, other: Step) -> bool:
+    def repeats(self, other: FlowStep) -> bool:
         """Whether this says the same again."""
         return self._content() == other._content()
 
@@ -93,9 +93,9 @@ class Step:
 class Chain:
     """One beginning, and what followed."""
 
-    def __init__(self, first: Step) -> None:
+    def __init__(self, first: FlowStep) -> None:
         self.first = first
-        self.steps: list[Step] = [first]
+        self.steps: list[FlowStep] = [first]
         """In order of time."""
         self.more = 0
         """Steps beyond `MOST_STEPS`."""
@@ -107,11 +107,11 @@ class Chain:
         """Unix time of the beginning."""
         return self.first.time_s
 
-    def delay_s(self, step: Step) -> float:
+    def delay_s(self, step: FlowStep) -> float:
         """Seconds since the beginning; what seems to have come a hair before it counts as 0."""
         return max(0.0, step.time_s - self.start_s)
 
-    def takes(self, step: Step) -> bool:
+    def takes(self, step: FlowStep) -> bool:
         """Whether a step belongs to this chain and not to a new one."""
         age_s = step.time_s - self.start_s
         if step.begins:
@@ -122,7 +122,7 @@ class Chain:
             step.time_s - self._active_s <= PAUSE_S and age_s <= LONGEST_S
         )
 
-    def _takes_beginning(self, step: Step, age_s: float) -> bool:
+    def _takes_beginning(self, step: FlowStep, age_s: float) -> bool:
         heard_s = self._heard_s.get(step.source)
         if step.lane is Lane.MIC:
             return heard_s is not None and step.time_s - heard_s <= UTTERANCE_S
@@ -132,7 +132,7 @@ class Chain:
         later = _ORDER[step.lane] > _ORDER[self.first.lane]
         return later and age_s <= THINKS_S
 
-    def add(self, step: Step) -> None:
+    def add(self, step: FlowStep) -> None:
         """Take a step in; the same again is counted, not repeated."""
         self._heard_s[step.source] = max(step.time_s, self._heard_s.get(step.source, step.time_s))
         if step.lane is not Lane.LOG:

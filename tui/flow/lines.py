@@ -14,7 +14,7 @@ from tui.flow.chains import Lane
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.flow.chains import Chain, Step
+    from tui.flow.chains import Chain, FlowStep
 
 DELAY = 10
 NARROW, WIDE = 100, 150
@@ -24,7 +24,7 @@ LINEAR_UP_TO_S = 0.02
 """An axis no longer than this needs no logarithm."""
 
 
-class Columns(NamedTuple):
+class FlowColumns(NamedTuple):
     """Widths in cells; the content takes the rest."""
 
     source: int
@@ -34,7 +34,7 @@ class Columns(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Line:
+class FlowLine:
     """One row of the view: its pieces of text, each with the name of its style."""
 
     key: tuple[float, int]
@@ -42,7 +42,7 @@ class Line:
     pieces: tuple[tuple[str, str], ...]
 
 
-def columns(width: int) -> Columns:
+def columns(width: int) -> FlowColumns:
     """Share out a width."""
     if width < NARROW:
         source, said_by, bar = 16, 0, max(8, width // 5)
@@ -51,36 +51,38 @@ def columns(width: int) -> Columns:
     else:
         source, said_by, bar = 24, 26, width // 3
     gaps = 4 if said_by else 3
-    return Columns(source, said_by, bar, max(8, width - DELAY - source - said_by - bar - 2 * gaps))
+    return FlowColumns(
+        source, said_by, bar, max(8, width - DELAY - source - said_by - bar - 2 * gaps)
+    )
 
 
 def lines(
-    chain: Chain, at: str, shown: Sequence[Step], width: int, *, logarithmic: bool, folded: bool
-) -> list[Line]:
+    chain: Chain, at: str, shown: Sequence[FlowStep], width: int, *, logarithmic: bool, folded: bool
+) -> list[FlowLine]:
     """Lay a chain out; `at` is the time of day of its beginning, `shown` are its steps to show."""
     mark = "▸" if folded else "▾"
     head = f"{mark} {at}  {words.headline(chain, shown)}"
-    found = [Line((chain.start_s, -1), ((fit(head, width), "title"),))]
+    found = [FlowLine((chain.start_s, -1), ((fit(head, width), "title"),))]
     if folded:
         return found
     room = columns(width)
     last_s = max((chain.delay_s(step) for step in shown), default=0.0)
-    axis = Axis(max(last_s, SHORTEST_S), room.bar, logarithmic)
+    axis = TimeAxis(max(last_s, SHORTEST_S), room.bar, logarithmic)
     found.append(_ruler(chain, axis, room))
     before_s = 0.0
     for number, step in enumerate(shown):
         after_s = chain.delay_s(step)
         found.append(
-            Line((chain.start_s, number), _row(chain, step, axis.bar(before_s, after_s), room))
+            FlowLine((chain.start_s, number), _row(chain, step, axis.bar(before_s, after_s), room))
         )
         before_s = after_s
     if chain.more:
-        found.append(Line((chain.start_s, -2), ((f"{'':{DELAY}}  … +{chain.more}", "dim"),)))
-    found.append(Line((chain.start_s, -2), (("", "dim"),)))
+        found.append(FlowLine((chain.start_s, -2), ((f"{'':{DELAY}}  … +{chain.more}", "dim"),)))
+    found.append(FlowLine((chain.start_s, -2), (("", "dim"),)))
     return found
 
 
-def _row(chain: Chain, step: Step, bar: str, room: Columns) -> tuple[tuple[str, str], ...]:
+def _row(chain: Chain, step: FlowStep, bar: str, room: FlowColumns) -> tuple[tuple[str, str], ...]:
     lane = step.lane.value
     by = words.said_by(step, chain)
     pieces = [
@@ -93,12 +95,12 @@ def _row(chain: Chain, step: Step, bar: str, room: Columns) -> tuple[tuple[str, 
     return tuple(pieces)
 
 
-def _ruler(chain: Chain, axis: Axis, room: Columns) -> Line:
+def _ruler(chain: Chain, axis: TimeAxis, room: FlowColumns) -> FlowLine:
     blank = " " * (DELAY + 2 + room.source + 2 + (room.said_by + 2 if room.said_by else 0))
-    return Line((chain.start_s, -2), ((blank, "dim"), (axis.ruler(), "dim")))
+    return FlowLine((chain.start_s, -2), ((blank, "dim"), (axis.ruler(), "dim")))
 
 
-class Axis:
+class TimeAxis:
     """Time across so many cells, from 0 to the end of the chain."""
 
     def __init__(self, span_s: float, width: int, logarithmic: bool) -> None:

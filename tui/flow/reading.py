@@ -18,7 +18,7 @@ from robot.topics import (
 )
 from text.plain import plain
 from tui.composer import outcome_words
-from tui.flow.chains import Kind, Lane, Step
+from tui.flow.chains import FlowStep, Lane, StepKind
 from tui.panels.voice.reading import LEVELS, heard
 
 if TYPE_CHECKING:
@@ -71,23 +71,23 @@ class FlowReader:
 
     def messages(
         self, samples: Mapping[str, Iterable[Sample]], said_by: Mapping[str, str]
-    ) -> list[Step]:
+    ) -> list[FlowStep]:
         """Read samples; `said_by` has the publishers of each topic."""
         came = [one for topic in TOPICS for one in samples.get(topic, ())]
         came.sort(key=_sent_s)
         return [step for one in came for step in self._read(one, said_by.get(one.topic, ""))]
 
-    def _read(self, sample: Sample, said_by: str) -> Iterator[Step]:
+    def _read(self, sample: Sample, said_by: str) -> Iterator[FlowStep]:
         topic, value, time_s = sample.topic, sample.value, _sent_s(sample)
         if topic in {MICROPHONE, SPEAKER}:
             text = _sound(value)
             if text is not None:
                 lane = Lane.MIC if topic == MICROPHONE else Lane.SPEAKER
-                yield Step(time_s, lane, topic, said_by, text=text, begins=lane is Lane.MIC)
+                yield FlowStep(time_s, lane, topic, said_by, text=text, begins=lane is Lane.MIC)
         elif topic in {AI_COMMAND, LLM_RAW_JSON}:
             lane = Lane.COMMAND if topic == AI_COMMAND else Lane.BRAIN
             text = plain(" ".join(str(value.get("data", ""))[:LONGEST].split()))
-            yield Step(time_s, lane, topic, said_by, text=text, begins=True)
+            yield FlowStep(time_s, lane, topic, said_by, text=text, begins=True)
         elif topic == HEAD_STATE:
             yield from self._read_head(value, time_s, said_by)
         else:
@@ -95,7 +95,7 @@ class FlowReader:
 
     def _read_motion(
         self, topic: str, value: Mapping[str, Value], time_s: float, said_by: str
-    ) -> Iterator[Step]:
+    ) -> Iterator[FlowStep]:
         wheels = topic == WHEEL_COMMANDS
         figures = _wheels(value) if wheels else outcome_words.setpoint(value)
         # Thirty-two bits of a message and a repetition of them may differ by a hair.
@@ -106,8 +106,8 @@ class FlowReader:
         if topic != DRIVE and not changed and not self._passes_on(topic, time_s):
             return
         self._told_s[topic] = time_s
-        lane, kind = (Lane.WHEELS, Kind.WHEELS) if wheels else (Lane.DRIVE, Kind.DRIVE)
-        yield Step(time_s, lane, topic, said_by, kind, figures=figures)
+        lane, kind = (Lane.WHEELS, StepKind.WHEELS) if wheels else (Lane.DRIVE, StepKind.DRIVE)
+        yield FlowStep(time_s, lane, topic, said_by, kind, figures=figures)
 
     def _passes_on(self, topic: str, time_s: float) -> bool:
         """Whether it has just been given a command, and has not said so yet."""
@@ -116,7 +116,9 @@ class FlowReader:
         told_s = self._told_s.get(topic, -math.inf)
         return time_s - given_s <= PASSED_ON_S and told_s < given_s
 
-    def _read_head(self, value: Mapping[str, Value], time_s: float, said_by: str) -> Iterator[Step]:
+    def _read_head(
+        self, value: Mapping[str, Value], time_s: float, said_by: str
+    ) -> Iterator[FlowStep]:
         """Two steps of a movement: where it begins, and where it has come to rest."""
         looks = outcome_words.joint(value, HEAD_PAN), outcome_words.joint(value, HEAD_TILT)
         before, self._looked = self._looked, looks
@@ -127,9 +129,9 @@ class FlowReader:
             self._head_s = time_s
         if still == self._head_moves:
             self._head_moves = not still
-            kind = Kind.HEAD_THERE if still else Kind.HEAD_MOVES
+            kind = StepKind.HEAD_THERE if still else StepKind.HEAD_MOVES
             # It has been there since the last message that was news.
-            yield Step(self._head_s, Lane.HEAD, HEAD_STATE, said_by, kind, figures=looks)
+            yield FlowStep(self._head_s, Lane.HEAD, HEAD_STATE, said_by, kind, figures=looks)
 
 
 def _is_still(now_rad: float, before_rad: float) -> bool:
@@ -137,10 +139,10 @@ def _is_still(now_rad: float, before_rad: float) -> bool:
     return abs(now_rad - before_rad) < STILL_RAD or (math.isnan(now_rad) and math.isnan(before_rad))
 
 
-def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Step]:
+def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[FlowStep]:
     """Read log lines of nodes; `programs` has what each node of the session runs."""
     return [
-        Step(
+        FlowStep(
             line.time_s,
             LANES.get(programs.get(line.node, ""), LANES.get(line.node, Lane.LOG)),
             plain(line.node, LONGEST),

@@ -19,7 +19,7 @@ from tui.flow import words
 from tui.flow.actions import FLOW_ACTIONS
 from tui.flow.book import FlowBook
 from tui.flow.chains import Lane
-from tui.flow.lines import Line, lines
+from tui.flow.lines import FlowLine, lines
 from tui.flow.reading import TOPICS, FlowReader, log_steps
 from tui.flow.view import FlowView
 from tui.frame.screen import DeckScreen
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate
-    from tui.flow.chains import Chain, Step
+    from tui.flow.chains import Chain, FlowStep
     from tui.session.messages import GraphChanged, LanguageChanged, LogArrived, SessionChanged
 
 
@@ -96,7 +96,7 @@ class FlowScreen(DeckScreen):
         return next(found, None)
 
     @property
-    def chosen_step(self) -> Step | None:
+    def chosen_step(self) -> FlowStep | None:
         """The step at the cursor; its first where that is a headline."""
         chain = self.chosen_chain
         if chain is None or self.view.chosen is None:
@@ -153,12 +153,12 @@ class FlowScreen(DeckScreen):
         del message
         self._show()
 
-    @on(FlowView.Highlighted)
+    @on(FlowView.StepHighlighted)
     def _highlighted(self) -> None:
         self._say_step()
         self.refresh_bindings()
 
-    @on(FlowView.Opened)
+    @on(FlowView.StepOpened)
     def _fold(self) -> None:
         chain = self.chosen_chain
         if chain is not None:
@@ -229,7 +229,7 @@ class FlowScreen(DeckScreen):
 
     # What is shown
 
-    def _take(self, steps: Sequence[Step]) -> bool:
+    def _take(self, steps: Sequence[FlowStep]) -> bool:
         """Put steps into their chains; whether anything shown has changed."""
         if not steps or not self._book.add(steps):
             return False
@@ -239,11 +239,11 @@ class FlowScreen(DeckScreen):
             self._show()
         return True
 
-    def _shown(self, chain: Chain) -> list[Step]:
+    def _shown(self, chain: Chain) -> list[FlowStep]:
         return [step for step in chain.steps if step.lane not in self._hidden]
 
-    def _lay(self, width: int) -> list[Line]:
-        found: list[Line] = []
+    def _lay(self, width: int) -> list[FlowLine]:
+        found: list[FlowLine] = []
         for chain in self.chains:
             at = clock.time_of_day(chain.start_s)
             found += lines(

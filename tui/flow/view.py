@@ -11,7 +11,7 @@ from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tui.flow.lines import STYLES, Line
+from tui.flow.lines import STYLES, FlowLine
 from tui.widgets.one_style import OneStyle
 
 if TYPE_CHECKING:
@@ -25,10 +25,10 @@ Key = tuple[float, int]
 class FlowView(OneStyle, ScrollView, can_focus=True):
     """Shows lines that `lay` makes for a width; those with a key can be chosen."""
 
-    class Highlighted(Message):
+    class StepHighlighted(Message):
         """Another line is the chosen one."""
 
-    class Opened(Message):
+    class StepOpened(Message):
         """Enter on a line, or a second click."""
 
     ALLOW_SELECT = False
@@ -62,10 +62,10 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
     }
     """
 
-    def __init__(self, lay: Callable[[int], list[Line]], *, id: str | None = None) -> None:
+    def __init__(self, lay: Callable[[int], list[FlowLine]], *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._lay = lay
-        self._lines: list[Line] = []
+        self._lines: list[FlowLine] = []
         self._chosen: Key | None = None
 
     @property
@@ -98,7 +98,7 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
         """Put the cursor there."""
         if key != self._chosen:
             self._chosen = key
-            self.post_message(self.Highlighted())
+            self.post_message(self.StepHighlighted())
             self.refresh()
         row = self._row_of(key)
         if row is not None:
@@ -120,7 +120,7 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
 
     def action_open(self) -> None:
         """Fold or unfold the chain of the chosen line."""
-        self.post_message(self.Opened())
+        self.post_message(self.StepOpened())
 
     def on_click(self, event: Click) -> None:
         """Choose the line; twice opens it."""
@@ -128,7 +128,7 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
         if row < len(self._lines) and self._lines[row].key[1] > -2:
             self.choose(self._lines[row].key)
             if event.chain > 1 or self._lines[row].key[1] == -1:
-                self.post_message(self.Opened())
+                self.post_message(self.StepOpened())
 
     def on_resize(self) -> None:
         """Lay out for the new width."""

@@ -9,12 +9,12 @@ from robot.topics import AI_COMMAND, LLM_RAW_JSON, MICROPHONE
 from text.figures import figure
 from text.i18n import N_, _, ngettext
 from tui.composer import outcome_words
-from tui.flow.chains import Kind, Lane
+from tui.flow.chains import Lane, StepKind
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from tui.flow.chains import Chain, Step
+    from tui.flow.chains import Chain, FlowStep
 
 LANES: dict[Lane, str] = {
     Lane.MIC: N_("mic"),
@@ -30,27 +30,27 @@ SOUND = "♪"
 SECOND_MS = 1000
 
 
-def content(step: Step) -> str:
+def content(step: FlowStep) -> str:
     """What a step says."""
     words = _once(step)
     return words if step.times == 1 else f"{words} ×{step.times}"
 
 
-def _once(step: Step) -> str:
-    if step.kind is Kind.DRIVE:
+def _once(step: FlowStep) -> str:
+    if step.kind is StepKind.DRIVE:
         return outcome_words.drive_words(*step.figures)
-    if step.kind is Kind.WHEELS:
+    if step.kind is StepKind.WHEELS:
         left, right = step.figures
         return _("left {left}, right {right} rad/s").format(left=figure(left), right=figure(right))
-    if step.kind is Kind.HEAD_MOVES:
+    if step.kind is StepKind.HEAD_MOVES:
         return _("begins to turn")
-    if step.kind is Kind.HEAD_THERE:
+    if step.kind is StepKind.HEAD_THERE:
         looks = [0.0 if math.isnan(angle) else angle for angle in step.figures]
         return _("has stopped: {pose}").format(pose=outcome_words.head_words(*looks))
     return _("sound") if step.text == SOUND else step.text
 
 
-def said_by(step: Step, chain: Chain) -> str:
+def said_by(step: FlowStep, chain: Chain) -> str:
     """The node that said it; a command that nothing led to is a person's."""
     # By what tells it apart: what seems to have come a hair earlier stands before it.
     is_first = (step.source, step.time_s) == (chain.first.source, chain.start_s)
@@ -65,7 +65,7 @@ def delay(delay_s: float) -> str:
     return _("{n} ms").format(n=figure(milliseconds, 1 if abs(milliseconds) < 100 else 0))
 
 
-def headline(chain: Chain, shown: Sequence[Step]) -> str:
+def headline(chain: Chain, shown: Sequence[FlowStep]) -> str:
     """What began it, how many of its steps are shown, and how long they took."""
     steps = len(shown) + chain.more
     count = ngettext("{n} step", "{n} steps", steps).format(n=steps)

@@ -1,27 +1,32 @@
-"""An action: its goal form, and its goals, Deck's own and those of others."""
+"""An action: its goal form, its goals, Deck's own and those of others, and their cancelling."""
 
 from __future__ import annotations
 
 import asyncio
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from textual.content import Content
 from textual.message import Message
 
 from graph.data import Goal, GoalStatus, SeenGoal
 from text.figures import figure
 from text.i18n import N_, _, ngettext, said
 from text.plain import plain
+from tui.actions import Action, bindings
+from tui.dialogs.dialog import Dialog
 from tui.graph.ask import AskPane
 from tui.graph.links import heading, link, node_links
 from tui.graph.pane import LONGEST
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 from tui.widgets.rows import Cell, Column, Row
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from concurrent.futures import Future
 
-    from graph.data import ActionRow
+    from textual.binding import BindingType
+
+    from graph.data import ActionRow, SeenGoal
 
 STATES = {
     GoalStatus.SENDING: ("◌", N_("sending"), "dim"),
@@ -96,7 +101,7 @@ class ActionPane(AskPane):
         if row is None:
             return [heading(_("It has left the graph."))]
         return [
-            *(link(Place(Kind.TYPE, name), "type", _("type")) for name in row.type_names),
+            *(link(GraphPlace(GraphKind.TYPE, name), "type", _("type")) for name in row.type_names),
             *node_links(row.servers, "serves", _("serves it")),
             *node_links(row.clients, "calls", _("sends it goals")),
         ]
@@ -227,3 +232,61 @@ def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
         Cell(f"{whose} · {told}", "dim"),
     )
     return Row(_key(goal), cells)
+
+
+class CancelGoal(Action["CancelGoalScreen"]):
+    """Ask its server to."""
+
+    id = "cancel_goal.cancel"
+    key = "enter"
+    title = N_("Cancel the goal")
+    tooltip = N_("Ask its server to cancel it; whoever sent it is told by the server.")
+    footer = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: CancelGoalScreen) -> None:
+        """Answer yes."""
+        target.dismiss(target.goal)
+
+
+class LeaveGoal(Action["CancelGoalScreen"]):
+    """Let it go on."""
+
+    id = "cancel_goal.leave"
+    key = "escape"
+    title = N_("Leave it")
+    tooltip = N_("Back to the goals as they are.")
+    footer = True
+    palette = False
+
+    @classmethod
+    async def run(cls, target: CancelGoalScreen) -> None:
+        """Answer no."""
+        target.dismiss(None)
+
+
+class CancelGoalScreen(Dialog["SeenGoal | None"]):
+    """Answers with the goal if it is to be cancelled."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(CancelGoal, LeaveGoal)
+
+    def __init__(self, goal: SeenGoal, state: str) -> None:
+        """Ask about `goal`, of which the list says `state`."""
+        super().__init__()
+        self.goal = goal
+        self._state = state
+
+    def title_words(self) -> str:
+        """Name the question."""
+        return _("Cancel a goal of another client?")
+
+    def words(self) -> Content:
+        """Say which, and what it does."""
+        lines = [
+            Content.styled(plain(self.goal.action, LONGEST), "bold"),
+            Content(f"{self.goal.goal_id}  {self._state}"),
+            Content(""),
+            Content(_("Another program has sent it and waits for its end.")),
+        ]
+        return Content("\n").join(lines)

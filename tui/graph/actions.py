@@ -45,7 +45,7 @@ class FillIn(GraphAction):
             target.ask_pane.first().focus()
 
 
-class Filter(GraphAction):
+class FilterNames(GraphAction):
     """Narrow the list down."""
 
     id = "graph.filter"
@@ -98,7 +98,7 @@ class PreviousKind(GraphAction):
         target.list_next(-1)
 
 
-class Map(GraphAction):
+class ShowMap(GraphAction):
     """The graph drawn."""
 
     id = "graph.map"
@@ -119,7 +119,7 @@ class Map(GraphAction):
         target.toggle_map()
 
 
-class Parameters(GraphAction):
+class ShowParameters(GraphAction):
     """The node's parameters."""
 
     id = "graph.calls.parameters"
@@ -183,7 +183,7 @@ class LoadParameters(ParametersAction):
         target.load_parameters()
 
 
-class Ask(GraphAction):
+class SubmitRequest(GraphAction):
     """The call, or the goal, from wherever the focus is."""
 
     id = "graph.ask"
@@ -210,7 +210,7 @@ class Ask(GraphAction):
             target.ask_pane.form.submit()
 
 
-class Cancel(GraphAction):
+class CancelRequest(GraphAction):
     """What is under way."""
 
     id = "graph.cancel"
@@ -255,7 +255,7 @@ class ForgetGoal(GraphAction):
             target.ask_pane.forget()
 
 
-class Housekeeping(GraphAction):
+class ShowEverything(GraphAction):
     """What ROS itself needs."""
 
     id = "graph.housekeeping"
@@ -272,7 +272,7 @@ class Housekeeping(GraphAction):
         target.toggle_everything()
 
 
-class Back(GraphAction):
+class GoBack(GraphAction):
     """To where one came from."""
 
     id = "graph.back"
@@ -288,16 +288,16 @@ class Back(GraphAction):
 
 GRAPH_ACTIONS = (
     FillIn,
-    Filter,
-    Map,
-    Parameters,
+    FilterNames,
+    ShowMap,
+    ShowParameters,
     SaveParameters,
     LoadParameters,
-    Ask,
-    Cancel,
+    SubmitRequest,
+    CancelRequest,
     ForgetGoal,
-    Housekeeping,
+    ShowEverything,
     NextKind,
     PreviousKind,
-    Back,
+    GoBack,
 )

@@ -8,20 +8,20 @@ from textual.widgets import ContentSwitcher
 
 from tui.graph.action import ActionPane
 from tui.graph.node import NodePane
-from tui.graph.pane import Words
-from tui.graph.place import Kind
+from tui.graph.pane import EmptyNotice
+from tui.graph.place import GraphKind
 from tui.graph.service import ServicePane
 from tui.graph.type import TypePane
 
 if TYPE_CHECKING:
     from tui.graph.pane import GraphPane
-    from tui.graph.place import Place
+    from tui.graph.place import GraphPlace
 
-PANES: dict[Kind, type[GraphPane]] = {
-    Kind.NODE: NodePane,
-    Kind.SERVICE: ServicePane,
-    Kind.ACTION: ActionPane,
-    Kind.TYPE: TypePane,
+PANES: dict[GraphKind, type[GraphPane]] = {
+    GraphKind.NODE: NodePane,
+    GraphKind.SERVICE: ServicePane,
+    GraphKind.ACTION: ActionPane,
+    GraphKind.TYPE: TypePane,
 }
 WORDS = "graph-words"
 
@@ -31,9 +31,11 @@ class GraphDetail(ContentSwitcher):
 
     def __init__(self) -> None:
         self._panes = {kind: pane(id=f"graph-{kind.value}") for kind, pane in PANES.items()}
-        super().__init__(Words(id=WORDS), *self._panes.values(), id="graph-detail", initial=WORDS)
+        super().__init__(
+            EmptyNotice(id=WORDS), *self._panes.values(), id="graph-detail", initial=WORDS
+        )
 
-    def pane_of(self, place: Place | None) -> GraphPane | None:
+    def pane_of(self, place: GraphPlace | None) -> GraphPane | None:
         """Return the pane that shows places of this kind, None while there is none."""
         pane = None if place is None else self._panes.get(place.kind)
         return pane if pane is not None and pane.is_mounted else None
@@ -41,7 +43,7 @@ class GraphDetail(ContentSwitcher):
     def show_words(self, headline: str, way_out: str) -> None:
         """Say why nothing is shown."""
         self._bring(WORDS)
-        self.query_one(f"#{WORDS}", Words).show(headline, way_out)
+        self.query_one(f"#{WORDS}", EmptyNotice).show(headline, way_out)
 
     def show_place(self, pane: GraphPane, name: str, *, everything: bool) -> None:
         """Show what has this full name in its pane, with ROS's own things if `everything`."""

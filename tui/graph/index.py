@@ -1,4 +1,4 @@
-"""The graph by kinds: what is listed, what is hidden, which words find it."""
+"""The graph by kinds: what is listed, which words find it, and why nothing is."""
 
 from __future__ import annotations
 
@@ -6,18 +6,21 @@ import asyncio
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.housekeeping import is_housekeeping
-from tui.graph.place import LISTED, Kind
+from text.i18n import _, said
+from tui.graph.place import LISTED, GraphKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
-    from tui.graph.place import Place
+    from tui.graph.place import GraphPlace
 
     Typed = TopicRow | ServiceRow | ActionRow
 
+    from tui.session.feed import Feed
 
-class Entry(NamedTuple):
+
+class GraphEntry(NamedTuple):
     """One line of the list."""
 
     name: str
@@ -32,7 +35,7 @@ class GraphIndex:
     def __init__(self) -> None:
         self.everything = False
         """Whether ROS's own things are listed."""
-        self.listed: dict[Kind, list[Entry]] = {}
+        self.listed: dict[GraphKind, list[GraphEntry]] = {}
         """All there is of each kind."""
         self._installed: tuple[str, ...] = ()
         """Every type there is on this computer, once somebody has asked for all."""
@@ -47,15 +50,15 @@ class GraphIndex:
 
         self._installed = await asyncio.to_thread(interfaces)
 
-    def all_of(self, kind: Kind) -> list[Entry]:
+    def all_of(self, kind: GraphKind) -> list[GraphEntry]:
         """Return everything of a kind."""
         return self.listed.get(kind, [])
 
-    def fitting(self, kind: Kind, words: str = "") -> list[Entry]:
+    def fitting(self, kind: GraphKind, words: str = "") -> list[GraphEntry]:
         """Return what is listed of a kind by these words."""
         return chosen_of(self.all_of(kind), words, everything=self.everything)
 
-    def reveal(self, place: Place, words: str) -> bool:
+    def reveal(self, place: GraphPlace, words: str) -> bool:
         """See that a place is listed; return whether it is by these words too."""
         entry = next((one for one in self.all_of(place.kind) if one.name == place.name), None)
         if entry is None:
@@ -65,22 +68,24 @@ class GraphIndex:
         return bool(chosen_of([entry], words, everything=True))
 
 
-def entries(update: GraphUpdate | None, kind: Kind, installed: Iterable[str] = ()) -> list[Entry]:
+def entries(
+    update: GraphUpdate | None, kind: GraphKind, installed: Iterable[str] = ()
+) -> list[GraphEntry]:
     """Return everything of a kind, sorted by name; types that nobody uses count as ROS's own."""
     if update is None:
         return []
-    if kind is Kind.NODE:
-        found = [Entry(row.name, "", is_housekeeping(row.name)) for row in update.nodes]
-    elif kind is Kind.SERVICE:
+    if kind is GraphKind.NODE:
+        found = [GraphEntry(row.name, "", is_housekeeping(row.name)) for row in update.nodes]
+    elif kind is GraphKind.SERVICE:
         found = [_typed(row.name, row.type_names) for row in update.services]
-    elif kind is Kind.ACTION:
+    elif kind is GraphKind.ACTION:
         found = [_typed(row.name, row.type_names) for row in update.actions]
     else:
         found = _types(update, installed)
     return sorted(set(found))
 
 
-def chosen_of(listed: Iterable[Entry], words: str, *, everything: bool) -> list[Entry]:
+def chosen_of(listed: Iterable[GraphEntry], words: str, *, everything: bool) -> list[GraphEntry]:
     """Return those that have all the words, without ROS's own unless `everything` is wanted."""
     parts = words.casefold().split()
     return [
@@ -91,14 +96,14 @@ def chosen_of(listed: Iterable[Entry], words: str, *, everything: bool) -> list[
     ]
 
 
-def users_of(update: GraphUpdate | None, type_name: str) -> dict[Kind, list[str]]:
+def users_of(update: GraphUpdate | None, type_name: str) -> dict[GraphKind, list[str]]:
     """Return the names of what is of this type, by kind."""
     if update is None:
         return {}
-    rows: dict[Kind, Sequence[Typed]] = {
-        Kind.TOPIC: update.topics,
-        Kind.SERVICE: update.services,
-        Kind.ACTION: update.actions,
+    rows: dict[GraphKind, Sequence[Typed]] = {
+        GraphKind.TOPIC: update.topics,
+        GraphKind.SERVICE: update.services,
+        GraphKind.ACTION: update.actions,
     }
     found = {
         kind: [row.name for row in of_kind if type_name in row.type_names]
@@ -107,15 +112,46 @@ def users_of(update: GraphUpdate | None, type_name: str) -> dict[Kind, list[str]
     return {kind: names for kind, names in found.items() if names}
 
 
-def _typed(name: str, type_names: tuple[str, ...]) -> Entry:
-    return Entry(name, ", ".join(type_names), is_housekeeping(name))
+def _typed(name: str, type_names: tuple[str, ...]) -> GraphEntry:
+    return GraphEntry(name, ", ".join(type_names), is_housekeeping(name))
 
 
-def _types(update: GraphUpdate, installed: Iterable[str]) -> list[Entry]:
+def _types(update: GraphUpdate, installed: Iterable[str]) -> list[GraphEntry]:
     used = dict.fromkeys(installed, True)
     rows: tuple[Typed, ...] = (*update.topics, *update.services, *update.actions)
     for row in rows:
         hidden = is_housekeeping(row.name)
         for type_name in row.type_names:
             used[type_name] = used.get(type_name, True) and hidden
-    return [Entry(name, "", hidden) for name, hidden in used.items()]
+    return [GraphEntry(name, "", hidden) for name, hidden in used.items()]
+
+
+def why_empty(
+    feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str
+) -> tuple[str, str]:
+    """Return headline and way out for a list that shows none of `listed`."""
+    update = feed.update
+    if feed.link is None:
+        return _("no lesson is running"), ""
+    if update is None:
+        return _("the graph is being looked at"), _("Nodes are starting.")
+    if update.error:
+        return feed.blind, said(update.error)
+    if any(not entry.housekeeping for entry in listed):
+        return _("nothing fits the filter"), _("Escape in the filter shows all again.")
+    if listed:
+        return _("only what ROS itself needs is here"), _("{key} shows it.").format(key=all_key)
+    return _none(kind)
+
+
+def _none(kind: GraphKind) -> tuple[str, str]:
+    if kind is GraphKind.NODE:
+        return _("no node in this domain"), _(
+            "Nodes of another domain number, or of another computer while discovery is localhost, "
+            "are not seen."
+        )
+    if kind is GraphKind.SERVICE:
+        return _("nobody serves a service"), _("Start a node that does: head_controller is one.")
+    if kind is GraphKind.ACTION:
+        return _("nobody serves an action"), _("Start a node that does: drive_to_point is one.")
+    return _("no type is in use"), _("Types are those of topics, services and actions.")

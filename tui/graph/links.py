@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.plain import plain
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def heading(words: str) -> Row:
     return Row("", (Cell(words, "dim"),))
 
 
-def link(place: Place, section: str, told: str = "", meaning: str = "dim") -> Row:
+def link(place: GraphPlace, section: str, told: str = "", meaning: str = "dim") -> Row:
     """Return a row that leads to a place, with a word about it."""
     cells = (Cell(plain(place.name, LONGEST)), Cell(plain(told, LONGEST), meaning))
     return Row(place.key(section), cells if told else cells[:1])
@@ -55,7 +55,7 @@ def link(place: Place, section: str, told: str = "", meaning: str = "dim") -> Ro
 
 def node_links(names: Iterable[str], section: str, told: str = "") -> list[Row]:
     """Return rows that lead to these nodes."""
-    return [link(Place(Kind.NODE, name), section, told) for name in names]
+    return [link(GraphPlace(GraphKind.NODE, name), section, told) for name in names]
 
 
 def short(name: str) -> str:

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from text.i18n import _
 from text.plain import plain
-from tui.graph.place import Kind
+from tui.graph.place import GraphKind
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tui.graph.index import Entry
+    from tui.graph.index import GraphEntry
 
 LONGEST = 300
 
@@ -24,19 +24,21 @@ class GraphList(Rows):
         super().__init__(header=False)
         self._named: tuple[tuple[str, bool], ...] = ()
         """Name, and whether it is still there."""
-        self._kind = Kind.NODE
+        self._kind = GraphKind.NODE
 
     @property
     def chosen_name(self) -> str:
         """The chosen one."""
         return self.chosen.partition("|")[2]
 
-    def show_entries(self, kind: Kind, shown: Sequence[Entry], chosen: str, words: str) -> None:
+    def show_entries(
+        self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str
+    ) -> None:
         """Show these; `chosen` is the one that was chosen last, `words` what they were found by."""
         names = [(entry.name, True) for entry in shown]
         if chosen and not words and chosen not in {entry.name for entry in shown}:
             # A type is not gone because nobody uses it.
-            names.append((chosen, kind is Kind.TYPE))
+            names.append((chosen, kind is GraphKind.TYPE))
         self._kind, self._named = kind, tuple(names)
         self._lay()
         if chosen:
@@ -50,7 +52,7 @@ class GraphList(Rows):
         rows = [self._row(self._kind, name, there=there) for name, there in self._named]
         self.show([Column("")], rows)
 
-    def _row(self, kind: Kind, name: str, *, there: bool) -> Row:
+    def _row(self, kind: GraphKind, name: str, *, there: bool) -> Row:
         room = max(4, self.size.width - 4) if self.size.width else LONGEST
         words = plain(name, LONGEST)
         if not there:

@@ -12,25 +12,25 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from text.i18n import _
-from tui.graph.map_lines import CENTRE, Drawing, drawing
+from tui.graph.map_lines import CENTRE, MapDrawing, drawing
 from tui.graph.neighbours import Neighbours, neighbours, node_called
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:
     from textual.events import Click
 
     from graph.data import GraphUpdate
-    from tui.graph.map_lines import Stop
+    from tui.graph.map_lines import MapStop
 
 
 class GraphMap(ScrollView, can_focus=True):
     """Draws a node in the middle, what it hears on the left, what it says on the right."""
 
-    class Wanted(Message):
+    class PlaceWanted(Message):
         """Enter was pressed on a place."""
 
-        def __init__(self, place: Place) -> None:
+        def __init__(self, place: GraphPlace) -> None:
             super().__init__()
             self.place = place
 
@@ -68,12 +68,12 @@ class GraphMap(ScrollView, can_focus=True):
         super().__init__()
         self._middle = ""
         self._around = Neighbours()
-        self._drawing = Drawing(0)
+        self._drawing = MapDrawing(0)
         self._column, self._at = CENTRE, 0
         self._words = ("", "")
 
     @property
-    def here(self) -> Place | None:
+    def here(self) -> GraphPlace | None:
         """Where the cursor stands."""
         stop = self._stop()
         return None if stop is None else stop.place
@@ -117,7 +117,7 @@ class GraphMap(ScrollView, can_focus=True):
         """Tell that this place is wanted."""
         here = self.here
         if here is not None:
-            self.post_message(self.Wanted(here))
+            self.post_message(self.PlaceWanted(here))
 
     def on_click(self, event: Click) -> None:
         """Go to what was clicked; twice opens it."""
@@ -156,7 +156,7 @@ class GraphMap(ScrollView, can_focus=True):
             x = max(x, piece.x) + Segment(piece.text).cell_length
         return Strip(segments).adjust_cell_length(width, base)
 
-    def _stop(self) -> Stop | None:
+    def _stop(self) -> MapStop | None:
         stops = self._drawing.stops[self._column]
         return stops[min(self._at, len(stops) - 1)] if stops else None
 
@@ -182,16 +182,16 @@ class GraphMap(ScrollView, can_focus=True):
         self.refresh()
 
 
-def middle_of(update: GraphUpdate | None, here: Place | None) -> str:
+def middle_of(update: GraphUpdate | None, here: GraphPlace | None) -> str:
     """Return the node that is to be drawn for a chosen place: it, or one that has to do with it."""
     if update is None or here is None:
         return update.nodes[0].name if update and update.nodes else ""
-    if here.kind is Kind.NODE:
+    if here.kind is GraphKind.NODE:
         return here.name
-    for row in update.services if here.kind is Kind.SERVICE else ():
+    for row in update.services if here.kind is GraphKind.SERVICE else ():
         if row.name == here.name and row.nodes:
             return row.nodes[0]
-    for action in update.actions if here.kind is Kind.ACTION else ():
+    for action in update.actions if here.kind is GraphKind.ACTION else ():
         if action.name == here.name and action.servers:
             return action.servers[0]
     return update.nodes[0].name if update.nodes else ""

@@ -11,7 +11,7 @@ from text.i18n import _
 from text.plain import plain
 from tui.graph.links import short
 from tui.graph.list import ended
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,11 +25,11 @@ LONGEST = 200
 UP, DOWN, WEST, EAST = 1, 2, 4, 8
 BENDS = " │││─┘┐┤─└┌├─┴┬┼"
 """The line that goes to these sides, by the sum of their numbers."""
-SIGNS = {Kind.TOPIC: "", Kind.SERVICE: "()", Kind.ACTION: " ⚑"}
+SIGNS = {GraphKind.TOPIC: "", GraphKind.SERVICE: "()", GraphKind.ACTION: " ⚑"}
 """Written behind a name: a service is called like a function, an action is given a goal."""
 
 
-class Piece(NamedTuple):
+class MapPiece(NamedTuple):
     """A text at a place of the drawing."""
 
     row: int
@@ -39,31 +39,33 @@ class Piece(NamedTuple):
     """`name` of a way, `node`, `box`, `line`, `dim`."""
 
 
-class Stop(NamedTuple):
+class MapStop(NamedTuple):
     """Something that the cursor can stand on."""
 
-    place: Place
+    place: GraphPlace
     row: int
     piece: int
     """Its number among the pieces."""
 
 
 @dataclass
-class Drawing:
+class MapDrawing:
     """The pieces, and what the cursor can stand on by columns, from top to bottom."""
 
     height: int
-    pieces: list[Piece] = field(default_factory=list)
-    stops: tuple[list[Stop], list[Stop], list[Stop]] = field(default_factory=lambda: ([], [], []))
+    pieces: list[MapPiece] = field(default_factory=list)
+    stops: tuple[list[MapStop], list[MapStop], list[MapStop]] = field(
+        default_factory=lambda: ([], [], [])
+    )
 
-    def put(self, piece: Piece, place: Place | None = None, column: int = CENTRE) -> None:
+    def put(self, piece: MapPiece, place: GraphPlace | None = None, column: int = CENTRE) -> None:
         """Add a piece, one that the cursor can stand on if it has a `place`."""
         if place is not None:
-            self.stops[column].append(Stop(place, piece.row, len(self.pieces)))
+            self.stops[column].append(MapStop(place, piece.row, len(self.pieces)))
         self.pieces.append(piece)
 
 
-def drawing(name: str, around: Neighbours, width: int, height: int, top: int = 0) -> Drawing:
+def drawing(name: str, around: Neighbours, width: int, height: int, top: int = 0) -> MapDrawing:
     """Draw into `width` cells; the node stands in the middle of `height` rows below `top`."""
     box = min(cell_len(plain(name, LONGEST)) + 4, max(12, width // 3))
     side = max(6, (width - box - 7) // 2)
@@ -71,7 +73,7 @@ def drawing(name: str, around: Neighbours, width: int, height: int, top: int = 0
     going = _heights(around.going, side, height)
     whole = max(height, sum(coming), sum(going))
     middle = min(whole - 2, top + height // 2)
-    drawn = Drawing(whole)
+    drawn = MapDrawing(whole)
     _side(drawn, around.coming, coming, side, middle, LEFT)
     _box(drawn, name, side + 3, box, middle)
     _side(drawn, around.going, going, side, middle, RIGHT, side + 3 + box)
@@ -86,18 +88,20 @@ def _heights(ways: Sequence[Way], side: int, height: int) -> list[int]:
     return [rows + 1 for rows in heights] if roomy else heights
 
 
-def _box(drawn: Drawing, name: str, x: int, width: int, middle: int) -> None:
+def _box(drawn: MapDrawing, name: str, x: int, width: int, middle: int) -> None:
     inner = ended(plain(name, LONGEST), width - 4)
     bar = "─" * (width - 2)
-    drawn.put(Piece(middle - 1, x, f"┌{bar}┐", "box"))
-    drawn.put(Piece(middle, x, "│", "box"))
-    drawn.put(Piece(middle, x + 1, f" {inner:{width - 4}} ", "node"), Place(Kind.NODE, name))
-    drawn.put(Piece(middle, x + width - 1, "│", "box"))
-    drawn.put(Piece(middle + 1, x, f"└{bar}┘", "box"))
+    drawn.put(MapPiece(middle - 1, x, f"┌{bar}┐", "box"))
+    drawn.put(MapPiece(middle, x, "│", "box"))
+    drawn.put(
+        MapPiece(middle, x + 1, f" {inner:{width - 4}} ", "node"), GraphPlace(GraphKind.NODE, name)
+    )
+    drawn.put(MapPiece(middle, x + width - 1, "│", "box"))
+    drawn.put(MapPiece(middle + 1, x, f"└{bar}┘", "box"))
 
 
 def _side(
-    drawn: Drawing,
+    drawn: MapDrawing,
     ways: Sequence[Way],
     heights: Sequence[int],
     side: int,
@@ -109,7 +113,7 @@ def _side(
     if not ways:
         words = _("hears nothing") if column == LEFT else _("says nothing")
         at = max(0, side - cell_len(words)) if column == LEFT else x + 3
-        drawn.put(Piece(middle, at, ended(words, side), "dim"))
+        drawn.put(MapPiece(middle, at, ended(words, side), "dim"))
         return
     row = max(0, min(middle - sum(heights) // 2, drawn.height - sum(heights)))
     rows = []
@@ -121,72 +125,74 @@ def _side(
     _trunk(drawn, rows, middle, side if column == LEFT else x + 1, column)
 
 
-def _trunk(drawn: Drawing, rows: Sequence[int], middle: int, x: int, column: int) -> None:
+def _trunk(drawn: MapDrawing, rows: Sequence[int], middle: int, x: int, column: int) -> None:
     """Draw the line that gathers the ways of a side, and leads to the box or away from it."""
     towards, away = (WEST, EAST) if column == LEFT else (EAST, WEST)
     first, last = min(*rows, middle), max(*rows, middle)
     for row in range(first, last + 1):
         bend = (UP if row > first else 0) | (DOWN if row < last else 0)
         bend |= (towards if row in rows else 0) | (away if row == middle else 0)
-        drawn.put(Piece(row, x, BENDS[bend], "line"))
+        drawn.put(MapPiece(row, x, BENDS[bend], "line"))
     if column == LEFT:
-        drawn.put(Piece(middle, x + 1, "─▶", "line"))
+        drawn.put(MapPiece(middle, x + 1, "─▶", "line"))
     else:
-        drawn.put(Piece(middle, x - 1, "─", "line"))
+        drawn.put(MapPiece(middle, x - 1, "─", "line"))
         for row in rows:
-            drawn.put(Piece(row, x + 1, "▶", "line"))
+            drawn.put(MapPiece(row, x + 1, "▶", "line"))
 
 
-def _narrow(drawn: Drawing, way: Way, row: int, side: int, column: int, x: int) -> None:
+def _narrow(drawn: MapDrawing, way: Way, row: int, side: int, column: int, x: int) -> None:
     """The way, and below it the nodes at its other end."""
     name = ended(_named(way), side - 2)
-    drawn.put(Piece(row, x, name, "name"), way.place, column)
+    drawn.put(MapPiece(row, x, name, "name"), way.place, column)
     if column == LEFT:
         line = " " + "─" * (side - cell_len(name) - 1)
-        drawn.put(Piece(row, cell_len(name), line, "line"))
+        drawn.put(MapPiece(row, cell_len(name), line, "line"))
     for below, node in enumerate(way.nodes):
         text = ended(short(node), side - 3)
-        drawn.put(Piece(row + 1 + below, x + 2, text, "node"), Place(Kind.NODE, node), column)
+        drawn.put(
+            MapPiece(row + 1 + below, x + 2, text, "node"), GraphPlace(GraphKind.NODE, node), column
+        )
     if not way.nodes:
-        drawn.put(Piece(row + 1, x + 2, _("nobody"), "dim"))
+        drawn.put(MapPiece(row + 1, x + 2, _("nobody"), "dim"))
 
 
-def _wide(drawn: Drawing, way: Way, row: int, side: int, column: int, x: int) -> None:
+def _wide(drawn: MapDrawing, way: Way, row: int, side: int, column: int, x: int) -> None:
     """The way beside the nodes at its other end, each in a row of its own."""
     name = ended(_named(way), side // 2 - 4)
     room = side // 2 - 2
     at = x + side - side // 2 if column == LEFT else x
     if column == LEFT:
         _nodes(drawn, way, row, x, room, column)
-    drawn.put(Piece(row, at, name, "name"), way.place, column)
+    drawn.put(MapPiece(row, at, name, "name"), way.place, column)
     rest = side // 2 - cell_len(name)
     if column == LEFT:
-        drawn.put(Piece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
+        drawn.put(MapPiece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
     else:
         if way.nodes:
-            drawn.put(Piece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
+            drawn.put(MapPiece(row, at + cell_len(name), " " + "─" * (rest - 1), "line"))
         _nodes(drawn, way, row, x + side // 2, room, column)
 
 
-def _nodes(drawn: Drawing, way: Way, row: int, x: int, room: int, column: int) -> None:
+def _nodes(drawn: MapDrawing, way: Way, row: int, x: int, room: int, column: int) -> None:
     if not way.nodes:
-        drawn.put(Piece(row, x, _("nobody"), "dim"))
+        drawn.put(MapPiece(row, x, _("nobody"), "dim"))
     last = len(way.nodes) - 1
     for number, node in enumerate(way.nodes):
-        at, place = row + number, Place(Kind.NODE, node)
+        at, place = row + number, GraphPlace(GraphKind.NODE, node)
         bend = (UP if number else 0) | (DOWN if number < last else 0)
         name = ended(short(node), room - 3)
         if column == LEFT:
             bend |= WEST | (0 if number else EAST)
-            drawn.put(Piece(at, x, name, "node"), place, column)
+            drawn.put(MapPiece(at, x, name, "node"), place, column)
             line = " " + "─" * (room - cell_len(name) - 2) + BENDS[bend]
-            drawn.put(Piece(at, x + cell_len(name), line, "line"))
+            drawn.put(MapPiece(at, x + cell_len(name), line, "line"))
             if not number:
-                drawn.put(Piece(at, x + room, "▶ ", "line"))
+                drawn.put(MapPiece(at, x + room, "▶ ", "line"))
         else:
             bend |= EAST | (0 if number else WEST)
-            drawn.put(Piece(at, x, f"{BENDS[bend]}▶ ", "line"))
-            drawn.put(Piece(at, x + 3, name, "node"), place, column)
+            drawn.put(MapPiece(at, x, f"{BENDS[bend]}▶ ", "line"))
+            drawn.put(MapPiece(at, x + 3, name, "node"), place, column)
 
 
 def _named(way: Way) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_housekeeping
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Way:
     """A topic, a service or an action, and the nodes at its other end."""
 
-    place: Place
+    place: GraphPlace
     nodes: tuple[str, ...] = ()
 
 
@@ -57,20 +57,20 @@ def node_called(update: GraphUpdate | None, name: str) -> NodeRow | None:
 def neighbours(update: GraphUpdate, node: NodeRow, *, everything: bool = False) -> Neighbours:
     """Return what stands around a node; ROS's own topics and services if `everything` is wanted."""
 
-    def ways(kind: Kind, names: Iterable[str], end: str) -> tuple[Way, ...]:
+    def ways(kind: GraphKind, names: Iterable[str], end: str) -> tuple[Way, ...]:
         return tuple(
-            Way(Place(kind, name), _with(update, end, name))
+            Way(GraphPlace(kind, name), _with(update, end, name))
             for name in sorted(names)
             if everything or not is_housekeeping(name)
         )
 
     return Neighbours(
-        heard=ways(Kind.TOPIC, node.subscribes, "publishes"),
-        served=ways(Kind.SERVICE, node.services, "clients"),
-        goals_taken=ways(Kind.ACTION, node.action_servers, "action_clients"),
-        said=ways(Kind.TOPIC, node.publishes, "subscribes"),
-        called=ways(Kind.SERVICE, node.clients, "services"),
-        goals_sent=ways(Kind.ACTION, node.action_clients, "action_servers"),
+        heard=ways(GraphKind.TOPIC, node.subscribes, "publishes"),
+        served=ways(GraphKind.SERVICE, node.services, "clients"),
+        goals_taken=ways(GraphKind.ACTION, node.action_servers, "action_clients"),
+        said=ways(GraphKind.TOPIC, node.publishes, "subscribes"),
+        called=ways(GraphKind.SERVICE, node.clients, "services"),
+        goals_sent=ways(GraphKind.ACTION, node.action_clients, "action_servers"),
     )
 
 

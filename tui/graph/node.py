@@ -5,15 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from text.i18n import _
-from tui.graph.links import GraphLinks
-from tui.graph.neighbours import node_called
-from tui.graph.node_rows import node_rows, process_words, status_of
-from tui.graph.pane import GraphHead, GraphPane, Words
+from tui.deck.nodes_table import looks, memory, percent, why
+from tui.graph.links import GraphLinks, heading, link, short
+from tui.graph.neighbours import neighbours, node_called
+from tui.graph.pane import EmptyNotice, GraphHead, GraphPane
 from tui.graph.parameters import GraphParameters
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from textual.app import ComposeResult
     from textual.widget import Widget
+
+    from graph.data import GraphUpdate, NodeRow
+    from launcher.status import NodeStatus
+    from tui.graph.neighbours import Way
+    from tui.widgets.rows import Row
 
 
 class NodePane(GraphPane):
@@ -34,7 +41,7 @@ class NodePane(GraphPane):
     def compose(self) -> ComposeResult:
         """Head, links, parameters."""
         yield GraphHead()
-        yield Words(id="node-words")
+        yield EmptyNotice(id="node-words")
         yield GraphLinks()
         yield GraphParameters()
 
@@ -89,7 +96,7 @@ class NodePane(GraphPane):
         self.query_one(GraphHead).show(self.name_shown, process_words(status))
         if self.shows_parameters:
             self.parameters.see(() if node is None else node.processes)
-        words = self.query_one(Words)
+        words = self.query_one(EmptyNotice)
         if update is None or node is None:
             words.show(_("this node has left the graph"), _gone_words(status is not None))
             words.display = True
@@ -117,3 +124,50 @@ def _gone_words(ours: bool) -> str:
     if ours:
         return _("Its process is Deck's own: the screens Deck and Logs tell what became of it.")
     return _("It was stopped, or cannot be reached any more. Below is what it last did.")
+
+
+def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[Row]:
+    """Return a section for each thing that the node does."""
+    around = neighbours(update, node, everything=everything)
+    sections: tuple[tuple[str, str, tuple[Way, ...], str], ...] = (
+        ("says", _("Publishes"), around.said, "→"),
+        ("hears", _("Subscribes to"), around.heard, "←"),
+        ("serves", _("Serves"), around.served, "←"),
+        ("calls", _("Calls"), around.called, "→"),
+        ("takes", _("Takes goals of"), around.goals_taken, "←"),
+        ("sends", _("Sends goals to"), around.goals_sent, "→"),
+    )
+    rows: list[Row] = []
+    for section, title, ways, arrow in sections:
+        if ways:
+            rows.append(heading(title))
+            rows += [link(way.place, section, _with(way, arrow)) for way in ways]
+    return rows
+
+
+def _with(way: Way, arrow: str) -> str:
+    """Return who is at the other end; of a topic nobody there is worth a word."""
+    names = ", ".join(short(name) for name in way.nodes)
+    return f"{arrow} {names}" if names else _("nobody")
+
+
+def status_of(name: str, nodes: Mapping[str, NodeStatus]) -> NodeStatus | None:
+    """Return the process of a node of this full name, if Deck has started one that is called so."""
+    return nodes.get(name.removeprefix("/")) or nodes.get(name.rpartition("/")[2])
+
+
+def process_words(status: NodeStatus | None) -> str:
+    """Return which process of ours a node is, and what it costs."""
+    if status is None:
+        return _("not started by Deck")
+    sign, word, _meaning = looks(status)
+    if not status.state.alive:
+        return f"{sign} {_(word)} · {why(status)}"
+    parts = [f"{sign} {_(word)}"]
+    if status.pid is not None:
+        parts.append(_("process {pid}").format(pid=status.pid))
+    if status.cpu_percent is not None:
+        parts.append(_("CPU {share}").format(share=percent(status.cpu_percent)))
+    if status.memory_bytes is not None:
+        parts.append(memory(status.memory_bytes))
+    return " · ".join(parts)

@@ -41,11 +41,11 @@ class GraphHead(Static):
             self.update(Content("\n").join(lines))
 
 
-class Words(Static):
+class EmptyNotice(Static):
     """A headline and what to do, where nothing can be shown."""
 
     DEFAULT_CSS = """
-    Words { width: 1fr; height: auto; padding: 0 1; }
+    EmptyNotice { width: 1fr; height: auto; padding: 0 1; }
     """
 
     def __init__(self, *, id: str | None = None) -> None:

@@ -12,7 +12,7 @@ from text.i18n import _, ngettext, said
 from text.plain import plain
 from tui import clock
 from tui.frame.host import host_of
-from tui.graph.pane import LONGEST, Words
+from tui.graph.pane import LONGEST, EmptyNotice
 from tui.graph.parameter_words import allowed_words, value_text
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
@@ -57,7 +57,7 @@ class GraphParameters(Vertical, Working):
     def compose(self) -> ComposeResult:
         """Title, words, table."""
         yield Static(classes="parameters-title", markup=False)
-        yield Words()
+        yield EmptyNotice()
         yield Rows(id="graph-parameters")
 
     def on_mount(self) -> None:
@@ -148,7 +148,7 @@ class GraphParameters(Vertical, Working):
         if not self.is_mounted:
             return
         self._label()
-        words, table = self.query_one(Words), self.table
+        words, table = self.query_one(EmptyNotice), self.table
         words.show(*self._why_empty())
         words.display = bool(words.said[0])
         table.display = not words.display

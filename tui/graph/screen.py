@@ -13,22 +13,19 @@ from graph.housekeeping import is_housekeeping
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
-from tui.graph import parameters_dialog as graph_parameters
-from tui.graph.action import ActionPane
-from tui.graph.actions import GRAPH_ACTIONS, Housekeeping
+from tui.graph import parameter_changes
+from tui.graph.action import ActionPane, CancelGoalScreen
+from tui.graph.actions import GRAPH_ACTIONS, ShowEverything
 from tui.graph.ask import AskPane
 from tui.graph.detail import GraphDetail
-from tui.graph.goal import CancelGoalScreen
-from tui.graph.index import GraphIndex
+from tui.graph.index import GraphIndex, why_empty
 from tui.graph.list import GraphList
 from tui.graph.map import GraphMap, middle_of
 from tui.graph.node import NodePane
 from tui.graph.parameters import PARAMETER_EVENTS
-from tui.graph.place import LISTED, Kind, Place
+from tui.graph.place import LISTED, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.tabs import GraphTabs
-from tui.graph.trail import Trail
-from tui.graph.type_tree import GraphTypeTree
-from tui.graph.words import why_empty
+from tui.graph.type import GraphTypeTree
 from tui.widgets.field import Field
 from tui.widgets.rows import Rows
 
@@ -36,7 +33,7 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
     from graph.data import GraphUpdate, SeenGoal
-    from tui.graph.index import Entry
+    from tui.graph.index import GraphEntry
     from tui.graph.pane import GraphPane
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
@@ -85,7 +82,7 @@ class GraphScreen(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self.trail = Trail()
+        self.trail = PlaceHistory()
         self.index = GraphIndex()
         self._detail = GraphDetail()
         self._goals_of: set[str] = set()
@@ -170,7 +167,7 @@ class GraphScreen(DeckScreen):
     def watch_goals(self) -> set[str]:
         """Return the action that is shown."""
         here = self.trail.here
-        return {here.name} if here is not None and here.kind is Kind.ACTION else set()
+        return {here.name} if here is not None and here.kind is GraphKind.ACTION else set()
 
     def follow_topics(self) -> set[str]:
         """Return where nodes tell that a parameter has changed, shown now or in a moment."""
@@ -205,12 +202,12 @@ class GraphScreen(DeckScreen):
             middle = middle_of(update, self.trail.here)
             self.map.show_node(update, middle, everything=self.index.everything)
 
-    def _show_detail(self, shown: list[Entry]) -> None:
+    def _show_detail(self, shown: list[GraphEntry]) -> None:
         pane, here = self.pane, self.trail.here
         if pane is not None and here is not None and self.names.chosen_name:
             self._detail.show_place(pane, here.name, everything=self.index.everything)
             return
-        key, kind = self.deck.keys_of(Housekeeping)[0], self.trail.kind
+        key, kind = self.deck.keys_of(ShowEverything)[0], self.trail.kind
         words = why_empty(self.feed, kind, self.index.all_of(kind), all_key=key)
         self._detail.show_words(*(words if not shown else ("", "")))
 
@@ -267,22 +264,22 @@ class GraphScreen(DeckScreen):
 
     @on(Rows.Opened, ".graph-links")
     async def _followed(self, message: Rows.Opened) -> None:
-        place = Place.of_key(message.key)
+        place = GraphPlace.of_key(message.key)
         if place is not None:
             await self.go(place)
 
     @on(Rows.Opened, "#graph-parameters")
     def _edited(self) -> None:
         if self.node_pane is not None:
-            graph_parameters.edit(self.app, self.node_pane.parameters)
+            parameter_changes.edit(self.app, self.node_pane.parameters)
 
-    @on(GraphTypeTree.Wanted)
-    async def _type_wanted(self, message: GraphTypeTree.Wanted) -> None:
-        await self.go(Place(Kind.TYPE, message.type_name))
+    @on(GraphTypeTree.TypeWanted)
+    async def _type_wanted(self, message: GraphTypeTree.TypeWanted) -> None:
+        await self.go(GraphPlace(GraphKind.TYPE, message.type_name))
 
-    @on(GraphMap.Wanted)
-    async def _place_wanted(self, message: GraphMap.Wanted) -> None:
-        if message.place.kind is not Kind.NODE:
+    @on(GraphMap.PlaceWanted)
+    async def _place_wanted(self, message: GraphMap.PlaceWanted) -> None:
+        if message.place.kind is not GraphKind.NODE:
             self.remove_class("-map")
         await self.go(message.place)
 
@@ -308,9 +305,9 @@ class GraphScreen(DeckScreen):
 
     # What is done
 
-    async def go(self, place: Place) -> None:
+    async def go(self, place: GraphPlace) -> None:
         """Go where a link leads: here, or to the screen of topics."""
-        if place.kind is Kind.TOPIC:
+        if place.kind is GraphKind.TOPIC:
             await self._go_to_topic(place.name)
             return
         self.trail.go(place)
@@ -360,10 +357,10 @@ class GraphScreen(DeckScreen):
         if self.draws:
             middle = middle_of(self.feed.update, self.trail.here)
             if middle:
-                self.trail.go(Place(Kind.NODE, middle))
+                self.trail.go(GraphPlace(GraphKind.NODE, middle))
         self._arrive()
 
-    def list_kind(self, kind: Kind) -> None:
+    def list_kind(self, kind: GraphKind) -> None:
         """List another kind."""
         self.remove_class("-map")
         self.trail.kind = kind
@@ -399,9 +396,9 @@ class GraphScreen(DeckScreen):
     def save_parameters(self) -> None:
         """Ask for a file, and write the node's parameters into it."""
         if self.node_pane is not None:
-            graph_parameters.save(self.app, self.node_pane.parameters)
+            parameter_changes.save(self.app, self.node_pane.parameters)
 
     def load_parameters(self) -> None:
         """Ask for a file, and set what it has for the node."""
         if self.node_pane is not None:
-            graph_parameters.load(self.app, self.node_pane.parameters)
+            parameter_changes.load(self.app, self.node_pane.parameters)

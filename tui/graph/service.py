@@ -1,23 +1,28 @@
-"""A service: its form, its answers with their times, and the calls of this session."""
+"""A service: its form and time-out, its answers with their times, and the calls of this session."""
 
 from __future__ import annotations
 
 import asyncio
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual import on
+from textual.containers import Horizontal
+from textual.widgets import Input, Static
 
 from graph.data import CallResult
 from text.figures import figure
 from text.i18n import N_, _, decimal, said
 from text.plain import plain
 from tui.clock import time_of_day
-from tui.graph.actions import Cancel
+from tui.graph.actions import CancelRequest
 from tui.graph.ask import AskPane, now_s
-from tui.graph.call_timeout import USUAL_S, CallTimeout
 from tui.graph.links import heading, link, node_links
 from tui.graph.pane import LONGEST
 from tui.graph.parameter_words import typed
-from tui.graph.place import Kind, Place
+from tui.graph.place import GraphKind, GraphPlace
+from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row
 
 if TYPE_CHECKING:
@@ -28,12 +33,67 @@ if TYPE_CHECKING:
 
     from graph.data import ServiceRow
 
+USUAL_S = "5"
+LEAST_S, MOST_S = 0.1, 3600.0
+
+
+class CallTimeout(Horizontal):
+    """A field for seconds, and beside it what they may be if they are none."""
+
+    DEFAULT_CSS = """
+    CallTimeout {
+        height: 1; width: 1fr; background: $panel; padding: 0 1;
+        Static { width: auto; color: $text-muted; }
+        Field { width: 8; margin: 0 1; }
+        .timeout-bad { color: $text-error; text-style: bold; padding: 0 1; }
+    }
+    """
+
+    def compose(self) -> ComposeResult:
+        """All in one line."""
+        yield Static(classes="timeout-label", markup=False)
+        yield Field(USUAL_S, compact=True, select_on_focus=False, id="call-timeout")
+        yield Static(classes="timeout-unit", markup=False)
+        yield Static(classes="timeout-bad", markup=False)
+
+    @property
+    def field(self) -> Field:
+        """Where they are typed."""
+        return self.query_one(Field)
+
+    @property
+    def seconds(self) -> float | None:
+        """The seconds that stand there; None if nobody can wait so long."""
+        try:
+            typed_s = float(self.field.value.strip().replace(",", "."))
+        except ValueError:
+            return None
+        return typed_s if math.isfinite(typed_s) and LEAST_S <= typed_s <= MOST_S else None
+
+    def relabel(self) -> None:
+        """Say everything in the language spoken now."""
+        self.query_one(".timeout-label", Static).update(_("Wait for the answer"))
+        self.query_one(".timeout-unit", Static).update(_("s"))
+        limits = {"least": decimal(f"{LEAST_S:g}"), "greatest": f"{MOST_S:g}"}
+        wrong = "" if self.seconds else "✗ " + _("{least} to {greatest} s").format(**limits)
+        self.query_one(".timeout-bad", Static).update(wrong)
+
+    def on_mount(self) -> None:
+        """Say what it is."""
+        self.relabel()
+
+    @on(Input.Changed)
+    def _changed(self, event: Input.Changed) -> None:
+        event.stop()
+        self.relabel()
+
+
 MOST_CALLS = 50
 """Of one service that are kept."""
 
 
 @dataclass
-class Call:
+class ServiceCall:
     """One call of this session."""
 
     number: int
@@ -58,7 +118,7 @@ class ServicePane(AskPane):
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._calls: dict[str, list[Call]] = {}
+        self._calls: dict[str, list[ServiceCall]] = {}
         self._number = 0
         self._timeouts: dict[str, str] = {}
         """Service to what stood in its field for the time-out."""
@@ -85,12 +145,12 @@ class ServicePane(AskPane):
         self.timeout.relabel()
 
     @property
-    def calls(self) -> Sequence[Call]:
+    def calls(self) -> Sequence[ServiceCall]:
         """Those of the service that is shown, the newest first."""
         return self._calls.get(self.name_shown, [])
 
     @property
-    def chosen(self) -> Call | None:
+    def chosen(self) -> ServiceCall | None:
         """The chosen one."""
         wanted = self.asked_rows.chosen
         return next((call for call in self.calls if str(call.number) == wanted), None)
@@ -113,7 +173,7 @@ class ServicePane(AskPane):
             return [heading(_("It has left the graph."))]
         callers = [node.name for node in update.nodes if row.name in node.clients]
         return [
-            *(link(Place(Kind.TYPE, name), "type", _("type")) for name in row.type_names),
+            *(link(GraphPlace(GraphKind.TYPE, name), "type", _("type")) for name in row.type_names),
             *node_links(row.nodes, "serves", _("serves it")),
             *node_links(callers, "calls", _("calls it")),
         ]
@@ -151,7 +211,7 @@ class ServicePane(AskPane):
         told = _("{n} ms").format(n=decimal(f"{call.result.elapsed_s * 1000:.1f}"))
         return _("No answer · {time}").format(time=told), name, (_("the call failed"), words)
 
-    def _waiting(self, call: Call, name: str) -> tuple[str, str, tuple[str, str]]:
+    def _waiting(self, call: ServiceCall, name: str) -> tuple[str, str, tuple[str, str]]:
         if call.given_up:
             words = _(
                 "The node may still do what it was asked for; a late answer will be shown here."
@@ -161,7 +221,7 @@ class ServicePane(AskPane):
         title = _("Still waiting: {n} s of {most} s").format(
             n=waited, most=decimal(f"{call.timeout_s:g}")
         )
-        key = self.deck.keys_of(Cancel)[0]
+        key = self.deck.keys_of(CancelRequest)[0]
         way_out = _("{key} stops waiting for it.").format(key=key)
         return title, name, (_("the call is under way"), way_out)
 
@@ -175,7 +235,7 @@ class ServicePane(AskPane):
         if graph is None:
             return
         self._number += 1
-        call = Call(self._number, value, now_s(), timeout_s)
+        call = ServiceCall(self._number, value, now_s(), timeout_s)
         calls = self._calls.setdefault(self.name_shown, [])
         calls.insert(0, call)
         del calls[MOST_CALLS:]
@@ -184,7 +244,7 @@ class ServicePane(AskPane):
         self.redraw()
         self.asked_rows.choose(str(call.number))
 
-    async def _take(self, call: Call, name: str, future: Future[CallResult]) -> None:
+    async def _take(self, call: ServiceCall, name: str, future: Future[CallResult]) -> None:
         result = await _outcome(call, name, future)
         if result.late is None:
             self._show(call, result)
@@ -199,7 +259,7 @@ class ServicePane(AskPane):
             told = words.format(name=name, n=figure(result.elapsed_s, 1))
             self.notify(plain(told, LONGEST), markup=False)
 
-    def _show(self, call: Call, result: CallResult) -> None:
+    def _show(self, call: ServiceCall, result: CallResult) -> None:
         call.result = result
         if self.is_mounted:
             self.redraw()
@@ -218,7 +278,7 @@ class ServicePane(AskPane):
             self.redraw()
 
 
-async def _outcome(call: Call, name: str, future: Future[CallResult]) -> CallResult:
+async def _outcome(call: ServiceCall, name: str, future: Future[CallResult]) -> CallResult:
     try:
         return await asyncio.wrap_future(future)
     except Exception as error:  # noqa: BLE001 - whatever it was, it is told
@@ -226,7 +286,7 @@ async def _outcome(call: Call, name: str, future: Future[CallResult]) -> CallRes
         return CallResult(name, False, None, why, now_s() - call.asked_s)
 
 
-def _answer_title(call: Call, result: CallResult) -> str:
+def _answer_title(call: ServiceCall, result: CallResult) -> str:
     if call.late:
         words = _("Late answer after {n} s, awaited for {most} s")
         return words.format(n=figure(result.elapsed_s, 1), most=decimal(f"{call.timeout_s:g}"))
@@ -234,11 +294,11 @@ def _answer_title(call: Call, result: CallResult) -> str:
     return _("Answer in {time}").format(time=told)
 
 
-def _at(call: Call) -> str:
+def _at(call: ServiceCall) -> str:
     return time_of_day(call.asked_s)
 
 
-def _sign(call: Call) -> Cell:
+def _sign(call: ServiceCall) -> Cell:
     if call.waits:
         return Cell("◔", "warn")
     if call.result is None:
@@ -246,7 +306,7 @@ def _sign(call: Call) -> Cell:
     return Cell("✓", "good") if call.result.ok else Cell("✗", "bad")
 
 
-def _summary(call: Call) -> str:
+def _summary(call: ServiceCall) -> str:
     """Return what was asked and what came, in one line."""
     asked = _flat(call.request)
     result = call.result

@@ -10,7 +10,7 @@ from textual.style import Style
 from textual.widget import Widget
 
 from text.i18n import _
-from tui.graph.place import LISTED, TITLES, Kind
+from tui.graph.place import LISTED, TITLES, GraphKind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,7 +24,7 @@ class GraphTabs(Widget):
     class Selected(Message):
         """Another kind is wanted."""
 
-        def __init__(self, kind: Kind) -> None:
+        def __init__(self, kind: GraphKind) -> None:
             super().__init__()
             self.kind = kind
 
@@ -41,10 +41,10 @@ class GraphTabs(Widget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._front = Kind.NODE
-        self._counts: dict[Kind, int] = {}
+        self._front = GraphKind.NODE
+        self._counts: dict[GraphKind, int] = {}
 
-    def show(self, front: Kind, counts: Mapping[Kind, int]) -> None:
+    def show(self, front: GraphKind, counts: Mapping[GraphKind, int]) -> None:
         """Show how many there are of each kind, and which kind is listed."""
         if (front, dict(counts)) != (self._front, self._counts):
             self._front, self._counts = front, dict(counts)
@@ -57,7 +57,7 @@ class GraphTabs(Widget):
 
     def action_choose(self, kind: str) -> None:
         """Tell that a tab was clicked."""
-        self.post_message(self.Selected(Kind(kind)))
+        self.post_message(self.Selected(GraphKind(kind)))
 
     def render(self) -> Content:
         """Draw the tabs."""

@@ -1,25 +1,170 @@
-"""A type: what uses it, and what it is made of."""
+"""A type: what uses it, and what it is made of, as a tree that folds."""
 
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from rich.text import Text
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.widgets import Tree
+
+from graph.messages.browse import Constant, Definition, MessageField, definition
 from graph.messages.types import UnknownTypeError
-from text.i18n import _, said
+from text.i18n import N_, _, said
+from text.plain import plain
 from tui.graph.index import users_of
 from tui.graph.links import GraphLinks, heading, link
-from tui.graph.pane import GraphHead, GraphPane, Words
-from tui.graph.place import Place
-from tui.graph.type_tree import GraphTypeTree
+from tui.graph.pane import EmptyNotice, GraphHead, GraphPane
+from tui.graph.parameter_words import typed
+from tui.graph.place import GraphPlace
+from tui.widgets.working import Working
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
     from textual.timer import Timer
     from textual.widget import Widget
+    from textual.widgets.tree import TreeNode
 
     from graph.messages.browse import Definition
     from tui.widgets.rows import Row
+
+LONGEST = 200
+WIDEST = 2**63 - 1
+"""Bounds from which on they tell nothing."""
+PARTS = {
+    "request": N_("request"),
+    "response": N_("response"),
+    "goal": N_("goal"),
+    "result": N_("result"),
+    "feedback": N_("feedback"),
+}
+
+
+class GraphTypeTree(Tree["str | None"], Working):
+    """Fields with their types, defaults and bounds; each that holds a message has its type."""
+
+    class TypeWanted(Message):
+        """Enter was pressed on a field that holds a message: that type is wanted."""
+
+        def __init__(self, type_name: str) -> None:
+            super().__init__()
+            self.type_name = type_name
+
+    ICON_NODE = "▸ "
+    ICON_NODE_EXPANDED = "▾ "
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("right", "unfold", show=False),
+        Binding("left", "fold", show=False),
+        Binding("up,k", "cursor_up", show=False),
+        Binding("down,j", "cursor_down", show=False),
+        Binding("enter", "open", show=False),
+    ]
+    DEFAULT_CSS = """
+    GraphTypeTree { height: 1fr; width: 1fr; padding: 0 1; background: transparent; }
+    GraphTypeTree:focus { background-tint: $foreground 0%; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__("")
+        self.show_root = False
+        self.guide_depth = 2
+        self.auto_expand = False
+
+    def show_definition(self, shown: Definition) -> None:
+        """Show a type; its own parts are open."""
+        self.clear()
+        self.root.expand()
+        for part in shown.parts:
+            at = self.root
+            if part.name in PARTS:
+                label = Text(_(PARTS[part.name]), "bold")
+                at = self.root.add(label, expand=True)
+            _fill(at, part.fields, part.constants)
+        self.cursor_line = 0
+        self.refresh()
+
+    def action_unfold(self) -> None:
+        """Open the field at the cursor, or go into it."""
+        node = self.cursor_node
+        if node is not None and node.allow_expand and not node.is_expanded:
+            node.expand()
+        else:
+            self.action_cursor_down()
+
+    def action_fold(self) -> None:
+        """Close the field at the cursor, or go out to the one it lies in."""
+        node = self.cursor_node
+        if node is None:
+            return
+        if node.allow_expand and node.is_expanded:
+            node.collapse()
+        elif node.parent is not None and node.parent is not self.root:
+            self.move_cursor(node.parent)
+
+    def action_open(self) -> None:
+        """Tell that the type of the field at the cursor is wanted."""
+        node = self.cursor_node
+        if node is not None and node.data:
+            self.post_message(self.TypeWanted(node.data))
+        elif node is not None and node.allow_expand:
+            node.toggle()
+
+    def on_tree_node_expanded(self, event: Tree.NodeExpanded[str | None]) -> None:
+        """Load what the message in this field is made of."""
+        event.stop()
+        node = event.node
+        if node.data and not node.children:
+            self.run_worker(self._load(node, node.data), exit_on_error=False)
+
+    async def _load(self, node: TreeNode[str | None], type_name: str) -> None:
+        try:
+            # The first look at a package imports it, which takes its time.
+            found = await asyncio.to_thread(definition, type_name)
+        except UnknownTypeError as error:
+            node.add_leaf(Text(plain(said(error.reason), LONGEST), "italic"))
+            return
+        for part in found.parts:
+            _fill(node, part.fields, part.constants)
+
+
+def _fill(
+    node: TreeNode[str | None], fields: tuple[MessageField, ...], constants: tuple[Constant, ...]
+) -> None:
+    if not fields and not constants:
+        node.add_leaf(Text(_("no fields"), "italic dim"))
+    width = min(30, max((len(field.name) for field in fields), default=0))
+    for field in fields:
+        label = Text.assemble((f"{plain(field.name):{width}} ", "bold"), *_told(field))
+        if field.message:
+            node.add(label, data=field.message)
+        else:
+            node.add_leaf(label)
+    for constant in constants:
+        node.add_leaf(
+            Text.assemble(
+                (f"{plain(constant.name)} ", "italic"),
+                f"= {plain(typed(constant.value), LONGEST)}",
+            )
+        )
+
+
+def _told(field: MessageField) -> list[Any]:
+    """Return type, default, and bounds that the type's name does not tell by itself."""
+    parts: list[Any] = [(plain(field.type_name), "cyan")]
+    if not field.message:
+        parts.append(f" = {plain(_default(field.default), LONGEST)}")
+    if field.least is not None and field.greatest is not None and field.greatest < WIDEST:
+        parts.append((f"  {field.least}…{field.greatest}", "dim"))
+    return parts
+
+
+def _default(value: Any) -> str:  # noqa: ANN401 - whatever a field may hold
+    if isinstance(value, str):
+        return f'"{value}"'
+    return typed(value)
+
 
 SETTLED_S = 0.12
 """How long a choice must stand before its package is imported."""
@@ -43,7 +188,7 @@ class TypePane(GraphPane):
     def compose(self) -> ComposeResult:
         """Head, tree, users."""
         yield GraphHead()
-        yield Words()
+        yield EmptyNotice()
         yield GraphTypeTree()
         yield GraphLinks()
 
@@ -75,7 +220,7 @@ class TypePane(GraphPane):
         links = self.query_one(GraphLinks)
         links.show_links(rows)
         links.display = bool(rows)
-        words = self.query_one(Words)
+        words = self.query_one(EmptyNotice)
         words.display = bool(self._failure)
         self.fields.display = not self._failure
         if self._failure:
@@ -113,5 +258,5 @@ class TypePane(GraphPane):
     def _users(self) -> list[Row]:
         rows: list[Row] = []
         for kind, names in users_of(self.graph_now, self.name_shown).items():
-            rows += [link(Place(kind, name), "used") for name in sorted(names)]
+            rows += [link(GraphPlace(kind, name), "used") for name in sorted(names)]
         return [heading(_("Used by")), *rows] if rows else []

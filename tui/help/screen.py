@@ -14,7 +14,7 @@ from tui.frame.host import host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import DeckScreen
 from tui.frame.title_bar import TitleBar
-from tui.widgets.page import Entry, Page
+from tui.widgets.page import Page, PageEntry
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -78,18 +78,18 @@ class HelpScreen(ModalScreen[None], Acting):
         self.query_one(TitleBar).show((), (_("Help"),))
         self.query_one(Page).show(list(self._entries()))
 
-    def _entries(self) -> Iterable[Entry]:
+    def _entries(self) -> Iterable[PageEntry]:
         screen = self._explained
         if isinstance(screen, DeckScreen) and screen.about:
-            yield Entry()
-            yield Entry(_(screen.about))
+            yield PageEntry()
+            yield PageEntry(_(screen.about))
         yield from self._section(_("Keys of this screen"), list(bound(screen)))
         if isinstance(screen, DeckScreen):
             for heading, actions in screen.more_keys():
                 yield from self._section(heading, list(actions))
         yield from self._section(_("Keys of every screen"), self._everywhere())
-        yield Entry()
-        yield Entry(
+        yield PageEntry()
+        yield PageEntry(
             _(
                 "Tab moves between panels; the mouse clicks, scrolls and selects. In a text field "
                 "letters, digits and space are typed: use Ctrl and the function keys there."
@@ -102,10 +102,10 @@ class HelpScreen(ModalScreen[None], Acting):
         actions = list(bound(self.app))
         return [each for each in actions if replayed or not issubclass(each, ReplayAction)]
 
-    def _section(self, heading: str, actions: list[type[Action[Any]]]) -> Iterable[Entry]:
+    def _section(self, heading: str, actions: list[type[Action[Any]]]) -> Iterable[PageEntry]:
         if actions:
-            yield Entry(name=heading)
+            yield PageEntry(name=heading)
         app = host_of(self)
         for action in actions:
             keys = "  ".join(app.keys_of(action))
-            yield Entry(_(action.tooltip), _(action.title), keys)
+            yield PageEntry(_(action.tooltip), _(action.title), keys)

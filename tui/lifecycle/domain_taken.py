@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from launcher.errors import DomainTakenError
 
 
-class Answer(Enum):
+class DomainAnswer(Enum):
     """What is to be done."""
 
     APART = "apart"
@@ -41,7 +41,7 @@ class StartApart(Action["DomainTakenScreen"]):
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
         """Answer so."""
-        target.dismiss(Answer.APART)
+        target.dismiss(DomainAnswer.APART)
 
 
 class StartTogether(Action["DomainTakenScreen"]):
@@ -63,7 +63,7 @@ class StartTogether(Action["DomainTakenScreen"]):
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
         """Answer so."""
-        target.dismiss(Answer.TOGETHER)
+        target.dismiss(DomainAnswer.TOGETHER)
 
 
 class StartNot(Action["DomainTakenScreen"]):
@@ -79,10 +79,10 @@ class StartNot(Action["DomainTakenScreen"]):
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
         """Answer so."""
-        target.dismiss(Answer.NOT)
+        target.dismiss(DomainAnswer.NOT)
 
 
-class DomainTakenScreen(Dialog[Answer]):
+class DomainTakenScreen(Dialog[DomainAnswer]):
     """Names who is in the domain, and a domain that is free."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StartApart, StartTogether, StartNot)

@@ -156,12 +156,12 @@ class Sessions:
 
     async def _ask_for_domain(self, request: OpenRequest, error: DomainTakenError) -> None:
         """Offer a domain in which there is no other session."""
-        from tui.lifecycle.domain_taken import Answer, DomainTakenScreen
+        from tui.lifecycle.domain_taken import DomainAnswer, DomainTakenScreen
 
         answer = await self._app.push_screen_wait(DomainTakenScreen(_name_of(request), error))
-        if answer is Answer.APART:
+        if answer is DomainAnswer.APART:
             self.open(request._replace(domain=error.free))
-        elif answer is Answer.TOGETHER:
+        elif answer is DomainAnswer.TOGETHER:
             self.open(request._replace(beside=True))
         elif self.picking:
             await self._back_to_picker()

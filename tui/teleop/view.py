@@ -10,7 +10,7 @@ from rich.cells import cell_len
 from robot.words import STOP, DriveSetpoint
 from text.i18n import _, decimal
 from tui.panels.sonar.bar import big
-from tui.panels.wheels.reading import Wheels
+from tui.panels.wheels.reading import WheelsReading
 from tui.panels.wheels.widget import number_words
 from tui.teleop.keys import TeleopLimits
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
@@ -29,7 +29,7 @@ class Driving(NamedTuple):
     allowed: DriveSetpoint | None = None
     """What the gate lets through; None without a gate, or without a word of it."""
     gated: bool = False
-    wheels: Wheels | None = None
+    wheels: WheelsReading | None = None
     limits: TeleopLimits = TeleopLimits()
     words: str = ""
     """What is to be known now: why it does not move, where it goes."""
@@ -128,14 +128,14 @@ def _angle(angle: float) -> str:
     )
 
 
-def _of(wheels: Wheels | None) -> DriveSetpoint | None:
+def _of(wheels: WheelsReading | None) -> DriveSetpoint | None:
     """The speed between the rear wheels."""
     if wheels is None:
         return None
     return DriveSetpoint((wheels.left_m_s + wheels.right_m_s) / 2, wheels.steering_rad)
 
 
-def _sides(wheels: Wheels | None) -> str:
+def _sides(wheels: WheelsReading | None) -> str:
     """`0.18 ‖ 0.22  ← 0.30 rad`: each rear wheel, and the steering."""
     if wheels is None:
         return ""

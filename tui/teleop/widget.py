@@ -22,7 +22,7 @@ from tui.emergency.gate import Gate, gate_in, gate_words
 from tui.frame.actions.app import EmergencyRelease
 from tui.frame.host import Host, host_of
 from tui.panels.panel import newest, row_of
-from tui.panels.wheels.reading import Wheels, wheels_in
+from tui.panels.wheels.reading import WheelsReading, wheels_in
 from tui.teleop.actions import TELEOP_ACTIONS, MoveAction, OpenTeleop
 from tui.teleop.keys import NOTHING, Move, TeleopLimits
 from tui.teleop.route import (
@@ -74,7 +74,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self._limits = TeleopLimits()
         self._route = Route()
         self._allowed: DriveSetpoint | None = None
-        self._wheels: Wheels | None = None
+        self._wheels: WheelsReading | None = None
         self._gate: Gate | None = None
         self._error = ""
         self._timer: Timer | None = None

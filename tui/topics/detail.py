@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from graph.data import Sample, TopicRow
     from tui.widgets.half_blocks import Pixels
-    from tui.widgets.image_view import Scale
+    from tui.widgets.image_view import ImageScale
 
 
 class TopicHead(Widget):
@@ -176,7 +176,7 @@ class TopicDetail(Vertical, Working):
             self._say()
         self.echo.show(sample.topic, sample.value)
 
-    def show_picture(self, rgb: Pixels, caption: str, scale: Scale | None, hz: str) -> None:
+    def show_picture(self, rgb: Pixels, caption: str, scale: ImageScale | None, hz: str) -> None:
         """Show the newest message as a picture."""
         self.picture.show(rgb, caption, scale, hz)
 

@@ -12,7 +12,7 @@ from graph.pictures.reading import read_picture
 from text.i18n import _, decimal, said
 from text.plain import plain
 from tui.topics.table.columns import hz_text
-from tui.widgets.image_view import Scale
+from tui.widgets.image_view import ImageScale
 
 if TYPE_CHECKING:
     from graph.data import Sample, TopicRow
@@ -89,7 +89,7 @@ class TopicPictures:
         if picture.range_m is not None:
             near, far = (_("{n} m").format(n=decimal(f"{metres:g}")) for metres in picture.range_m)
             first = _("near {distance}").format(distance=near)
-            scale = Scale(first, _("{distance} far").format(distance=far), ramp_colours())
+            scale = ImageScale(first, _("{distance} far").format(distance=far), ramp_colours())
         self._detail.show_picture(picture.rgb, size, scale, hz_text(row.hz if row else None))
 
     def _refuse(self, sample: Sample, error: ImageError) -> None:

@@ -37,7 +37,7 @@ UNPLACED = (200, 60)
 """Columns and rows to count with while there are none."""
 
 
-class Scale(NamedTuple):
+class ImageScale(NamedTuple):
     """What the colours of a picture stand for: from the first to the last."""
 
     first: str
@@ -46,12 +46,12 @@ class Scale(NamedTuple):
     """Shape (n, 3)."""
 
 
-class Picture(NamedTuple):
+class ShownPicture(NamedTuple):
     """What is asked to be shown."""
 
     rgb: Pixels
     caption: str
-    scale: Scale | None
+    scale: ImageScale | None
     hz: str
     """How many come a second; empty if that is not known."""
 
@@ -72,19 +72,19 @@ class ImageView(OneStyle, Widget):
     def __init__(self, *, bits: int = 5, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._bits = bits
-        self._newest: Picture | None = None
+        self._newest: ShownPicture | None = None
         self._waits = False
         """Whether the newest picture is not drawn yet."""
         self._timer: Timer | None = None
         self._pace = PicturePace()
         self._shown: Pixels | None = None
         self._caption = ""
-        self._scale: Scale | None = None
+        self._scale: ImageScale | None = None
         self._headline = ""
         self._detail = ""
 
     def show(
-        self, rgb: Pixels, caption: str = "", scale: Scale | None = None, hz: str = ""
+        self, rgb: Pixels, caption: str = "", scale: ImageScale | None = None, hz: str = ""
     ) -> None:
         """Show a picture of shape (height, width, 3) at any size, with a line of text under it.
 
@@ -93,7 +93,7 @@ class ImageView(OneStyle, Widget):
         """
         if rgb.shape[2:] != (3,) or not rgb.size:
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
-        self._newest = Picture(rgb, caption, scale, hz)
+        self._newest = ShownPicture(rgb, caption, scale, hz)
         self._headline = self._detail = ""
         if self._waits:
             self._pace.left_out(clock.steady())
@@ -188,7 +188,7 @@ class ImageView(OneStyle, Widget):
         else:
             self._take(self._newest)
 
-    def _take(self, picture: Picture) -> None:
+    def _take(self, picture: ShownPicture) -> None:
         now_s = clock.steady()
         self._waits = False
         self._pace.shown(now_s)
@@ -237,7 +237,7 @@ class ImageView(OneStyle, Widget):
             self._caption = caption
             self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
 
-    def _set_scale(self, scale: Scale | None) -> None:
+    def _set_scale(self, scale: ImageScale | None) -> None:
         if (scale is None) != (self._scale is None):
             # There is a row more for the picture, or less.
             self._shown = None
@@ -262,7 +262,7 @@ class ImageView(OneStyle, Widget):
         left = (width - cell_len(text)) // 2
         return in_row(Strip([Segment(text, style)]), left, width, style)
 
-    def _scale_strip(self, scale: Scale, width: int) -> Strip:
+    def _scale_strip(self, scale: ImageScale, width: int) -> Strip:
         base = self.rich_style
         room = width - cell_len(scale.first) - cell_len(scale.last) - 2
         cells = min(WIDEST_SCALE, max(0, room))

@@ -30,7 +30,7 @@ LONGEST_COLOURED = 4096
 """Characters of a line: a wrapped line is coloured anew for each of its rows on the screen."""
 
 
-class Place(NamedTuple):
+class TextPlace(NamedTuple):
     """Where something is wrong, counted from 1."""
 
     line: int
@@ -101,7 +101,7 @@ class MarkedEditor(TextArea):
         self.indent_width = 2
         # A blink is bytes over the line twice a second, for as long as the screen is open.
         self.cursor_blink = False
-        self._places: tuple[Place, ...] = ()
+        self._places: tuple[TextPlace, ...] = ()
 
     def tokens_of(self, line: str) -> Iterable[Token]:
         """Return the tokens of a line in order; never fails, whatever the line is."""
@@ -126,7 +126,7 @@ class MarkedEditor(TextArea):
         edit.text = self.shown(edit.text)
         return super().edit(edit)
 
-    def show_problems(self, places: Iterable[Place]) -> None:
+    def show_problems(self, places: Iterable[TextPlace]) -> None:
         """Underline what stands at these places and mark their lines; none clears the marks."""
         shown = tuple(places)
         if shown != self._places:
@@ -134,7 +134,7 @@ class MarkedEditor(TextArea):
             self.notify_style_update()
             self.refresh()
 
-    def go_to(self, place: Place) -> None:
+    def go_to(self, place: TextPlace) -> None:
         """Put the cursor to a place, as near as the text allows."""
         row = max(0, min(place.line - 1, self.document.line_count - 1))
         column = max(0, min(place.column - 1, len(self.document.get_line(row))))

@@ -17,7 +17,7 @@ WIDEST = 110
 """Lines longer than that are hard to read."""
 
 
-class Entry(NamedTuple):
+class PageEntry(NamedTuple):
     """A paragraph; with a `left` it stands beside that, with a `name` it begins with it, bold.
 
     A name without a text is a heading.
@@ -43,10 +43,10 @@ class Page(ScrollView, can_focus=True):
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._entries: Sequence[Entry] = ()
+        self._entries: Sequence[PageEntry] = ()
         self._lines: list[list[tuple[str, str]]] = []
 
-    def show(self, entries: Sequence[Entry]) -> None:
+    def show(self, entries: Sequence[PageEntry]) -> None:
         """Show these from the beginning."""
         self._entries = entries
         self._fold()
@@ -81,7 +81,7 @@ class Page(ScrollView, can_focus=True):
         self.refresh()
 
 
-def _folded(entry: Entry, width: int) -> list[list[tuple[str, str]]]:
+def _folded(entry: PageEntry, width: int) -> list[list[tuple[str, str]]]:
     if entry.name and not entry.text:
         return [[], [(entry.name, "heading")]]
     indent = LEFT if entry.left else 0

@@ -9,7 +9,7 @@ from graph.messages.types import UnknownTypeError
 from graph.messages.yaml_text import YamlError
 from text.i18n import _, said
 from text.plain import plain
-from tui.widgets.marked_editor import Place
+from tui.widgets.marked_editor import TextPlace
 
 LONGEST = 300
 
@@ -17,10 +17,10 @@ Wrong: TypeAlias = YamlError | FieldError | UnknownTypeError
 """All that checking a form may raise."""
 
 
-def place_of(error: Wrong) -> Place | None:
+def place_of(error: Wrong) -> TextPlace | None:
     """Return where it is wrong, None for a type that is not there."""
     line = getattr(error, "line", None)
-    return None if line is None else Place(line, getattr(error, "column", None) or 1)
+    return None if line is None else TextPlace(line, getattr(error, "column", None) or 1)
 
 
 def wrong_words(error: Wrong) -> str:

@@ -62,7 +62,7 @@ class Extent:
 
 
 @dataclass(frozen=True)
-class Field:
+class Viewport:
     """An extent in the middle of so many dots."""
 
     left_m: float
@@ -78,13 +78,13 @@ class Field:
         return (x_m - self.left_m) * self.dots_per_m, (self.top_m - y_m) * self.dots_per_m
 
 
-def fitted(extent: Extent, columns: int, rows: int) -> Field:
+def fitted(extent: Extent, columns: int, rows: int) -> Viewport:
     """Show all of an extent as large as so many cells allow."""
     width_m = max(1e-6, extent.right_m - extent.left_m)
     height_m = max(1e-6, extent.top_m - extent.bottom_m)
     # The outermost dot belongs to what lies on the edge.
     scale = min((2 * columns - 1) / width_m, (4 * rows - 1) / height_m)
-    return Field(
+    return Viewport(
         (extent.left_m + extent.right_m) / 2 - columns / scale,
         (extent.bottom_m + extent.top_m) / 2 + 2 * rows / scale,
         scale,
@@ -93,7 +93,7 @@ def fitted(extent: Extent, columns: int, rows: int) -> Field:
     )
 
 
-def bar_length_m(field: Field, cells: int) -> float:
+def bar_length_m(field: Viewport, cells: int) -> float:
     """The longest of 1, 2, 5, 10, ... metres, or parts, that so many cells have room for."""
     most_m = max(1, cells) * 2 / field.dots_per_m
     power = 10.0 ** math.floor(math.log10(most_m))

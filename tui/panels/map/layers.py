@@ -8,9 +8,9 @@ from tui.panels.map.canvas import Canvas
 from tui.panels.map.scene import draw_grid, draw_ground, draw_path, grid_step_m
 
 if TYPE_CHECKING:
-    from tui.panels.map.field import Field
+    from tui.panels.map.field import Viewport
     from tui.panels.map.reading import Ground
-    from tui.panels.map.trail import Trail
+    from tui.panels.map.trail import DrivenPath
 
 
 class Layers:
@@ -18,11 +18,11 @@ class Layers:
 
     def __init__(self) -> None:
         self._canvas = Canvas(1, 1)
-        self._drawn: tuple[Field, Ground | None, Trail, int] | None = None
+        self._drawn: tuple[Viewport, Ground | None, DrivenPath, int] | None = None
         self._done = (0, 0)
         """Pieces of the path, and points of the last of them, that have been drawn."""
 
-    def canvas(self, view: Field, ground: Ground | None, trail: Trail) -> Canvas:
+    def canvas(self, view: Viewport, ground: Ground | None, trail: DrivenPath) -> Canvas:
         """A copy with grid, room and path, to draw the rest on."""
         wanted = (view, ground, trail, trail.revision)
         if wanted != self._drawn:
@@ -34,7 +34,7 @@ class Layers:
         self._go_on(view, trail)
         return self._canvas.copy()
 
-    def _go_on(self, view: Field, trail: Trail) -> None:
+    def _go_on(self, view: Viewport, trail: DrivenPath) -> None:
         pieces, points = self._done
         for number in range(max(0, pieces - 1), len(trail.pieces)):
             piece = trail.pieces[number]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robot.motion.odometry import Pose
-    from tui.panels.map.field import Field
+    from tui.panels.map.field import Viewport
     from tui.panels.map.scene import Scene
     from tui.panels.sonar.words import Bounds
 
@@ -38,43 +38,47 @@ BAR_CELLS = 12
 GAP = "  "
 
 
-class Entry(NamedTuple):
+class LegendEntry(NamedTuple):
     """A line of the legend; where there is no room, those of a high rank are left out."""
 
     rank: int
     line: Line
 
 
-def entries(scene: Scene, view: Field, driven_m: float, remarks: Sequence[str]) -> list[Entry]:
+def entries(
+    scene: Scene, view: Viewport, driven_m: float, remarks: Sequence[str]
+) -> list[LegendEntry]:
     """All there is to say, in the order in which it is read; `remarks` warn of something."""
-    said = [Entry(0, [Ink(plain(words, 200), "alert")]) for words in remarks if words]
+    said = [LegendEntry(0, [Ink(plain(words, 200), "alert")]) for words in remarks if words]
     said += _robot(scene.pose)
     if driven_m >= 0.05:
         words = _("path {metres} m").format(metres=figure(driven_m, 1))
-        said.append(Entry(7, [Ink("─ ", PATH), Ink(words)]))
+        said.append(LegendEntry(7, [Ink("─ ", PATH), Ink(words)]))
     if scene.goal is not None:
         metres = scene.pose.distance_to(scene.goal)
         words = _("goal {metres} m away").format(metres=figure(metres, 1))
-        said.append(Entry(3, [Ink(f"{GOAL_SIGN} ", GOAL), Ink(words)]))
-    said += [Entry(4, _ray(place, metres, scene.bounds)) for place, metres in scene.rays.items()]
+        said.append(LegendEntry(3, [Ink(f"{GOAL_SIGN} ", GOAL), Ink(words)]))
+    said += [
+        LegendEntry(4, _ray(place, metres, scene.bounds)) for place, metres in scene.rays.items()
+    ]
     if scene.truth is not None:
         metres = scene.pose.distance_to(scene.truth)
         words = _("truth {metres} m off").format(metres=decimal(f"{metres:.2f}"))
-        said.append(Entry(5, [Ink("◇ ", TRUTH), Ink(words)]))
-    said.append(Entry(2, scale_bar(view)))
-    said.append(Entry(8, [Ink(_("x → right, y ↑ up"), "muted")]))
+        said.append(LegendEntry(5, [Ink("◇ ", TRUTH), Ink(words)]))
+    said.append(LegendEntry(2, scale_bar(view)))
+    said.append(LegendEntry(8, [Ink(_("x → right, y ↑ up"), "muted")]))
     words = _("· every {metres} m").format(metres=decimal(f"{grid_step_m(view):g}"))
-    said.append(Entry(9, [Ink(words, "muted")]))
+    said.append(LegendEntry(9, [Ink(words, "muted")]))
     return said
 
 
-def _robot(pose: Pose) -> list[Entry]:
+def _robot(pose: Pose) -> list[LegendEntry]:
     place = _("x {x}  y {y} m").format(x=decimal(f"{pose.x_m:.2f}"), y=decimal(f"{pose.y_m:.2f}"))
     degrees = round(math.degrees(pose.heading_rad))
     heading = _("heading {degrees}°").format(degrees=degrees)
     return [
-        Entry(1, [Ink("▲ ", ROBOT), Ink(place, "strong")]),
-        Entry(6, [Ink("  "), Ink(heading)]),
+        LegendEntry(1, [Ink("▲ ", ROBOT), Ink(place, "strong")]),
+        LegendEntry(6, [Ink("  "), Ink(heading)]),
     ]
 
 
@@ -85,7 +89,7 @@ def _ray(place: str, metres: float, bounds: Bounds) -> Line:
     return [Ink(f"{sign} ", ink_of(metres, bounds)), Ink(f"{name} {words}")]
 
 
-def scale_bar(view: Field) -> Line:
+def scale_bar(view: Viewport) -> Line:
     """A bar of a round number of metres, as long as these are on the map."""
     metres = bar_length_m(view, BAR_CELLS)
     cells = max(1, round(metres * view.dots_per_m / 2))
@@ -93,13 +97,13 @@ def scale_bar(view: Field) -> Line:
     return [Ink(f"{bar} "), Ink(_("{metres} m").format(metres=decimal(f"{metres:g}")), "strong")]
 
 
-def column(said: Sequence[Entry], width: int, height: int) -> list[Line]:
+def column(said: Sequence[LegendEntry], width: int, height: int) -> list[Line]:
     """Below each other, in exactly so many cells; what matters least is left out."""
     lines = [beside(entry.line, [], width) for entry in _foremost(said, height)]
     return [*lines, *([[Ink(" " * width)]] * (height - len(lines)))]
 
 
-def rows(said: Sequence[Entry], width: int, height: int) -> list[Line]:
+def rows(said: Sequence[LegendEntry], width: int, height: int) -> list[Line]:
     """Beside each other in at most so many lines; what matters least is left out."""
     for count in range(len(said), 0, -1):
         lines = _packed(_foremost(said, count), width)
@@ -109,13 +113,13 @@ def rows(said: Sequence[Entry], width: int, height: int) -> list[Line]:
     return [beside(line, [], width)] if line else []
 
 
-def _foremost(said: Sequence[Entry], count: int) -> list[Entry]:
+def _foremost(said: Sequence[LegendEntry], count: int) -> list[LegendEntry]:
     """So many of those that matter most, in the order in which they are read."""
     kept = sorted(range(len(said)), key=lambda at: (said[at].rank, at))[:count]
     return [said[at] for at in sorted(kept)]
 
 
-def _packed(said: Sequence[Entry], width: int) -> list[Line]:
+def _packed(said: Sequence[LegendEntry], width: int) -> list[Line]:
     lines: list[Line] = []
     for entry in said:
         line = [Ink(entry.line[0].text.lstrip(), entry.line[0].look), *entry.line[1:]]

@@ -17,7 +17,7 @@ from tui.panels.sonar.words import COURSE, Bounds
 
 if TYPE_CHECKING:
     from robot.motion.odometry import Point, Pose
-    from tui.panels.map.field import Field
+    from tui.panels.map.field import Viewport
     from tui.panels.map.reading import Ground
     from tui.widgets import dots
 
@@ -73,7 +73,7 @@ def along(start: dots.Point, heading_rad: float, metres: float) -> dots.Point:
     return start[0] + metres * math.cos(heading_rad), start[1] + metres * math.sin(heading_rad)
 
 
-def draw_grid(canvas: Canvas, view: Field, step_m: float) -> None:
+def draw_grid(canvas: Canvas, view: Viewport, step_m: float) -> None:
     """A dot at every crossing of a grid, one of them at the origin."""
     if math.isinf(step_m):
         return
@@ -86,7 +86,7 @@ def draw_grid(canvas: Canvas, view: Field, step_m: float) -> None:
     canvas.dots((x - view.left_m) * view.dots_per_m, (view.top_m - y) * view.dots_per_m, GRID)
 
 
-def grid_step_m(view: Field) -> float:
+def grid_step_m(view: Viewport) -> float:
     """The distance between the dots of the grid: 1 m, or 2, 5, 10, ... where that is too near."""
     for step_m in (digit * 10.0**power for power in range(8) for digit in (1, 2, 5)):
         if step_m * view.dots_per_m >= 2 * _GRID_CELLS:
@@ -94,7 +94,7 @@ def grid_step_m(view: Field) -> float:
     return math.inf
 
 
-def draw_ground(canvas: Canvas, view: Field, ground: Ground) -> None:
+def draw_ground(canvas: Canvas, view: Viewport, ground: Ground) -> None:
     """What stands in the room."""
     if ground.cell_m * view.dots_per_m <= 1.0:
         rows, columns = np.nonzero(ground.cells >= OCCUPIED_FROM)
@@ -108,13 +108,13 @@ def draw_ground(canvas: Canvas, view: Field, ground: Ground) -> None:
     canvas.dots(x[stands], y[stands], WALL)
 
 
-def draw_path(canvas: Canvas, view: Field, piece: list[dots.Point]) -> None:
+def draw_path(canvas: Canvas, view: Viewport, piece: list[dots.Point]) -> None:
     """A piece of the path that was driven."""
     for start, end in pairwise(piece):
         canvas.line(view.place(*start), view.place(*end), PATH)
 
 
-def draw_scene(canvas: Canvas, view: Field, scene: Scene) -> None:
+def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
     """All that moves, the robot last."""
     for place, metres in scene.rays.items():
         _draw_ray(canvas, view, scene.pose, place, metres, ink_of(metres, scene.bounds))
@@ -128,7 +128,7 @@ def draw_scene(canvas: Canvas, view: Field, scene: Scene) -> None:
 
 
 def _draw_ray(
-    canvas: Canvas, view: Field, pose: Pose, place: str, metres: float, look: str
+    canvas: Canvas, view: Viewport, pose: Pose, place: str, metres: float, look: str
 ) -> None:
     start, heading = ray_origin(pose, place)
     begin = view.place(*start)
@@ -151,7 +151,7 @@ def _draw_ray(
         canvas.sign(end, HIT_SIGN, look)
 
 
-def _draw_robot(canvas: Canvas, view: Field, pose: Pose) -> None:
+def _draw_robot(canvas: Canvas, view: Viewport, pose: Pose) -> None:
     """A dart that points ahead, within the outline of the robot where that can be seen."""
     nose, left, notch, right = robot_corners(view, pose)
     canvas.fill([nose, left, notch], ROBOT)
@@ -160,19 +160,19 @@ def _draw_robot(canvas: Canvas, view: Field, pose: Pose) -> None:
         canvas.outline(_placed(view, pose, _HULL, 1.0, 1.0), ROBOT)
 
 
-def robot_corners(view: Field, pose: Pose) -> list[dots.Point]:
+def robot_corners(view: Viewport, pose: Pose) -> list[dots.Point]:
     """Nose, left, notch and right of the dart; larger than life where it would be too small."""
     life = _life_dots(view)
     size = max(1.0, _DRAWN_FROM / life)
     return _placed(view, pose, _DART, size, size if life >= _HULL_FROM else size * _WIDER)
 
 
-def _life_dots(view: Field) -> float:
+def _life_dots(view: Viewport) -> float:
     return BODY.length_m * view.dots_per_m
 
 
 def _placed(
-    view: Field, pose: Pose, shape: tuple[dots.Point, ...], longer: float, wider: float
+    view: Viewport, pose: Pose, shape: tuple[dots.Point, ...], longer: float, wider: float
 ) -> list[dots.Point]:
     """A shape in halves of the robot's length and width, about its middle, on the canvas."""
     middle_m = BODY.length_m / 2 - BODY.behind_m

@@ -15,7 +15,7 @@ TORN_M = 0.6
 MOST = 4000
 
 
-class Trail:
+class DrivenPath:
     """Points in the order in which they were driven, in pieces."""
 
     def __init__(self) -> None:

@@ -6,11 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 from text.i18n import _
-from tui.panels.map.field import Extent, Field, fitted
+from tui.panels.map.field import Extent, Viewport, fitted
 from tui.panels.map.layers import Layers
 from tui.panels.map.legend import column, entries, rows
 from tui.panels.map.scene import Scene, along, draw_scene, ray_origin, robot_corners
-from tui.panels.map.trail import Trail
+from tui.panels.map.trail import DrivenPath
 from tui.panels.sonar.words import COURSE
 from tui.widgets.drawing import Drawing, Ink, Line
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from robot.motion.odometry import Point, Pose
-    from tui.panels.map.legend import Entry
+    from tui.panels.map.legend import LegendEntry
     from tui.panels.map.reading import Ground
     from tui.panels.sonar.words import Bounds
 
@@ -56,9 +56,9 @@ class RoomMap(Drawing):
         self._frame = ""
         self._seen: Extent | None = None
         """What the rays have reached, as far as there is no room."""
-        self._trail = Trail()
+        self._trail = DrivenPath()
         self._layers = Layers()
-        self._view: Field | None = None
+        self._view: Viewport | None = None
         self._last: object = None
 
     @property
@@ -141,12 +141,12 @@ class RoomMap(Drawing):
                 ]
         return [*self._field(scene, under), *rows(self._entries(scene, under), width, below)]
 
-    def _field(self, scene: Scene, view: Field) -> list[Line]:
+    def _field(self, scene: Scene, view: Viewport) -> list[Line]:
         canvas = self._layers.canvas(view, self._ground, self._trail)
         draw_scene(canvas, view, scene)
         return canvas.lines()
 
-    def _entries(self, scene: Scene, view: Field) -> list[Entry]:
+    def _entries(self, scene: Scene, view: Viewport) -> list[LegendEntry]:
         remarks = [self.stale_words if self.stale else "", self._other_frame()]
         return entries(scene, view, self._trail.length_m, remarks)
 

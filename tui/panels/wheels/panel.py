@@ -11,7 +11,7 @@ from text.i18n import N_
 from tui.panels.joints import Joints
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, first_published, newest, trouble_of
-from tui.panels.wheels.reading import Wheels, wheels_in
+from tui.panels.wheels.reading import WheelsReading, wheels_in
 from tui.panels.wheels.widget import WheelsPanel
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class WheelsFeed(Panel):
         self.query_one(WheelsPanel).words_changed()
 
 
-def would_be(value: Mapping[str, Any]) -> Wheels | None:
+def would_be(value: Mapping[str, Any]) -> WheelsReading | None:
     """Return what an AckermannDriveStamped would make the wheels do; None if it is none."""
     drive = value.get("drive")
     if not drive:
@@ -81,4 +81,4 @@ def would_be(value: Mapping[str, Any]) -> Wheels | None:
         speeds = wheel_speeds(speed, steering)
     except ValueError:
         return None
-    return Wheels(speeds.left_m_s, speeds.right_m_s, steering)
+    return WheelsReading(speeds.left_m_s, speeds.right_m_s, steering)

@@ -18,7 +18,7 @@ FARTHEST_RAD = math.pi
 
 
 @dataclass(frozen=True)
-class Wheels:
+class WheelsReading:
     """Speeds of the rear wheels at their rims, and the angle of the front wheels, + is left."""
 
     left_m_s: float
@@ -54,7 +54,9 @@ def can_be_turned_to(steering_rad: float) -> bool:
     return abs(steering_rad) <= FARTHEST_RAD
 
 
-def wheels_in(value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M) -> Wheels | None:
+def wheels_in(
+    value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M
+) -> WheelsReading | None:
     """Read a sensor_msgs/JointState; None if it is not about these wheels.
 
     A joint that is missing counts as not a number.
@@ -68,7 +70,7 @@ def wheels_in(value: Mapping[str, Any], wheel_radius_m: float = WHEEL_RADIUS_M) 
         at = names.index(joint) if joint in names else len(numbers)
         return float(numbers[at]) if at < len(numbers) else math.nan
 
-    return Wheels(
+    return WheelsReading(
         read("velocity", REAR_LEFT_WHEEL) * wheel_radius_m,
         read("velocity", REAR_RIGHT_WHEEL) * wheel_radius_m,
         read("position", STEERING),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from robot.kinematics import TRACK_M, WHEELBASE_M
-from tui.panels.wheels.reading import Wheels, can_be_turned_to
+from tui.panels.wheels.reading import WheelsReading, can_be_turned_to
 from tui.widgets.dots import Dots, rectangle
 from tui.widgets.drawing import Ink, Line
 
@@ -17,7 +17,7 @@ WIDTH_M = TRACK_M + WHEEL_M[1]
 HALF = "▄", "▀"
 
 
-def chassis(wheels: Wheels, columns: int, rows: int) -> list[Line]:
+def chassis(wheels: WheelsReading, columns: int, rows: int) -> list[Line]:
     """Body, axles and four wheels in so many cells."""
     dots = Dots(columns, rows)
     scale = min(dots.height / LENGTH_M, dots.width / WIDTH_M)

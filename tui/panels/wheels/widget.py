@@ -8,7 +8,7 @@ from rich.cells import cell_len
 
 from text.figures import figure, short
 from text.i18n import _, decimal
-from tui.panels.wheels.reading import Wheels, can_be_turned_to
+from tui.panels.wheels.reading import WheelsReading, can_be_turned_to
 from tui.panels.wheels.view import chassis, speed_bar
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
@@ -26,9 +26,9 @@ class WheelsPanel(Drawing):
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
         """Begin with no reading."""
         super().__init__(id=id, classes=classes)
-        self._wheels: Wheels | None = None
+        self._wheels: WheelsReading | None = None
 
-    def show(self, wheels: Wheels) -> None:
+    def show(self, wheels: WheelsReading) -> None:
         """Show these speeds and this angle."""
         if wheels != self._wheels:
             self._wheels = wheels
@@ -50,7 +50,7 @@ class WheelsPanel(Drawing):
             return [self._one_line(wheels, width)]
         return self._rows(wheels, width)[:height]
 
-    def _from_above(self, wheels: Wheels, width: int, height: int) -> list[Line]:
+    def _from_above(self, wheels: WheelsReading, width: int, height: int) -> list[Line]:
         rows = height - 2
         columns = width - 2 * (SIDE + 4)
         picture = chassis(wheels, columns, rows)
@@ -66,7 +66,7 @@ class WheelsPanel(Drawing):
         ]
         return [self._steering(wheels, width), *lines, self._word_line(wheels, width)]
 
-    def _steering(self, wheels: Wheels, width: int) -> Line:
+    def _steering(self, wheels: WheelsReading, width: int) -> Line:
         radius = [Ink(radius_words(wheels.radius_m), "muted")]
         words = angle_words(wheels.steering_rad)
         angle = [Ink(_("steering") + " ", "muted"), Ink(words, "strong")]
@@ -74,11 +74,11 @@ class WheelsPanel(Drawing):
             return beside(angle, radius, width)
         return beside(angle[1:], radius, width)
 
-    def _word_line(self, wheels: Wheels, width: int) -> Line:
+    def _word_line(self, wheels: WheelsReading, width: int) -> Line:
         word = [Ink(wheels.words, "strong")]
         return beside(word, [Ink(self.stale_words, "alert")] if self.stale else [], width)
 
-    def _rows(self, wheels: Wheels, width: int) -> list[Line]:
+    def _rows(self, wheels: WheelsReading, width: int) -> list[Line]:
         names = [_("left"), _("right")]
         room = max(map(cell_len, names))
         lines = [self._word_line(wheels, width)]
@@ -89,7 +89,7 @@ class WheelsPanel(Drawing):
             lines.append([Ink(head, look), *_level(speed, width - cell_len(head), look)])
         return [*lines, self._steering(wheels, width)]
 
-    def _one_line(self, wheels: Wheels, width: int) -> Line:
+    def _one_line(self, wheels: WheelsReading, width: int) -> Line:
         speeds = [
             Ink(_("left") + " " + speed_words(wheels.left_m_s), "accent"),
             Ink("  "),
