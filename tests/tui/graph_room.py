@@ -43,7 +43,7 @@ class Room:
 
     async def choose(self, name: str) -> None:
         """Choose a name in the list."""
-        self.screen.names.choose(f"{self.screen.trail.kind.value}|{name}")
+        self.screen.names.choose(f"{self.screen.history.kind.value}|{name}")
         await self.pilot.pause()
         await self.pilot.pause()
         assert self.screen.names.chosen_name == name

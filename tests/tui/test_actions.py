@@ -16,10 +16,10 @@ from text.i18n import N_
 from tui.actions import REGISTRY, Action, bindings
 from tui.app import DeckApp, every_action
 from tui.frame.key_bar import KeyBar
+from tui.help.page import Page
 from tui.help.screen import HelpScreen
 from tui.lifecycle.stopping import StoppingScreen
 from tui.teleop.actions import MoveAction
-from tui.widgets.page import Page
 
 
 def footer(app: DeckApp) -> str:

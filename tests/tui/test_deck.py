@@ -27,7 +27,7 @@ from text.sentences import say
 from tui.app import DeckApp
 from tui.composer.outcome import Outcome
 from tui.deck.command_line import CommandLine
-from tui.deck.nodes_table import NodesTable, duration
+from tui.deck.nodes_table import NodesTable
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
@@ -42,6 +42,7 @@ from tui.panels.voice.panel import VoiceFeed
 from tui.panels.wheels.panel import WheelsFeed
 from tui.panels.wheels.widget import WheelsPanel
 from tui.widgets.image_view import ImageView
+from tui.widgets.node_words import duration
 
 
 def deck_of(app: DeckApp) -> LessonDeck:

@@ -18,8 +18,8 @@ from tests.tui.snapshots import settle
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.devices.screen import DevicesScreen
+from tui.help.page import Page
 from tui.help.screen import HelpScreen
-from tui.widgets.page import Page
 
 MOCK = "/mock_robot"
 TROUBLES = ("devices.unplug", "devices.noise", "devices.silence", "devices.battery")

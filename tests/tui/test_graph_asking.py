@@ -16,7 +16,7 @@ from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import SERVICES, graph_update
 from tests.tui.snapshots import Look
 from tui.frame.key_bar import KeyBar
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 
 SERVICE, ADD = "/set_head_position", "example_interfaces/srv/AddTwoInts"
 ACTION, DRIVE = "/drive_to_point", "deck_interfaces/action/DriveToPoint"
@@ -73,7 +73,7 @@ async def test_tab_leads_into_the_form_where_digits_and_enter_stay() -> None:
         await room.press(*"1234567", "enter", "8")
         assert pane.form.text.startswith("1234567\n8")
         assert room.app.screen is room.screen
-        assert room.screen.trail.here == GraphPlace(GraphKind.SERVICE, SERVICE)
+        assert room.screen.history.here == GraphPlace(GraphKind.SERVICE, SERVICE)
         await room.press("escape")
         assert room.screen.is_in_list
 
@@ -245,7 +245,7 @@ async def test_names_lead_to_the_type_and_to_the_server(service: Room) -> None:
     await service.wait_for("response")
     assert "int64" in service.seen()
     await service.press("escape")
-    assert service.screen.trail.here == GraphPlace(GraphKind.SERVICE, SERVICE)
+    assert service.screen.history.here == GraphPlace(GraphKind.SERVICE, SERVICE)
 
 
 async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: Room) -> None:
@@ -419,21 +419,23 @@ async def test_what_is_asked_belongs_to_its_place(action: Room) -> None:
     await action.wait_for("#1")
     await action.press("escape", "left")
     await action.wait_for("not called yet")
-    assert action.screen.trail.kind is GraphKind.SERVICE
+    assert action.screen.history.kind is GraphKind.SERVICE
 
 
 async def test_all_types_that_are_installed_can_be_looked_into(service: Room) -> None:
     await service.press("escape", "right", "right")
-    assert service.screen.trail.kind is GraphKind.TYPE
+    assert service.screen.history.kind is GraphKind.TYPE
     assert "geometry_msgs/msg/Twist" not in service.seen()
     await service.press("a")
     twist = "geometry_msgs/msg/Twist"
-    await service.wait(lambda: twist in [one.name for one in service.screen.listed[GraphKind.TYPE]])
+    await service.wait(
+        lambda: twist in [one.name for one in service.screen.index.listed[GraphKind.TYPE]]
+    )
     await service.choose("geometry_msgs/msg/Twist")
     await service.wait_for("geometry_msgs/Vector3")
     await service.press("enter", "right")
     await service.wait_for("float64 = 0.0")
     await service.press("enter")
-    assert service.screen.trail.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Vector3")
+    assert service.screen.history.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Vector3")
     await service.press("escape")
-    assert service.screen.trail.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Twist")
+    assert service.screen.history.here == GraphPlace(GraphKind.TYPE, "geometry_msgs/msg/Twist")

@@ -15,7 +15,7 @@ from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
 from tui.app import DeckApp
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
 
 Step = Callable[[GraphScreen, RecordedGraph], object]

@@ -10,9 +10,9 @@ from textual.events import Key
 from graph.data import GraphUpdate, NodeRow
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tui.graph.map_lines import MapDrawing, drawing
+from tui.graph.map_drawing import MapDrawing, drawing
 from tui.graph.neighbours import neighbours, node_called
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 
 BRAIN = """
 /audio/mic_raw ──────────────┐                ┌▶ /ai_command
@@ -109,7 +109,7 @@ async def test_enter_on_a_service_goes_to_its_form(room: Room) -> None:
     await room.screen.go(GraphPlace(GraphKind.NODE, "/head_controller"))
     await room.pilot.pause()
     await room.press("left", *("up",) * 5, "enter")
-    assert room.screen.trail.here == GraphPlace(GraphKind.SERVICE, "/set_head_position")
+    assert room.screen.history.here == GraphPlace(GraphKind.SERVICE, "/set_head_position")
     assert not room.screen.draws
     await room.wait_for("fits example_interfaces/srv/AddTwoInts")
 
@@ -124,7 +124,7 @@ async def test_a_node_that_vanishes_is_said_to_have_left(room: Room) -> None:
 
 async def test_without_a_node_it_says_so(room: Room) -> None:
     await room.press("M")
-    room.screen.trail.forget()
+    room.screen.history.forget()
     await room.show(GraphUpdate(0.0))
     await room.press("M")
     assert "no node to draw" in room.seen()

@@ -10,7 +10,7 @@ import pytest
 from graph.data import GraphUpdate, NodeRow
 from tests.tui.graph_room import Room, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 from tui.topics.screen import TopicsScreen
 
 
@@ -38,7 +38,7 @@ async def test_a_node_of_somebody_else_is_said_to_be_one(room: Room) -> None:
 
 async def test_what_ros_needs_is_hidden_until_it_is_asked_for(room: Room) -> None:
     await room.press("right")
-    assert room.screen.trail.kind is GraphKind.SERVICE
+    assert room.screen.history.kind is GraphKind.SERVICE
     assert "/camera/set_parameters" not in room.seen()
     await room.press("a")
     assert "/camera/set_parameters" in room.seen()
@@ -62,7 +62,7 @@ async def test_enter_follows_a_link_to_a_service_and_escape_goes_back(room: Room
     await room.pilot.pause()
     assert room.screen.names.chosen_name == "/set_head_position"
     await room.press("escape")
-    assert room.screen.trail.here == GraphPlace(GraphKind.NODE, "/head_controller")
+    assert room.screen.history.here == GraphPlace(GraphKind.NODE, "/head_controller")
 
 
 async def test_enter_on_a_topic_goes_to_the_screen_of_topics(room: Room) -> None:
@@ -74,7 +74,7 @@ async def test_enter_on_a_topic_goes_to_the_screen_of_topics(room: Room) -> None
     await room.wait(lambda: topics.table.chosen == "/sensor/sonar_front")
     await room.press("5")
     assert room.app.screen is room.screen
-    assert room.screen.trail.here == GraphPlace(GraphKind.NODE, "/sonar_front")
+    assert room.screen.history.here == GraphPlace(GraphKind.NODE, "/sonar_front")
 
 
 async def test_a_topic_of_ros_itself_is_shown_though_topics_hides_it(room: Room) -> None:
@@ -105,13 +105,13 @@ async def test_a_node_that_does_nothing_is_said_to(room: Room) -> None:
 async def test_without_ros_it_says_why(room: Room) -> None:
     await room.show(GraphUpdate(0.0, error="rclpy is missing: source ROS 2"))
     assert "/ai_brain (gone)" in room.seen()
-    room.screen.trail.forget()
+    room.screen.history.forget()
     await room.show(GraphUpdate(1.0, error="rclpy is missing: source ROS 2"))
     assert "rclpy is missing: source ROS 2" in room.seen()
 
 
 async def test_an_empty_domain_is_told_for_every_kind(room: Room) -> None:
-    room.screen.trail.forget()
+    room.screen.history.forget()
     await room.show(GraphUpdate(0.0))
     assert "no node in this domain" in room.seen()
     for words in ("nobody serves a service", "nobody serves an action", "no type is in use"):

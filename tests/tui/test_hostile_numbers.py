@@ -22,7 +22,6 @@ from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSess
 from text.figures import elapsed, figure, short, whole
 from tui.clock import time_of_day
 from tui.composer.outcome import delay_text
-from tui.deck.nodes_table import duration, memory, percent
 from tui.panels.head.reading import HeadPose, head_in
 from tui.panels.head.widget import HeadPanel
 from tui.panels.map.reading import goal_in, ground_in, pose_in
@@ -39,6 +38,7 @@ from tui.topics.plot.plot import TopicPlot
 from tui.topics.table.columns import age_text, bandwidth_text, hz_text
 from tui.widgets.drawing import Drawing
 from tui.widgets.figures import count_text, seconds_text
+from tui.widgets.node_words import duration, memory, percent
 from tui.widgets.trouble import no_data_words
 
 Said = tuple[GraphUpdate, tuple[NodeStatus, ...], tuple[LogLine, ...]]

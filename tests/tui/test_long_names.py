@@ -13,8 +13,8 @@ from tests.tui.recorded import NODES, RecordedGraph, RecordedPad, RecordedSessio
 from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
-from tui.graph.pane import GraphHead
 from tui.graph.screen import GraphScreen
+from tui.widgets.name_head import NameHead
 
 NAME = "/z_robot/" + "a_rather_long_name_of_a_node_" * 3 + "END"
 
@@ -28,7 +28,7 @@ async def test_the_detail_of_a_node_has_its_whole_name(size: tuple[int, int]) ->
         await settle(pilot)
         await pilot.press("end")
         await settle(pilot)
-        head = app.screen.query_one(GraphHead)
+        head = app.screen.query_one(NameHead)
         lines = [head.render_line(y).text.strip() for y in range(head.size.height)]
         assert NAME in "".join(lines)
 
@@ -53,7 +53,7 @@ def pad_with(node: NodeStatus) -> RecordedPad:
 def told_below(app: DeckApp) -> list[str]:
     """The name and the rest, as they stand on the screen between the table and what follows."""
     assert isinstance(app.screen, LessonDeck)
-    head = app.screen.query_one(GraphHead)
+    head = app.screen.query_one(NameHead)
     if not head.display:
         return []
     x, y, width, height = head.region

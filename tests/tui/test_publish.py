@@ -17,12 +17,12 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
 from tui.emergency.state import TOPIC_TYPE
 from tui.frame.title_bar import TitleBar
+from tui.help.page import Page
 from tui.help.screen import HelpScreen
 from tui.topics.publish.actions import PublishAtRate
 from tui.topics.publish.dialog import PublishDialog
 from tui.topics.publish.publication_list import PublicationList
 from tui.topics.screen import TopicsScreen
-from tui.widgets.page import Page
 from tui.yaml_form import form as yaml_form
 
 if TYPE_CHECKING:

@@ -13,10 +13,10 @@ from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
+from tui.panels.dots import Dots, rectangle
 from tui.panels.wheels.reading import WheelsReading, wheels_in
 from tui.panels.wheels.view import speed_bar
 from tui.panels.wheels.widget import WheelsPanel
-from tui.widgets.dots import Dots, rectangle
 
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 

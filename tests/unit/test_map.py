@@ -14,12 +14,12 @@ from robot.motion.odometry import Point, Pose
 from robot.world.grid import grid_of
 from robot.world.room import LIVING_ROOM
 from tui.panels.map.canvas import Canvas
-from tui.panels.map.field import Extent, Viewport, bar_length_m, fitted
+from tui.panels.map.driven_path import LEAST_M, MOST, DrivenPath
 from tui.panels.map.layers import Layers
 from tui.panels.map.legend import column, entries, rows, scale_bar
 from tui.panels.map.reading import Ground, goal_in, ground_in, pose_in
 from tui.panels.map.scene import FRONT, REAR, Scene, draw_scene, robot_corners
-from tui.panels.map.trail import LEAST_M, MOST, DrivenPath
+from tui.panels.map.viewport import Extent, Viewport, bar_length_m, fitted
 from tui.widgets.drawing import Line, cells_of
 
 ROOM = Extent(-1.0, 4.0, -2.0, 2.0)

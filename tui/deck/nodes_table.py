@@ -8,37 +8,19 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len
 from textual.message import Message
 
-from launcher.status import NodeState
-from text.figures import figure, whole
-from text.i18n import N_, _, said
+from text.i18n import N_, _
 from text.plain import plain
+from tui.widgets.node_words import STATES, duration, memory, percent, state_words, why
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:
     from launcher.status import NodeStatus
 
-STATES = {
-    NodeState.WAITING: ("◌", N_("waiting"), "dim"),
-    NodeState.STARTING: ("◔", N_("starting"), "warn"),
-    NodeState.READY: ("●", N_("ready"), "good"),
-    NodeState.RUNNING: ("●", N_("running"), "good"),
-    NodeState.STOPPING: ("◑", N_("stopping"), "warn"),
-    NodeState.EXITED: ("○", N_("exited"), "dim"),
-    NodeState.BACKOFF: ("↻", N_("restarts"), "warn"),
-    NodeState.FAILED: ("✗", N_("failed"), "bad"),
-}
-"""State to sign, word and meaning: never the colour alone."""
-
-LATE = ("◔", N_("running"), "warn")
-"""One that runs, but is not ready though its time is up."""
 OUTSIDE = ("◇", N_("outside"))
 UNKNOWN = "—"
 
 FULL, TOLD = 42, 66
 """Cells besides the names from which on there are columns for the process, and for a word more."""
-MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
-LONGEST_S = 1000.0 * DAY_S
-"""A longer time, or one before all, is no time that a node can have run."""
 
 
 class NodesTable(Rows):
@@ -117,7 +99,7 @@ class NodesTable(Rows):
         if node is None:
             sign, word = OUTSIDE
             return (self.chosen, f"{sign} {_(word)} · {_('not started by Deck')}")
-        sign, word, _meaning = looks(node)
+        sign, word, _meaning = state_words(node)
         return (node.name, f"{sign} {_(word)} · {why(node)}")
 
     def _named(self, name: str) -> str:
@@ -133,7 +115,7 @@ class NodesTable(Rows):
         return tuple(cells)
 
     def _cells(self, node: NodeStatus) -> tuple[Cell, ...]:
-        sign, word, meaning = looks(node)
+        sign, word, meaning = state_words(node)
         state = f"{sign} {_(word)}"
         if not node.state.alive:
             # One cell to the edge: a long word of a state would widen the column for all.
@@ -150,45 +132,3 @@ class NodesTable(Rows):
         if self._full:
             cells.append(Cell(why(node) if self._told else "", "dim"))
         return tuple(cells)
-
-
-def looks(node: NodeStatus) -> tuple[str, str, str]:
-    """Return sign, word and meaning of a node's state."""
-    return LATE if node.late else STATES[node.state]
-
-
-def why(node: NodeStatus) -> str:
-    """Return why the node is in its state, or what is run if there is nothing to say."""
-    if node.detail:
-        return plain(said(node.detail))
-    if node.signal:
-        return _("ended by {signal}").format(signal=node.signal)
-    if node.exit_code is not None and not node.state.alive:
-        return _("exit code {code}").format(code=node.exit_code)
-    return plain(node.command)
-
-
-def duration(seconds: float | None) -> str:
-    """Return a time in the two greatest units, five cells at most: `7s`, `1m23`, `2h05`, `3d04`."""
-    if seconds is None:
-        return ""
-    if not 0 <= seconds < LONGEST_S:
-        return _("{n}s").format(n=figure(seconds, 0))
-    whole = int(seconds)
-    if whole < MINUTE_S:
-        return _("{n}s").format(n=whole)
-    if whole < HOUR_S:
-        return _("{m}m{s:02d}").format(m=whole // MINUTE_S, s=whole % MINUTE_S)
-    if whole < DAY_S:
-        return _("{h}h{m:02d}").format(h=whole // HOUR_S, m=whole % HOUR_S // MINUTE_S)
-    return _("{d}d{h:02d}").format(d=whole // DAY_S, h=whole % DAY_S // HOUR_S)
-
-
-def percent(value: float | None) -> str:
-    """Return a share of one core."""
-    return "" if value is None else f"{whole(value)} %"
-
-
-def memory(size: int | None) -> str:
-    """Return an amount of memory in megabytes."""
-    return "" if size is None else _("{n} MB").format(n=round(size / 1_000_000))

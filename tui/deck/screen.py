@@ -21,13 +21,13 @@ from tui.deck.command_line import CommandLine
 from tui.deck.nodes_table import NodesTable
 from tui.deck.panels import DeckPanels
 from tui.frame.screen import DeckScreen
-from tui.graph.pane import GraphHead
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.panels.panel import row_of
 from tui.session.messages import SessionChanged
 from tui.teleop.actions import TELEOP_ACTIONS, OpenTeleop
 from tui.teleop.dock import TeleopDock
+from tui.widgets.name_head import NameHead
 from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class LessonDeck(DeckScreen):
         #board { layout: grid; height: 1fr; grid-size: 1; grid-gutter: 0 1; }
         &.-shelved #board { grid-size: 2; grid-columns: 11fr 9fr; }
         #nodes { height: 1fr; }
-        #nodes GraphHead { display: none; max-height: 100%; }
+        #nodes NameHead { display: none; max-height: 100%; }
         #shelf { height: 1fr; }
         #talk { height: 1fr; }
         &.-flat #teleop { height: 4; }
@@ -112,7 +112,7 @@ class LessonDeck(DeckScreen):
         with Container(id="board"):
             with Vertical(id="nodes"):
                 yield NodesTable()
-                yield GraphHead()
+                yield NameHead()
             with Vertical(id="talk"):
                 yield LogPane(LogView(file_of=self.feed.log_file))
                 yield CommandLine(id="command")
@@ -359,7 +359,7 @@ class LessonDeck(DeckScreen):
 
     def _lay_out_head(self, most: int) -> int:
         """Give what the table has cut its lines, and return how many."""
-        head = self.query_one(GraphHead)
+        head = self.query_one(NameHead)
         head.display = any(self._cut)
         if not head.display:
             return 0

@@ -17,7 +17,7 @@ from tui.dialogs.dialog import Dialog
 from tui.graph.ask import AskPane
 from tui.graph.links import heading, link, node_links
 from tui.graph.pane import LONGEST
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.rows import Cell, Column, Row
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from text.i18n import _
 from tui import clock
 from tui.echo.tree import EchoTree
 from tui.graph.links import GraphLinks
-from tui.graph.pane import GraphHead, GraphPane
+from tui.graph.pane import GraphPane
+from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Rows
 from tui.yaml_form.actions import SubmitForm
 from tui.yaml_form.form import YamlForm
@@ -60,7 +61,7 @@ class AskPane(GraphPane):
 
     def compose(self) -> ComposeResult:
         """Head, who is asked, form; answer, and what was asked before."""
-        yield GraphHead()
+        yield NameHead()
         with Container(classes="ask-body"):
             with Vertical(classes="ask-left"):
                 yield GraphLinks()
@@ -177,7 +178,7 @@ class AskPane(GraphPane):
         told = [] if types else [_("nobody serves it any more")]
         if len(types) > 1:
             told = [_("Nodes disagree about its type; Deck asks for {type}.").format(type=types[0])]
-        self.query_one(GraphHead).show(self.name_shown, *told)
+        self.query_one(NameHead).show(self.name_shown, *told)
         self.query_one(GraphLinks).show_links(self.links())
         columns, rows = self.asked()
         self.asked_rows.display = bool(rows)

@@ -9,13 +9,13 @@ from textual.widgets import ContentSwitcher
 from tui.graph.action import ActionPane
 from tui.graph.node import NodePane
 from tui.graph.pane import EmptyNotice
-from tui.graph.place import GraphKind
+from tui.graph.places import GraphKind
 from tui.graph.service import ServicePane
 from tui.graph.type import TypePane
 
 if TYPE_CHECKING:
     from tui.graph.pane import GraphPane
-    from tui.graph.place import GraphPlace
+    from tui.graph.places import GraphPlace
 
 PANES: dict[GraphKind, type[GraphPane]] = {
     GraphKind.NODE: NodePane,

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from graph.housekeeping import is_housekeeping
 from text.i18n import _, said
-from tui.graph.place import LISTED, GraphKind
+from tui.graph.places import LISTED, GraphKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
-    from tui.graph.place import GraphPlace
+    from tui.graph.places import GraphPlace
 
     Typed = TopicRow | ServiceRow | ActionRow
 

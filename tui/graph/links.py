@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.plain import plain
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:

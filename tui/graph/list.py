@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from text.i18n import _
 from text.plain import plain
-from tui.graph.place import GraphKind
+from tui.graph.places import GraphKind
 from tui.widgets.rows import Cell, Column, Row, Rows
 
 if TYPE_CHECKING:

@@ -12,16 +12,16 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from text.i18n import _
-from tui.graph.map_lines import CENTRE, MapDrawing, drawing
+from tui.graph.map_drawing import CENTRE, MapDrawing, drawing
 from tui.graph.neighbours import Neighbours, neighbours, node_called
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.words import word_strips
 
 if TYPE_CHECKING:
     from textual.events import Click
 
     from graph.data import GraphUpdate
-    from tui.graph.map_lines import MapStop
+    from tui.graph.map_drawing import MapStop
 
 
 class GraphMap(ScrollView, can_focus=True):

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from text.i18n import _
-from tui.deck.nodes_table import looks, memory, percent, why
 from tui.graph.links import GraphLinks, heading, link, short
 from tui.graph.neighbours import neighbours, node_called
-from tui.graph.pane import EmptyNotice, GraphHead, GraphPane
+from tui.graph.pane import EmptyNotice, GraphPane
 from tui.graph.parameters import GraphParameters
+from tui.widgets.name_head import NameHead
+from tui.widgets.node_words import memory, percent, state_words, why
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,7 +41,7 @@ class NodePane(GraphPane):
 
     def compose(self) -> ComposeResult:
         """Head, links, parameters."""
-        yield GraphHead()
+        yield NameHead()
         yield EmptyNotice(id="node-words")
         yield GraphLinks()
         yield GraphParameters()
@@ -93,7 +94,7 @@ class NodePane(GraphPane):
         if status and not status.state.alive and self.name_shown in self.deck.feed.outside.now:
             # What runs is somebody's own in its place.
             status = None
-        self.query_one(GraphHead).show(self.name_shown, process_words(status))
+        self.query_one(NameHead).show(self.name_shown, process_words(status))
         if self.shows_parameters:
             self.parameters.see(() if node is None else node.processes)
         words = self.query_one(EmptyNotice)
@@ -160,7 +161,7 @@ def process_words(status: NodeStatus | None) -> str:
     """Return which process of ours a node is, and what it costs."""
     if status is None:
         return _("not started by Deck")
-    sign, word, _meaning = looks(status)
+    sign, word, _meaning = state_words(status)
     if not status.state.alive:
         return f"{sign} {_(word)} · {why(status)}"
     parts = [f"{sign} {_(word)}"]

@@ -23,7 +23,7 @@ from tui.graph.list import GraphList
 from tui.graph.map import GraphMap, middle_of
 from tui.graph.node import NodePane
 from tui.graph.parameters import PARAMETER_EVENTS
-from tui.graph.place import LISTED, GraphKind, GraphPlace, PlaceHistory
+from tui.graph.places import LISTED, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.tabs import GraphTabs
 from tui.graph.type import GraphTypeTree
 from tui.widgets.field import Field
@@ -82,7 +82,7 @@ class GraphScreen(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self.trail = PlaceHistory()
+        self.history = PlaceHistory()
         self.index = GraphIndex()
         self._detail = GraphDetail()
         self._goals_of: set[str] = set()
@@ -129,7 +129,7 @@ class GraphScreen(DeckScreen):
     @property
     def pane(self) -> GraphPane | None:
         """The detail in front."""
-        return self._detail.pane_of(self.trail.here)
+        return self._detail.pane_of(self.history.here)
 
     @property
     def shows_pane(self) -> bool:
@@ -166,7 +166,7 @@ class GraphScreen(DeckScreen):
 
     def watch_goals(self) -> set[str]:
         """Return the action that is shown."""
-        here = self.trail.here
+        here = self.history.here
         return {here.name} if here is not None and here.kind is GraphKind.ACTION else set()
 
     def follow_topics(self) -> set[str]:
@@ -184,30 +184,30 @@ class GraphScreen(DeckScreen):
         """Show list and detail as things stand."""
         if not self.is_mounted:
             return
-        kind, words = self.trail.kind, self.filter.value
+        kind, words = self.history.kind, self.filter.value
         self.filter.placeholder = _("filter: words of a name or a type")
         counts = {each: len(self.index.fitting(each)) for each in self.index.listed}
         self.query_one(GraphTabs).show(kind, counts)
         shown = self.index.fitting(kind, words)
         self._count(len(shown), len(self.index.all_of(kind)))
-        self.names.show_entries(kind, shown, self.trail.chosen.get(kind, ""), words)
-        if self.names.chosen_name and not self.trail.chosen.get(kind):
-            self.trail.choose(self.names.chosen_name)
+        self.names.show_entries(kind, shown, self.history.chosen.get(kind, ""), words)
+        if self.names.chosen_name and not self.history.chosen.get(kind):
+            self.history.choose(self.names.chosen_name)
         self._show_detail(shown)
         if self.watch_goals() != self._goals_of:
             self._goals_of = self.watch_goals()
             self.topics_changed()
         if self.draws:
             update = self.feed.update
-            middle = middle_of(update, self.trail.here)
+            middle = middle_of(update, self.history.here)
             self.map.show_node(update, middle, everything=self.index.everything)
 
     def _show_detail(self, shown: list[GraphEntry]) -> None:
-        pane, here = self.pane, self.trail.here
+        pane, here = self.pane, self.history.here
         if pane is not None and here is not None and self.names.chosen_name:
             self._detail.show_place(pane, here.name, everything=self.index.everything)
             return
-        key, kind = self.deck.keys_of(ShowEverything)[0], self.trail.kind
+        key, kind = self.deck.keys_of(ShowEverything)[0], self.history.kind
         words = why_empty(self.feed, kind, self.index.all_of(kind), all_key=key)
         self._detail.show_words(*(words if not shown else ("", "")))
 
@@ -239,7 +239,7 @@ class GraphScreen(DeckScreen):
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget the graph of a session that has ended."""
         super().on_session_changed(message)
-        self.trail.forget()
+        self.history.forget()
         self.take(None)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
@@ -251,8 +251,8 @@ class GraphScreen(DeckScreen):
     @on(Rows.Highlighted, "GraphList")
     def _highlighted(self) -> None:
         name = self.names.chosen_name
-        if name and name != self.trail.chosen.get(self.trail.kind):
-            self.trail.choose(name)
+        if name and name != self.history.chosen.get(self.history.kind):
+            self.history.choose(name)
             self.redraw()
             self.refresh_bindings()
 
@@ -310,7 +310,7 @@ class GraphScreen(DeckScreen):
         if place.kind is GraphKind.TOPIC:
             await self._go_to_topic(place.name)
             return
-        self.trail.go(place)
+        self.history.go(place)
         self._arrive()
 
     async def _go_to_topic(self, topic: str) -> None:
@@ -333,18 +333,18 @@ class GraphScreen(DeckScreen):
             self.filter.value = ""
             self.names.focus()
         elif self.draws:
-            if not self.trail.back():
+            if not self.history.back():
                 self.toggle_map()
             else:
                 self._arrive()
         elif not in_list:
             self.names.focus()
-        elif self.trail.back():
+        elif self.history.back():
             self._arrive()
 
     def _arrive(self) -> None:
         """Show the chosen place, though a filter or the lack of `everything` had hidden it."""
-        here = self.trail.here
+        here = self.history.here
         if here is not None and not self.index.reveal(here, self.filter.value):
             self.filter.value = ""
         self.redraw()
@@ -355,15 +355,15 @@ class GraphScreen(DeckScreen):
         """Draw the graph around the chosen node, or list it again."""
         self.toggle_class("-map")
         if self.draws:
-            middle = middle_of(self.feed.update, self.trail.here)
+            middle = middle_of(self.feed.update, self.history.here)
             if middle:
-                self.trail.go(GraphPlace(GraphKind.NODE, middle))
+                self.history.go(GraphPlace(GraphKind.NODE, middle))
         self._arrive()
 
     def list_kind(self, kind: GraphKind) -> None:
         """List another kind."""
         self.remove_class("-map")
-        self.trail.kind = kind
+        self.history.kind = kind
         self.redraw()
         self.names.focus()
         self.refresh_bindings()
@@ -374,7 +374,7 @@ class GraphScreen(DeckScreen):
             if by < 0:
                 self.names.focus()
             return
-        at = LISTED.index(self.trail.kind) + by
+        at = LISTED.index(self.history.kind) + by
         self.list_kind(LISTED[at % len(LISTED)])
 
     def focus_filter(self) -> None:

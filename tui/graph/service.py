@@ -21,7 +21,7 @@ from tui.graph.ask import AskPane, now_s
 from tui.graph.links import heading, link, node_links
 from tui.graph.pane import LONGEST
 from tui.graph.parameter_words import typed
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row
 

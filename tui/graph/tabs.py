@@ -10,7 +10,7 @@ from textual.style import Style
 from textual.widget import Widget
 
 from text.i18n import _
-from tui.graph.place import LISTED, TITLES, GraphKind
+from tui.graph.places import LISTED, TITLES, GraphKind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

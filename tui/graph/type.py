@@ -16,9 +16,10 @@ from text.i18n import N_, _, said
 from text.plain import plain
 from tui.graph.index import users_of
 from tui.graph.links import GraphLinks, heading, link
-from tui.graph.pane import EmptyNotice, GraphHead, GraphPane
+from tui.graph.pane import EmptyNotice, GraphPane
 from tui.graph.parameter_words import typed
-from tui.graph.place import GraphPlace
+from tui.graph.places import GraphPlace
+from tui.widgets.name_head import NameHead
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:
@@ -187,7 +188,7 @@ class TypePane(GraphPane):
 
     def compose(self) -> ComposeResult:
         """Head, tree, users."""
-        yield GraphHead()
+        yield NameHead()
         yield EmptyNotice()
         yield GraphTypeTree()
         yield GraphLinks()
@@ -215,7 +216,7 @@ class TypePane(GraphPane):
         """Show who uses it, and why there is no tree."""
         if not self.name_shown or not self.is_mounted:
             return
-        self.query_one(GraphHead).show(self.name_shown)
+        self.query_one(NameHead).show(self.name_shown)
         rows = self._users()
         links = self.query_one(GraphLinks)
         links.show_links(rows)

@@ -14,7 +14,7 @@ from tui.frame.host import host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import DeckScreen
 from tui.frame.title_bar import TitleBar
-from tui.widgets.page import Page, PageEntry
+from tui.help.page import Page, PageEntry
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult

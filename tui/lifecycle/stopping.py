@@ -9,8 +9,8 @@ from textual.content import Content
 from text.i18n import N_, _
 from text.plain import plain
 from tui.actions import Action, bindings
-from tui.deck.nodes_table import STATES, why
 from tui.dialogs.dialog import Dialog
+from tui.widgets.node_words import STATES, why
 
 if TYPE_CHECKING:
     from textual.binding import BindingType

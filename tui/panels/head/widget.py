@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from text.i18n import _
 from text.plain import plain
+from tui.panels.dots import Dots, Point
 from tui.panels.head.reading import LIMIT_DEG, HeadPose
-from tui.widgets.dots import Dots, Point
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
 CAPTION_FROM = 10

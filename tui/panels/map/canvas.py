@@ -1,6 +1,6 @@
 """A field of braille dots that many things are drawn on at once, two by four in every cell.
 
-Like `tui.widgets.dots`, in arrays: a room has thousands of dots, and is copied for every frame.
+Like `tui.panels.dots`, in arrays: a room has thousands of dots, and is copied for every frame.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tui.widgets.drawing import LOOKS, Ink, Line
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from tui.widgets.dots import Point
+    from tui.panels.dots import Point
 
 _BLANK, _BRAILLE = 0x20, 0x2800
 _WEIGHTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.uint16)

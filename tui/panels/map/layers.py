@@ -8,9 +8,9 @@ from tui.panels.map.canvas import Canvas
 from tui.panels.map.scene import draw_grid, draw_ground, draw_path, grid_step_m
 
 if TYPE_CHECKING:
-    from tui.panels.map.field import Viewport
+    from tui.panels.map.driven_path import DrivenPath
     from tui.panels.map.reading import Ground
-    from tui.panels.map.trail import DrivenPath
+    from tui.panels.map.viewport import Viewport
 
 
 class Layers:

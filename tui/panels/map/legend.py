@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain
-from tui.panels.map.field import bar_length_m
 from tui.panels.map.scene import (
     BLIND_SIGN,
     FREE_SIGN,
@@ -21,6 +20,7 @@ from tui.panels.map.scene import (
     TRUTH,
     grid_step_m,
 )
+from tui.panels.map.viewport import bar_length_m
 from tui.panels.sonar.bar import ink_of
 from tui.panels.sonar.words import remark
 from tui.widgets.drawing import Ink, Line, beside, cells_of, fit
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robot.motion.odometry import Pose
-    from tui.panels.map.field import Viewport
     from tui.panels.map.scene import Scene
+    from tui.panels.map.viewport import Viewport
     from tui.panels.sonar.words import Bounds
 
 BAR_CELLS = 12

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robot.motion.odometry import Point, Pose, yaw_from_quaternion
-from tui.panels.map.field import Extent
+from tui.panels.map.viewport import Extent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

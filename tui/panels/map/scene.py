@@ -17,9 +17,9 @@ from tui.panels.sonar.words import COURSE, Bounds
 
 if TYPE_CHECKING:
     from robot.motion.odometry import Point, Pose
-    from tui.panels.map.field import Viewport
+    from tui.panels import dots
     from tui.panels.map.reading import Ground
-    from tui.widgets import dots
+    from tui.panels.map.viewport import Viewport
 
 FRONT, REAR = "front", "rear"
 BODY = Body()

@@ -6,11 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 from text.i18n import _
-from tui.panels.map.field import Extent, Viewport, fitted
+from tui.panels.map.driven_path import DrivenPath
 from tui.panels.map.layers import Layers
 from tui.panels.map.legend import column, entries, rows
 from tui.panels.map.scene import Scene, along, draw_scene, ray_origin, robot_corners
-from tui.panels.map.trail import DrivenPath
+from tui.panels.map.viewport import Extent, Viewport, fitted
 from tui.panels.sonar.words import COURSE
 from tui.widgets.drawing import Drawing, Ink, Line
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from robot.kinematics import TRACK_M, WHEELBASE_M
+from tui.panels.dots import Dots, rectangle
 from tui.panels.wheels.reading import WheelsReading, can_be_turned_to
-from tui.widgets.dots import Dots, rectangle
 from tui.widgets.drawing import Ink, Line
 
 WHEEL_M = (0.035, 0.085)

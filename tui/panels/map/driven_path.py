@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tui.widgets.dots import Point
+    from tui.panels.dots import Point
 
 LEAST_M = 0.02
 """A shorter way is none yet."""

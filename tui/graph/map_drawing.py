@@ -11,7 +11,7 @@ from text.i18n import _
 from text.plain import plain
 from tui.graph.links import short
 from tui.graph.list import ended
-from tui.graph.place import GraphKind, GraphPlace
+from tui.graph.places import GraphKind, GraphPlace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

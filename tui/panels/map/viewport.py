@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tui.widgets.dots import Point
+    from tui.panels.dots import Point
 
 BAR_M = (1, 2, 5)
 """First digits of the length of a scale bar."""

@@ -1,0 +1,73 @@
+"""A node that Deck has started in words: its state, why, and what it costs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launcher.status import NodeState
+from text.figures import figure, whole
+from text.i18n import N_, _, said
+from text.plain import plain
+
+if TYPE_CHECKING:
+    from launcher.status import NodeStatus
+
+STATES = {
+    NodeState.WAITING: ("◌", N_("waiting"), "dim"),
+    NodeState.STARTING: ("◔", N_("starting"), "warn"),
+    NodeState.READY: ("●", N_("ready"), "good"),
+    NodeState.RUNNING: ("●", N_("running"), "good"),
+    NodeState.STOPPING: ("◑", N_("stopping"), "warn"),
+    NodeState.EXITED: ("○", N_("exited"), "dim"),
+    NodeState.BACKOFF: ("↻", N_("restarts"), "warn"),
+    NodeState.FAILED: ("✗", N_("failed"), "bad"),
+}
+"""State to sign, word and meaning: never the colour alone."""
+
+LATE = ("◔", N_("running"), "warn")
+"""One that runs, but is not ready though its time is up."""
+MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
+LONGEST_S = 1000.0 * DAY_S
+"""A longer time, or one before all, is no time that a node can have run."""
+
+
+def state_words(node: NodeStatus) -> tuple[str, str, str]:
+    """Return sign, word and meaning of a node's state."""
+    return LATE if node.late else STATES[node.state]
+
+
+def why(node: NodeStatus) -> str:
+    """Return why the node is in its state, or what is run if there is nothing to say."""
+    if node.detail:
+        return plain(said(node.detail))
+    if node.signal:
+        return _("ended by {signal}").format(signal=node.signal)
+    if node.exit_code is not None and not node.state.alive:
+        return _("exit code {code}").format(code=node.exit_code)
+    return plain(node.command)
+
+
+def duration(seconds: float | None) -> str:
+    """Return a time in the two greatest units, five cells at most: `7s`, `1m23`, `2h05`, `3d04`."""
+    if seconds is None:
+        return ""
+    if not 0 <= seconds < LONGEST_S:
+        return _("{n}s").format(n=figure(seconds, 0))
+    whole = int(seconds)
+    if whole < MINUTE_S:
+        return _("{n}s").format(n=whole)
+    if whole < HOUR_S:
+        return _("{m}m{s:02d}").format(m=whole // MINUTE_S, s=whole % MINUTE_S)
+    if whole < DAY_S:
+        return _("{h}h{m:02d}").format(h=whole // HOUR_S, m=whole % HOUR_S // MINUTE_S)
+    return _("{d}d{h:02d}").format(d=whole // DAY_S, h=whole % DAY_S // HOUR_S)
+
+
+def percent(value: float | None) -> str:
+    """Return a share of one core."""
+    return "" if value is None else f"{whole(value)} %"
+
+
+def memory(size: int | None) -> str:
+    """Return an amount of memory in megabytes."""
+    return "" if size is None else _("{n} MB").format(n=round(size / 1_000_000))
