@@ -22,8 +22,8 @@ from graph.observer.requests import (
     ObserverError,
     Perform,
     PreparePublisher,
-    PublishMessage,
     RequestQueue,
+    SendMessage,
 )
 from graph.ros import open_ros
 from text.sentences import say
@@ -123,7 +123,7 @@ class Observer:
         waits. The future raises PublishError, UnknownTypeError, FieldError or
         ObserverError.
         """
-        request = PublishMessage(topic, type_name, value, latched)
+        request = SendMessage(topic, type_name, value, latched)
         if latched:
             # An emergency stop is one of these.
             self._requests.hurry(request, lambda node: node.outbox.knows_latched(topic, type_name))

@@ -68,7 +68,7 @@ class PreparePublisher:
 
 
 @dataclass(frozen=True)
-class PublishMessage:
+class SendMessage:
     """Publish one message."""
 
     topic: str

@@ -10,7 +10,7 @@ from graph.data import Trouble
 from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
-from tui.panels.head.reading import HeadPose, head_in
+from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import CAPTION_FROM, DRAWN_FROM, HeadPanel
 
 
@@ -19,11 +19,11 @@ def test_radians_become_degrees_left_and_up() -> None:
     pose = head_in(value)
     assert pose is not None
     assert (pose.pan_words, pose.tilt_words) == ("45° left", "10° up")
-    assert (HeadPose(-45, -10).pan_words, HeadPose(-45, -10).tilt_words) == (
+    assert (HeadReading(-45, -10).pan_words, HeadReading(-45, -10).tilt_words) == (
         "45° right",
         "10° down",
     )
-    assert HeadPose(0.2, -0.2).pan_words == "0°"
+    assert HeadReading(0.2, -0.2).pan_words == "0°"
 
 
 def test_other_joints_are_no_head_and_missing_ones_no_number() -> None:
@@ -38,7 +38,7 @@ def test_other_joints_are_no_head_and_missing_ones_no_number() -> None:
 async def test_the_angles_are_numbers_at_every_size(width: int, height: int) -> None:
     panel = HeadPanel()
     async with alone(panel, width, height).run_test(size=(80, 30)):
-        panel.show(HeadPose(45, 10))
+        panel.show(HeadReading(45, 10))
         shown = "\n".join(rows(panel))
         assert "45° left" in shown
         assert "10° up" in shown
@@ -47,18 +47,18 @@ async def test_the_angles_are_numbers_at_every_size(width: int, height: int) -> 
 async def test_it_moves_while_the_pose_changes_and_rests_when_it_does_not() -> None:
     panel = HeadPanel()
     async with alone(panel, 44, 10).run_test(size=(60, 30)):
-        panel.show(HeadPose(0, 0))
+        panel.show(HeadReading(0, 0))
         assert "at rest" in "\n".join(rows(panel))
-        panel.show(HeadPose(10, 0))
+        panel.show(HeadReading(10, 0))
         assert "moving" in "\n".join(rows(panel))
-        panel.show(HeadPose(10, 0))
+        panel.show(HeadReading(10, 0))
         assert "at rest" in "\n".join(rows(panel))
 
 
 async def test_an_age_that_nobody_is_told_of_is_no_reason_to_draw() -> None:
     panel = HeadPanel()
     async with alone(panel, 44, 10).run_test(size=(60, 30)):
-        panel.show(HeadPose(10, 0))
+        panel.show(HeadReading(10, 0))
         panel.show_trouble(None, "", 0.2)
         drawn: list[int] = []
         panel.draw = lambda width, _height: drawn.append(width) or []  # type: ignore[method-assign]
@@ -74,33 +74,33 @@ async def test_a_head_that_nobody_knows_of_does_not_move(width: int, height: int
     """Servos tell nothing: before the first turn, and after their cable was pulled."""
     panel = HeadPanel()
     async with alone(panel, width, height).run_test(size=(60, 30)):
-        for pose in (HeadPose(math.nan, math.nan), HeadPose(math.nan, math.nan)):
+        for pose in (HeadReading(math.nan, math.nan), HeadReading(math.nan, math.nan)):
             panel.show(pose)
             shown = "\n".join(rows(panel))
             assert "unknown until it turns" in shown
             assert "---" in shown
-        panel.show(HeadPose(10, 0))
+        panel.show(HeadReading(10, 0))
         assert "at rest" in "\n".join(rows(panel))
-        panel.show(HeadPose(math.nan, math.nan))
+        panel.show(HeadReading(math.nan, math.nan))
         assert "unknown until it turns" in "\n".join(rows(panel))
 
 
 async def test_what_it_was_told_and_the_answer_are_shown_harmlessly() -> None:
     panel = HeadPanel()
     async with alone(panel, 60, 10).run_test(size=(80, 30)):
-        panel.show(HeadPose(0, 0))
-        panel.command(HeadPose(-90, 15))
+        panel.show(HeadReading(0, 0))
+        panel.command(HeadReading(-90, 15))
         assert "told: 90° right, 15° up" in "\n".join(rows(panel))
         panel.answer("[red]no[/red]\x1b[31m")
         assert "[red]no[/red]␛[31m" in "\n".join(rows(panel))
-        panel.command(HeadPose(0, 0))
+        panel.command(HeadReading(0, 0))
         assert "[red]" not in "\n".join(rows(panel))
 
 
-@pytest.mark.parametrize("pose", [HeadPose(math.nan, math.inf), HeadPose(1e9, -1e9)])
+@pytest.mark.parametrize("pose", [HeadReading(math.nan, math.inf), HeadReading(1e9, -1e9)])
 @pytest.mark.parametrize("size", [(1, 1), (22, 6), (60, 20)])
 async def test_impossible_angles_and_sizes_do_no_harm(
-    pose: HeadPose, size: tuple[int, int]
+    pose: HeadReading, size: tuple[int, int]
 ) -> None:
     panel = HeadPanel()
     async with alone(panel, *size).run_test(size=(80, 30)):
@@ -114,7 +114,7 @@ async def test_the_captions_are_whole_wherever_the_views_are_drawn(language: str
     set_language(language)
     panel = HeadPanel()
     async with alone(panel, DRAWN_FROM[0], CAPTION_FROM).run_test(size=(80, 30)):
-        panel.show(HeadPose(0, 0))
+        panel.show(HeadReading(0, 0))
         assert rows(panel)[0].split()
         assert "…" not in rows(panel)[0]
 
@@ -126,14 +126,14 @@ def test_looks(language: str, snap_compare: SnapCompare) -> None:
     panels = [HeadPanel() for _panel in range(5)]
 
     def fill() -> None:
-        panels[0].show(HeadPose(40, 5))
-        panels[0].command(HeadPose(60, 20))
-        panels[0].show(HeadPose(45, 10))
-        panels[1].show(HeadPose(-90, -45))
+        panels[0].show(HeadReading(40, 5))
+        panels[0].command(HeadReading(60, 20))
+        panels[0].show(HeadReading(45, 10))
+        panels[1].show(HeadReading(-90, -45))
         panels[1].answer("1")
-        panels[2].show(HeadPose(0, 0))
+        panels[2].show(HeadReading(0, 0))
         panels[2].show_trouble(Trouble.QUIET, "", 5.0)
-        panels[3].show(HeadPose(45, 10))
+        panels[3].show(HeadReading(45, 10))
         panels[4].show_trouble(Trouble.NO_PUBLISHER, "Start head_controller.")
 
     stage = Stage(

@@ -22,7 +22,7 @@ from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSess
 from text.figures import elapsed, figure, short, whole
 from tui.clock import time_of_day
 from tui.composer.outcome import delay_text
-from tui.panels.head.reading import HeadPose, head_in
+from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import HeadPanel
 from tui.panels.map.reading import goal_in, ground_in, pose_in
 from tui.panels.map.widget import RoomMap
@@ -83,8 +83,10 @@ def test_distances_are_drawn(readings: list[tuple[float, float]]) -> None:
 
 
 @quick
-@given(message("/head_state"), st.builds(HeadPose, hostile.doubles, hostile.doubles), hostile.texts)
-def test_heads_are_drawn(state: Any, told: HeadPose, answer: str) -> None:
+@given(
+    message("/head_state"), st.builds(HeadReading, hostile.doubles, hostile.doubles), hostile.texts
+)
+def test_heads_are_drawn(state: Any, told: HeadReading, answer: str) -> None:
     panel = HeadPanel()
     pose = head_in(state)
     for one in filter(None, (pose, told, pose)):

@@ -177,7 +177,7 @@ class HearOnly(_OfNode):
         target.filter_log(target.log_filter.alone(target.chosen_node))
 
 
-class RaiseSeverity(DeckAction):
+class RaiseLogSeverity(DeckAction):
     """Leave out the least severe lines."""
 
     id = "log.severity"
@@ -261,7 +261,7 @@ DECK_ACTIONS = (
     HearOnly,
     WriteCommand,
     TurnPage,
-    RaiseSeverity,
+    RaiseLogSeverity,
     HearAllNodes,
     StartAll,
     StopAll,

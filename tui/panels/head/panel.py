@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.topics import HEAD_STATE, LLM_RESULT
 from text.i18n import N_, _
-from tui.panels.head.reading import HeadPose, head_in
+from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import HeadPanel
 from tui.panels.joints import Joints
 from tui.panels.panel import Panel, trouble_of
@@ -60,7 +60,7 @@ class HeadFeed(Panel):
             said: Any = json.loads(text)
             if said["event"] == "head":
                 drawing = self.query_one(HeadPanel)
-                drawing.command(HeadPose(float(said["pan"]), float(said["tilt"])))
+                drawing.command(HeadReading(float(said["pan"]), float(said["tilt"])))
                 if "error" in said:
                     drawing.answer(str(said["error"]))
                 else:

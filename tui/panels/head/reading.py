@@ -16,7 +16,7 @@ SAME_WITHIN_DEG = 0.5
 
 
 @dataclass(frozen=True)
-class HeadPose:
+class HeadReading:
     """Degrees, + is left and up."""
 
     pan_deg: float
@@ -37,7 +37,7 @@ class HeadPose:
         """Whether both angles are: a head of servos has none before it was moved."""
         return math.isfinite(self.pan_deg) and math.isfinite(self.tilt_deg)
 
-    def near(self, other: HeadPose) -> bool:
+    def near(self, other: HeadReading) -> bool:
         """Whether the two are the same but for rounding."""
         pan, tilt = self.pan_deg - other.pan_deg, self.tilt_deg - other.tilt_deg
         return abs(pan) < SAME_WITHIN_DEG and abs(tilt) < SAME_WITHIN_DEG
@@ -51,7 +51,7 @@ def _words(degrees: float, plus: str, minus: str) -> str:
     return (plus if degrees > 0 else minus).format(degrees=whole(abs(degrees)))
 
 
-def head_in(value: Mapping[str, Any]) -> HeadPose | None:
+def head_in(value: Mapping[str, Any]) -> HeadReading | None:
     """Read a sensor_msgs/JointState in radians; None if it is not about the head.
 
     A joint that is missing counts as not a number.
@@ -65,4 +65,4 @@ def head_in(value: Mapping[str, Any]) -> HeadPose | None:
         at = names.index(joint) if joint in names else len(positions)
         return math.degrees(float(positions[at])) if at < len(positions) else math.nan
 
-    return HeadPose(degrees(HEAD_PAN), degrees(HEAD_TILT))
+    return HeadReading(degrees(HEAD_PAN), degrees(HEAD_TILT))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from text.i18n import _
 from text.plain import plain
 from tui.panels.dots import Dots, Point
-from tui.panels.head.reading import LIMIT_DEG, HeadPose
+from tui.panels.head.reading import LIMIT_DEG, HeadReading
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
 CAPTION_FROM = 10
@@ -22,12 +22,12 @@ class HeadPanel(Drawing):
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
         """Begin with no reading."""
         super().__init__(id=id, classes=classes)
-        self._pose: HeadPose | None = None
-        self._told: HeadPose | None = None
+        self._pose: HeadReading | None = None
+        self._told: HeadReading | None = None
         self._answer = ""
         self._moving = False
 
-    def show(self, pose: HeadPose) -> None:
+    def show(self, pose: HeadReading) -> None:
         """Show this pose; it moves while it differs from the one before."""
         before = self._pose if self._pose is not None and self._pose.is_known else None
         moving = before is not None and pose.is_known and not before.near(pose)
@@ -35,7 +35,7 @@ class HeadPanel(Drawing):
             self._pose, self._moving = pose, moving
             self.redraw()
 
-    def command(self, told: HeadPose) -> None:
+    def command(self, told: HeadReading) -> None:
         """Mark where the head was told to look; its answer is not known yet."""
         self._told, self._answer = told, ""
         self.redraw()
@@ -98,7 +98,7 @@ class HeadPanel(Drawing):
             return [beside(lines[0], lines[1], width)]
         return [[Ink(fit(line[0].text, width), "muted")] for line in lines]
 
-    def _views(self, pose: HeadPose, width: int, rows: int) -> list[Line]:
+    def _views(self, pose: HeadReading, width: int, rows: int) -> list[Line]:
         columns = (width - 2) // 2
         above, side = Dots(columns, rows), Dots(columns, rows)
         radius = min(above.width / 2, above.height / 2) - 2
