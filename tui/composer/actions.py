@@ -2,16 +2,42 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.composer.screen import ComposerScreen
+    from collections.abc import Sequence
+
+    from tui.session.feed import Feed
 
 
-class ComposerAction(Action["ComposerScreen"]):
+class ComposerTarget(Protocol):
+    """What these actions need of the composer."""
+
+    @property
+    def feed(self) -> Feed:
+        """What runs."""
+
+    @property
+    def problems(self) -> Sequence[object]:
+        """What is wrong with the JSON."""
+
+    def send(self, *, anyway: bool = False) -> None:
+        """Send the JSON, `anyway` though it is wrong."""
+
+    def choose_template(self) -> None:
+        """Ask which example to begin with."""
+
+    def recall(self, *, older: bool) -> None:
+        """Take the JSON that was sent before this one, or after it."""
+
+    def go_to_next_problem(self) -> None:
+        """Put the cursor to the next problem."""
+
+
+class ComposerAction(Action[ComposerTarget]):
     """Something that the composer does; it comes before what the editor would take the key for."""
 
     priority = True
@@ -21,7 +47,7 @@ class _SendAction(ComposerAction):
     """Something that needs a robot; without one the screen tells why nothing is sent."""
 
     @classmethod
-    def shown(cls, target: ComposerScreen) -> bool:
+    def shown(cls, target: ComposerTarget) -> bool:
         """Not beside a recording."""
         return target.feed.replay is None
 
@@ -37,7 +63,7 @@ class Send(_SendAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: ComposerScreen) -> None:
+    async def run(cls, target: ComposerTarget) -> None:
         """Send what is valid."""
         target.send()
 
@@ -52,12 +78,12 @@ class SendAnyway(_SendAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: ComposerScreen) -> bool | None:
+    def possible(cls, target: ComposerTarget) -> bool | None:
         """Only what is wrong."""
         return bool(target.problems)
 
     @classmethod
-    async def run(cls, target: ComposerScreen) -> None:
+    async def run(cls, target: ComposerTarget) -> None:
         """Send it as it is."""
         target.send(anyway=True)
 
@@ -74,7 +100,7 @@ class Templates(ComposerAction):
     from_elsewhere = True
 
     @classmethod
-    async def run(cls, target: ComposerScreen) -> None:
+    async def run(cls, target: ComposerTarget) -> None:
         """Choose one."""
         target.choose_template()
 
@@ -89,7 +115,7 @@ class OlderSent(ComposerAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: ComposerScreen) -> None:
+    async def run(cls, target: ComposerTarget) -> None:
         """Recall it."""
         target.recall(older=True)
 
@@ -103,7 +129,7 @@ class NewerSent(ComposerAction):
     tooltip = N_("Go back towards what you were writing.")
 
     @classmethod
-    async def run(cls, target: ComposerScreen) -> None:
+    async def run(cls, target: ComposerTarget) -> None:
         """Recall it."""
         target.recall(older=False)
 
@@ -118,12 +144,12 @@ class NextProblem(ComposerAction):
     from_elsewhere = True
 
     @classmethod
-    def possible(cls, target: ComposerScreen) -> bool | None:
+    def possible(cls, target: ComposerTarget) -> bool | None:
         """Only if something is."""
         return bool(target.problems)
 
     @classmethod
-    async def run(cls, target: ComposerScreen) -> None:
+    async def run(cls, target: ComposerTarget) -> None:
         """Go there."""
         target.go_to_next_problem()
 

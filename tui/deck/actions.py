@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from launcher.status import NodeState
 from text.i18n import N_, _
@@ -10,14 +10,66 @@ from text.plain import plain
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.deck.screen import LessonDeck
+    from textual.notifications import SeverityLevel
+    from textual.worker import Worker
+
+    from tui.log_view.filter import LogFilter
+    from tui.session.feed import Feed
 
 
 ENDED = frozenset({NodeState.EXITED, NodeState.FAILED})
 RUNS = frozenset({NodeState.STARTING, NodeState.READY, NodeState.RUNNING})
 
 
-class DeckAction(Action["LessonDeck"]):
+class DeckTarget(Protocol):
+    """What these actions need of the Deck."""
+
+    @property
+    def feed(self) -> Feed:
+        """What runs."""
+
+    @property
+    def chosen_node(self) -> str:
+        """The chosen node, empty without a session."""
+
+    @property
+    def chosen_state(self) -> NodeState | None:
+        """Where the chosen node is in its life."""
+
+    @property
+    def log_filter(self) -> LogFilter:
+        """Which lines of the log are shown."""
+
+    @property
+    def pages(self) -> int:
+        """How many pages of panels there are."""
+
+    @property
+    def driven(self) -> bool:
+        """Whether a node takes commands in words."""
+
+    def ask(self, what: str, *names: str) -> Worker[None]:
+        """Ask the session to do this with these nodes, all if none is named."""
+
+    def filter_log(self, chosen: LogFilter) -> None:
+        """Show these lines."""
+
+    def hear_all(self) -> None:
+        """Let every node be heard, at every severity."""
+
+    def turn_page(self) -> None:
+        """Show the panels that had no room."""
+
+    def write_command(self) -> None:
+        """Go to the command line."""
+
+    def notify(
+        self, message: str, *, severity: SeverityLevel = "information", markup: bool = True
+    ) -> None:
+        """Tell something in a corner."""
+
+
+class DeckAction(Action[DeckTarget]):
     """Something on the Deck."""
 
 
@@ -25,7 +77,7 @@ class _OfNode(DeckAction):
     """Something about the chosen node."""
 
     @classmethod
-    def possible(cls, target: LessonDeck) -> bool | None:
+    def possible(cls, target: DeckTarget) -> bool | None:
         """Only with a node chosen, in a session that has any of its own: a recording has none."""
         if target.feed.watching or not target.feed.nodes:
             return False
@@ -40,19 +92,19 @@ class _AskNode(_OfNode):
     """States in which there is nothing of it to do."""
 
     @classmethod
-    def possible(cls, target: LessonDeck) -> bool | None:
+    def possible(cls, target: DeckTarget) -> bool | None:
         """Not when the session is over, and not what is done already."""
         if target.feed.link is None or target.chosen_state in cls.done:
             return False
         return super().possible(target)
 
     @classmethod
-    def shown(cls, target: LessonDeck) -> bool:
+    def shown(cls, target: DeckTarget) -> bool:
         """Not of a node that Deck has not started: there the key says so."""
         return target.chosen_node not in target.feed.outside.now
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Ask; what others have started is theirs."""
         name = target.chosen_node
         if name in target.feed.outside.now:
@@ -105,12 +157,12 @@ class _AskAll(DeckAction):
     asked: ClassVar[str]
 
     @classmethod
-    def possible(cls, target: LessonDeck) -> bool | None:
+    def possible(cls, target: DeckTarget) -> bool | None:
         """Only where there are nodes that Deck has started."""
         return target.feed.link is not None and bool(target.feed.nodes)
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Ask."""
         target.ask(cls.asked)
 
@@ -156,7 +208,7 @@ class MuteChosenNode(_OfNode):
     footer = True
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Mute it, or not."""
         target.filter_log(target.log_filter.toggled(target.chosen_node))
 
@@ -172,7 +224,7 @@ class HearOnly(_OfNode):
     footer = True
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Listen to it alone, or not."""
         target.filter_log(target.log_filter.alone(target.chosen_node))
 
@@ -188,7 +240,7 @@ class RaiseLogSeverity(DeckAction):
     from_elsewhere = True
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Raise the level."""
         target.filter_log(target.log_filter.next_minimum())
 
@@ -204,7 +256,7 @@ class HearAllNodes(DeckAction):
     from_elsewhere = True
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Show all."""
         target.hear_all()
 
@@ -221,12 +273,12 @@ class TurnPage(DeckAction):
     from_elsewhere = True
 
     @classmethod
-    def possible(cls, target: LessonDeck) -> bool | None:
+    def possible(cls, target: DeckTarget) -> bool | None:
         """Only if there are any."""
         return target.pages > 1
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Turn the page."""
         target.turn_page()
 
@@ -243,12 +295,12 @@ class WriteCommand(DeckAction):
     from_elsewhere = True
 
     @classmethod
-    def possible(cls, target: LessonDeck) -> bool | None:
+    def possible(cls, target: DeckTarget) -> bool | None:
         """Only where a node takes such words."""
         return target.driven
 
     @classmethod
-    async def run(cls, target: LessonDeck) -> None:
+    async def run(cls, target: DeckTarget) -> None:
         """Go to the field."""
         target.write_command()
 

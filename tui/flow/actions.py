@@ -2,16 +2,51 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.flow.screen import FlowScreen
+    from tui.flow.chains import Chain, FlowStep, Lane
 
 
-class FlowAction(Action["FlowScreen"]):
+class FlowTarget(Protocol):
+    """What these actions need of the screen of the flow."""
+
+    @property
+    def chosen_step(self) -> FlowStep | None:
+        """The step at the cursor."""
+
+    paused: bool
+    """Whether what comes is held back."""
+
+    def neighbour(self, step: int) -> Chain | None:
+        """Return the chain so many places below the chosen one."""
+
+    def go(self, step: int) -> None:
+        """Go to that chain."""
+
+    def toggle_pause(self) -> None:
+        """Hold back what comes, or show it."""
+
+    def toggle_lane(self, lane: Lane) -> None:
+        """Hide who is in this lane, or show them."""
+
+    def show_all(self) -> None:
+        """Hide nobody."""
+
+    def toggle_logs(self) -> None:
+        """Show other nodes' logs, or hide them."""
+
+    def toggle_scale(self) -> None:
+        """Draw the time by its logarithm, or as it is."""
+
+    def copy_chain(self) -> None:
+        """Copy the chosen chain."""
+
+
+class FlowAction(Action[FlowTarget]):
     """Something about the timeline."""
 
     from_elsewhere = True
@@ -23,7 +58,7 @@ class _Chosen(FlowAction):
     from_elsewhere = False
 
     @classmethod
-    def possible(cls, target: FlowScreen) -> bool | None:
+    def possible(cls, target: FlowTarget) -> bool | None:
         """Only with a step to choose."""
         return True if target.chosen_step else None
 
@@ -39,12 +74,12 @@ class OlderChain(FlowAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: FlowScreen) -> bool | None:
+    def possible(cls, target: FlowTarget) -> bool | None:
         """Only if there is one."""
         return True if target.neighbour(1) else None
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Go there."""
         target.go(1)
 
@@ -59,12 +94,12 @@ class NewerChain(FlowAction):
     tooltip = N_("Go to the utterance after this one.")
 
     @classmethod
-    def possible(cls, target: FlowScreen) -> bool | None:
+    def possible(cls, target: FlowTarget) -> bool | None:
         """Only if there is one."""
         return True if target.neighbour(-1) else None
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Go there."""
         target.go(-1)
 
@@ -79,12 +114,12 @@ class PauseFlow(FlowAction):
     footer = True
 
     @classmethod
-    def label(cls, target: FlowScreen) -> str:
+    def label(cls, target: FlowTarget) -> str:
         """By what it would do now."""
         return N_("Resume") if target.paused else cls.title
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Do the other of the two."""
         target.toggle_pause()
 
@@ -100,7 +135,7 @@ class HideLane(_Chosen):
     footer = True
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Leave them out."""
         if target.chosen_step:
             target.toggle_lane(target.chosen_step.lane)
@@ -117,7 +152,7 @@ class ShowAllLanes(FlowAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Hide nothing."""
         target.show_all()
 
@@ -133,7 +168,7 @@ class OtherLogs(FlowAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Show or hide it."""
         target.toggle_logs()
 
@@ -149,7 +184,7 @@ class ChangeTimeScale(FlowAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Take the other one."""
         target.toggle_scale()
 
@@ -164,7 +199,7 @@ class CopyChain(_Chosen):
     footer = True
 
     @classmethod
-    async def run(cls, target: FlowScreen) -> None:
+    async def run(cls, target: FlowTarget) -> None:
         """Copy."""
         target.copy_chain()
 

@@ -2,16 +2,75 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
 from tui.actions.action import Action
 
 if TYPE_CHECKING:
-    from tui.graph.screen import GraphScreen
+    from tui.graph.ask import AskPane
+    from tui.graph.node import NodePane
+    from tui.session.feed import Feed
 
 
-class GraphAction(Action["GraphScreen"]):
+class GraphTarget(Protocol):
+    """What these actions need of the screen of the graph."""
+
+    @property
+    def feed(self) -> Feed:
+        """What runs."""
+
+    @property
+    def ask_pane(self) -> AskPane | None:
+        """The detail in front, if something can be asked there."""
+
+    @property
+    def node_pane(self) -> NodePane | None:
+        """The detail in front, if it is a node's."""
+
+    @property
+    def shows_pane(self) -> bool:
+        """Whether the detail is seen."""
+
+    @property
+    def shows_parameters(self) -> bool:
+        """Whether parameters are in front."""
+
+    @property
+    def is_in_list(self) -> bool:
+        """Whether keys go to the list of names."""
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether letters go into a text."""
+
+    @property
+    def draws(self) -> bool:
+        """Whether the drawing is in front."""
+
+    def focus_filter(self) -> None:
+        """Put the cursor into the filter."""
+
+    def list_next(self, by: int) -> None:
+        """List the kind that stands so many tabs to the right."""
+
+    def toggle_map(self) -> None:
+        """Draw the graph around the chosen node, or list it again."""
+
+    def toggle_everything(self) -> None:
+        """Show or hide what ROS itself needs."""
+
+    def save_parameters(self) -> None:
+        """Ask for a file, and write the node's parameters into it."""
+
+    def load_parameters(self) -> None:
+        """Ask for a file, and set what it has for the node."""
+
+    def go_back(self) -> None:
+        """Go back to where the newest link was followed, else to the list."""
+
+
+class GraphAction(Action[GraphTarget]):
     """Something that the screen of the graph does."""
 
 
@@ -29,17 +88,17 @@ class FillIn(GraphAction):
     priority = True
 
     @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
+    def possible(cls, target: GraphTarget) -> bool | None:
         """Only in the list, beside a form."""
         return target.ask_pane is not None and target.shows_pane and target.is_in_list
 
     @classmethod
-    def shown(cls, target: GraphScreen) -> bool:
+    def shown(cls, target: GraphTarget) -> bool:
         """Not in the room of what cancels, while something is under way."""
         return target.ask_pane is not None and not target.ask_pane.can_cancel
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Go to its first line."""
         if target.ask_pane is not None:
             target.ask_pane.first().focus()
@@ -58,12 +117,12 @@ class FilterNames(GraphAction):
     from_elsewhere = True
 
     @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
+    def possible(cls, target: GraphTarget) -> bool | None:
         """Not where a slash is a slash."""
         return not target.is_typing
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Put the cursor into the filter."""
         target.focus_filter()
 
@@ -78,7 +137,7 @@ class NextKind(GraphAction):
     from_elsewhere = True
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """List it."""
         target.list_next(1)
 
@@ -93,7 +152,7 @@ class PreviousKind(GraphAction):
     from_elsewhere = True
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """List it."""
         target.list_next(-1)
 
@@ -109,12 +168,12 @@ class ShowMap(GraphAction):
     from_elsewhere = True
 
     @classmethod
-    def label(cls, target: GraphScreen) -> str:
+    def label(cls, target: GraphTarget) -> str:
         """By what it would do now."""
         return N_("List") if target.draws else cls.title
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Draw or list."""
         target.toggle_map()
 
@@ -130,14 +189,14 @@ class ShowParameters(GraphAction):
     from_elsewhere = True
 
     @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
+    def possible(cls, target: GraphTarget) -> bool | None:
         """Only of a node, which a recording is not."""
         if target.feed.replay is not None:
             return False
         return target.node_pane is not None and target.shows_pane
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Show or hide them."""
         if target.node_pane is not None:
             target.node_pane.toggle_parameters()
@@ -149,7 +208,7 @@ class ParametersAction(GraphAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
+    def possible(cls, target: GraphTarget) -> bool | None:
         """Only while they are shown."""
         return target.shows_parameters
 
@@ -164,7 +223,7 @@ class SaveParameters(ParametersAction):
     tooltip = N_("Save the node's parameters as YAML.")
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Ask for a file."""
         target.save_parameters()
 
@@ -178,7 +237,7 @@ class LoadParameters(ParametersAction):
     tooltip = N_("Set the node's parameters from a YAML file.")
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Ask for a file."""
         target.load_parameters()
 
@@ -194,17 +253,17 @@ class SubmitRequest(GraphAction):
     footer = True
 
     @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
+    def possible(cls, target: GraphTarget) -> bool | None:
         """Only where a form is seen: what it asks for may turn wheels."""
         return target.ask_pane is not None and target.shows_pane
 
     @classmethod
-    def label(cls, target: GraphScreen) -> str:
+    def label(cls, target: GraphTarget) -> str:
         """By what would be asked."""
         return cls.title if target.ask_pane is None else target.ask_pane.submit_title
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Ask."""
         if target.ask_pane is not None:
             target.ask_pane.form.submit()
@@ -222,12 +281,12 @@ class CancelRequest(GraphAction):
     priority = True
 
     @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
+    def possible(cls, target: GraphTarget) -> bool | None:
         """Only while something is under way."""
         return target.ask_pane is not None and target.ask_pane.can_cancel
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Cancel it."""
         if target.ask_pane is not None:
             target.ask_pane.cancel()
@@ -243,13 +302,13 @@ class ForgetGoal(GraphAction):
     tooltip = N_("Take the chosen goal off the list; one that has not ended is cancelled.")
 
     @classmethod
-    def possible(cls, target: GraphScreen) -> bool | None:
+    def possible(cls, target: GraphTarget) -> bool | None:
         """Only of an action whose goals are seen."""
         pane = target.ask_pane
         return pane is not None and pane.can_forget and target.shows_pane
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Forget it."""
         if target.ask_pane is not None:
             target.ask_pane.forget()
@@ -267,7 +326,7 @@ class ShowEverything(GraphAction):
     from_elsewhere = True
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Show or hide it."""
         target.toggle_everything()
 
@@ -281,7 +340,7 @@ class GoBack(GraphAction):
     tooltip = N_("From the detail to the list, from there back along the links.")
 
     @classmethod
-    async def run(cls, target: GraphScreen) -> None:
+    async def run(cls, target: GraphTarget) -> None:
         """Go back."""
         target.go_back()
 
