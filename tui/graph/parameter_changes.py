@@ -17,8 +17,8 @@ from textual.widgets import Input, Static
 from text.i18n import _, ngettext, said
 from text.os_words import os_reason
 from text.plain import plain
-from tui.frame.host import host_of
 from tui.dialogs.dialog import Dialog
+from tui.frame.host import host_of
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.widgets.field import Field
 

@@ -1,5 +1,5 @@
-"""The list of lessons, and what is asked or told before one opens.
+"""The list of lessons and of sessions that run: what may be opened, and what is in it.
 
-From outside: `screen` for the app, and the dialogs `domain_taken`, `refused` and `strays` for
-`tui.session`, which opens what was chosen.
+From outside: `screen` for the app. What is asked or told before one opens stands in
+`tui.lifecycle`, which opens it.
 """
