@@ -9,7 +9,6 @@ from graph.data import Trouble
 from text.figures import elapsed
 from text.i18n import N_, _, said
 from text.plain import plain
-from tui.widgets.qos_words import misfit_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,6 +62,9 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
     if trouble is Trouble.UNKNOWN_TYPE and "package" in facts:
         return _how_to_install(facts).format(**facts)
     if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
+        # The first frame does without.
+        from tui.widgets.qos_words import misfit_words
+
         return misfit_words(facts)
     return said(row.detail)
 
