@@ -1,4 +1,5 @@
 """The tab of logs: what all nodes say, and the list of those nodes.
 
-The app makes its `screen.LogsScreen`; nothing else here is for others.
+The app makes its `screen.LogsScreen`, the palette lists its `actions`; nothing else here is for
+others.
 """
