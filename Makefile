@@ -34,16 +34,23 @@ help:
 	@echo 'make architecture  draw the picture in ARCHITECTURE.md anew, from the code'
 	@echo 'make clean  remove what the others made'
 
-setup: .venv/.ready
+setup: catalogues
 
 .venv/.ready: pyproject.toml $(shell find interfaces locked)
 	@python=$$(sh scripts/find-python.sh) && exec "$$python" scripts/environment.py .venv
 
-run: .venv/.ready
+# Those whose sources were changed since, as by a `git pull`.
+.PHONY: catalogues
+catalogues: .venv/.ready
+	@for source in text/locale/*/LC_MESSAGES/deck.po; do \
+	if [ -e "$$source" ] && [ ! "$${source%.po}.mo" -nt "$$source" ]; then \
+	exec .venv/bin/python scripts/catalogues.py compile; fi; done
+
+run: catalogues
 	@if [ -t 1 ]; then exec .venv/bin/deck $(PROFILE) $(ARGS); fi; \
 	exec .venv/bin/deck run $(or $(PROFILE),09-brain) $(ARGS)
 
-test: .venv/.ready
+test: catalogues
 	@exec .venv/bin/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 lint: .venv/.ready

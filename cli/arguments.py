@@ -55,6 +55,24 @@ class Parser(argparse.ArgumentParser):
         )
 
 
+ARGPARSE = (
+    N_("usage: "),
+    N_("positional arguments"),
+    N_("options"),
+    N_("optional arguments"),
+    N_("show this help message and exit"),
+    N_("the following arguments are required: %s"),
+    N_("unrecognized arguments: %s"),
+    N_("argument %(argument_name)s: %(message)s"),
+    N_("invalid choice: %(value)r (choose from %(choices)s)"),
+    N_("invalid choice: %(value)s (choose from %(choices)s)"),
+    N_("expected one argument"),
+    N_("ambiguous option: %(option)s could match %(matches)s"),
+    N_("ignored explicit argument %r"),
+)
+"""What argparse says of itself, in the words of Python 3.10 to 3.13, marked for the catalogue."""
+
+
 def speak() -> None:
     """Have argparse look its own sentences up in the catalogue of the screen."""
     argparse._ = _  # type: ignore[attr-defined]

@@ -35,7 +35,8 @@ def list_command(options: Namespace) -> int:
         name = plain(entry.name).ljust(width)
         if entry.error:
             first = said(entry.problems[0].words) if entry.problems else plain(entry.error)
-            write(f"{name}  {paint(_('broken'), RED)}: {first}")
+            broken = paint(_("broken"), RED)
+            write(f"{name}  {broken}: {first}")
             continue
         nodes = paint(_("nodes: {names}").format(names=", ".join(entry.nodes)), DIM)
         write(f"{name}  {pick(entry.title)}")
@@ -93,7 +94,8 @@ def _check(path: Path, options: Namespace) -> int:
         write(_line(problem, paint, YELLOW, _("warning") + ": "))
     count = len(profile.nodes)
     nodes = ngettext("{count} node", "{count} nodes", count).format(count=count)
-    write(f"{plain(shown(path))}: {_('all is well')}, {nodes}")
+    well = _("all is well")
+    write(f"{plain(shown(path))}: {well}, {nodes}")
     return 0
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from text.i18n import N_
+
 TOPICS = frozenset({"/rosout", "/parameter_events", "/clock"})
 SERVICES = frozenset(
     {
@@ -17,6 +19,8 @@ SERVICES = frozenset(
     }
 )
 """Last part of the name of what rclpy and rclcpp give every node."""
+PARAMETERS = (N_("If enabled, start the ~/get_type_description service."),)
+"""What rclpy says of the parameters that every node has, marked for the catalogue."""
 
 
 def is_housekeeping(name: str) -> bool:

@@ -53,8 +53,8 @@ class Audio(LessonNode):
 
     NAME = "audio_system"
     SETTINGS = (
-        DeviceText("input_device", "", "The microphone", fixed=True, may_be_empty=True),
-        DeviceText("output_device", "", "The loudspeaker", fixed=True, may_be_empty=True),
+        DeviceText("input_device", "", N_("The microphone"), fixed=True, may_be_empty=True),
+        DeviceText("output_device", "", N_("The loudspeaker"), fixed=True, may_be_empty=True),
         Whole(
             "sample_rate",
             RATE_HZ,

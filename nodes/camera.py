@@ -46,7 +46,7 @@ class Camera(LessonNode):
 
     NAME = "camera"
     SETTINGS = (
-        SourceSetting("source", "0", "Camera, video file or stream", fixed=True),
+        SourceSetting("source", "0", N_("Camera, video file or stream"), fixed=True),
         Text("topic", CAMERA, "Where the pictures are published", fixed=True),
         Number("rate", 10.0, "Pictures a second, at most", low=0.1, high=120.0, unit="Hz"),
         Whole("width", 640, "Columns", low=16, high=4096, fixed=True),

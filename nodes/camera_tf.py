@@ -43,12 +43,12 @@ class CameraTf(LessonNode):
     SETTINGS = (
         Text("parent", "base_link", "The frame of the robot", fixed=True),
         Text("child", "camera_link", "The frame of the camera", fixed=True),
-        _metres("x", 0.15, "Forward"),
-        _metres("y", 0.0, "To the left"),
-        _metres("z", 0.25, "Upwards"),
-        _radians("roll", "About x"),
-        _radians("pitch", "About y, + looks down"),
-        _radians("yaw", "About z, + looks left"),
+        _metres("x", 0.15, N_("Forward")),
+        _metres("y", 0.0, N_("To the left")),
+        _metres("z", 0.25, N_("Upwards")),
+        _radians("roll", N_("About x")),
+        _radians("pitch", N_("About y, + looks down")),
+        _radians("yaw", N_("About z, + looks left")),
     )
 
     def __init__(self) -> None:

@@ -68,10 +68,10 @@ class MockRobot(LessonNode):
     NAME = "mock_robot"
     SETTINGS = (
         Text("folder", "", "Where the devices appear; empty: Deck's own", True, may_be_empty=True),
-        _fault("pico", "Trouble of the Pico"),
-        _fault("tof_front", "Trouble of the sonar in front"),
-        _fault("tof_rear", "Trouble of the sonar behind"),
-        _fault("lsc16", "Trouble of the servo controller"),
+        _fault("pico", N_("Trouble of the Pico")),
+        _fault("tof_front", N_("Trouble of the sonar in front")),
+        _fault("tof_rear", N_("Trouble of the sonar behind")),
+        _fault("lsc16", N_("Trouble of the servo controller")),
         Choice(
             "stalled",
             "none",

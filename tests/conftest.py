@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, settings
 
 from graph.ros import FAST_DDS_VARIABLES, LOCALHOST_ONLY, ONLY_THESE, PEERS
 from tests.domains import DomainPool
+from tests.unit.scripts_of_setup import load
 
 # A loaded machine is no failure of the code. Each run takes other examples: half as many as usual
 # are enough of them. Where a change is judged they are the same ones for all.
@@ -54,6 +55,7 @@ def _clear_states() -> None:
 
 
 _clear_states()
+load("catalogues").compile_stale()
 os.environ[STATE_DIR] = tempfile.mkdtemp(prefix=f"{_STATE}{os.getpid()}-")
 """Set for the whole run: nodes that a module shares, started anew by a test, remember alike."""
 

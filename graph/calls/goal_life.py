@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.data import Goal, GoalStatus
 from graph.messages.values import to_tree
+from text.i18n import N_
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -28,9 +29,9 @@ STATUS = {
 }
 """Source: action_msgs/GoalStatus."""
 ENDS = frozenset({GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED})
-LOST = "its server has left the graph"
-REFUSED = "the server refuses to cancel it"
-NO_WORD_OF_CANCEL = "no answer to the request to cancel it within {seconds} s"
+LOST = N_("its server has left the graph")
+REFUSED = N_("the server refuses to cancel it")
+NO_WORD_OF_CANCEL = N_("no answer to the request to cancel it within {seconds} s")
 
 
 class GoalLife:

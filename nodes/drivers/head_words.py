@@ -37,6 +37,21 @@ _NO_ROOM = {
 }
 
 
+DESCRIPTIONS = (
+    N_("Where the pan servo is plugged in"),
+    N_("Least pan"),
+    N_("Most pan"),
+    N_("What the pan servo turns for the head to look straight"),
+    N_("Whether a longer pulse turns the head right"),
+    N_("Where the tilt servo is plugged in"),
+    N_("Least tilt"),
+    N_("Most tilt"),
+    N_("What the tilt servo turns for the head to look straight"),
+    N_("Whether a longer pulse turns the head down"),
+)
+"""What is made below, marked for the catalogue."""
+
+
 def _joint_settings(joint: str, servo: int, way: str) -> tuple[Setting, ...]:
     low, high = float(HEAD_ANGLE.low), float(HEAD_ANGLE.high)
     return (

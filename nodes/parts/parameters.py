@@ -151,7 +151,7 @@ class Switch(Setting):
 
     def expected(self) -> str:
         """The two values."""
-        return "true, false"
+        return N_("true, false")
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ class Text(Setting):
 
     def expected(self) -> str:
         """Whether it may be empty."""
-        return "text, may be empty" if self.may_be_empty else "text"
+        return N_("text, may be empty") if self.may_be_empty else N_("text")
 
 
 @dataclass(frozen=True)

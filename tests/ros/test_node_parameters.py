@@ -21,7 +21,7 @@ from nodes.parts.node import LessonNode
 from nodes.parts.parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, ROOT, Peer
-from text.catalogue import read_po
+from tests.unit.scripts_of_setup import load
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,7 +55,7 @@ def test_every_parameter_is_described_and_takes_its_own_default(module: str) -> 
 
 @pytest.mark.parametrize("module", [*MODULES, "camera"])
 def test_the_screen_has_every_description_in_russian(module: str) -> None:
-    catalogue = read_po("ru")
+    catalogue = load("catalogues").translated("ru")
     for setting in settings_of(module):
         entry = catalogue.get(setting.about)
         assert entry is not None, setting.about
@@ -70,7 +70,7 @@ def test_the_screen_has_the_descriptions_of_rclpys_own_parameters_in_russian(
         names = list(peer.node.get_parameters_by_prefix(""))
         told = [one.description for one in peer.node.describe_parameters(names) if one.description]
     assert told
-    catalogue = read_po("ru")
+    catalogue = load("catalogues").translated("ru")
     for description in told:
         entry = catalogue.get(description)
         assert entry is not None, description

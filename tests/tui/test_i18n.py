@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import gettext
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from text import catalogue
-from text.catalogue import missing, po_path, read_po
+from tests.unit.scripts_of_setup import load
 from text.i18n import _, detect, language, ngettext, pick, said, set_language
 from text.sentences import say
+
+catalogues = load("catalogues")
 
 
 @pytest.mark.parametrize(
@@ -79,40 +79,52 @@ def test_a_title_is_picked_in_the_language_spoken_else_in_english_else_in_any() 
     assert pick({}) == ""
 
 
-def test_everything_said_on_screen_has_a_russian_translation() -> None:
-    assert missing("ru") == []
+def test_everything_said_is_translated_and_nothing_else() -> None:
+    assert catalogues.wrong("ru") == []
 
 
 def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
-    with po_path("ru").with_suffix(".mo").open("rb") as file:
+    with (catalogues.LOCALE / "ru" / "LC_MESSAGES" / "deck.mo").open("rb") as file:
         compiled = gettext.GNUTranslations(file)
-    for entry in read_po("ru"):
+    for entry in catalogues.translated("ru"):
         if not entry.id:
             continue
         if entry.pluralizable:
             said = tuple(compiled.ngettext(*entry.id, number) for number in (1, 2, 5))
-            assert said == tuple(entry.string), "run: python -m text.catalogue compile"
+            assert said == tuple(entry.string)
         else:
-            assert compiled.gettext(entry.id) == entry.string, (
-                "run: python -m text.catalogue compile"
-            )
+            assert compiled.gettext(entry.id) == entry.string
 
 
-def test_compiling_the_same_catalogue_again_makes_the_same_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    kept = po_path("ru").with_suffix(".mo").read_bytes()
-    shutil.copytree(catalogue.LOCALE, tmp_path / "locale")
-    monkeypatch.setattr(catalogue, "LOCALE", tmp_path / "locale")
-    (made,) = catalogue.compile_all()
-    assert made.read_bytes() == kept
+def test_a_catalogue_is_compiled_when_its_source_has_changed(tmp_path: Path) -> None:
+    folder = tmp_path / "ru" / "LC_MESSAGES"
+    folder.mkdir(parents=True)
+    source, made = folder / "deck.po", folder / "deck.mo"
+    head = (catalogues.LOCALE / "ru" / "LC_MESSAGES" / "deck.po").read_text().split("\n\n")[0]
+    for word in ("Выход", "Конец"):
+        source.write_text(f'{head}\n\nmsgid "Quit"\nmsgstr "{word}"\n')
+        assert catalogues.stale(tmp_path) == [source]
+        catalogues.compile_stale(tmp_path)
+        assert catalogues.stale(tmp_path) == []
+        with made.open("rb") as file:
+            assert gettext.GNUTranslations(file).gettext("Quit") == word
+    assert sorted(folder.iterdir()) == [made, source]
+
+
+def test_the_same_source_makes_the_same_file(tmp_path: Path) -> None:
+    folder = tmp_path / "ru" / "LC_MESSAGES"
+    folder.mkdir(parents=True)
+    kept = catalogues.LOCALE / "ru" / "LC_MESSAGES" / "deck.po"
+    (folder / "deck.po").write_bytes(kept.read_bytes())
+    catalogues.compile_stale(tmp_path)
+    assert (folder / "deck.mo").read_bytes() == kept.with_suffix(".mo").read_bytes()
 
 
 def test_translations_fill_in_the_same_values() -> None:
     def fields(text: str) -> set[str]:
         return {part.split("}")[0].split(":")[0].split("!")[0] for part in text.split("{")[1:]}
 
-    for entry in read_po("ru"):
+    for entry in catalogues.translated("ru"):
         ids = entry.id if isinstance(entry.id, (tuple, list)) else (entry.id,)
         texts = entry.string if isinstance(entry.string, (tuple, list)) else (entry.string,)
         if entry.id:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from text.catalogue import read_po
+from tests.unit.scripts_of_setup import load
 
 ROOT = Path(__file__).parents[2]
 DOCS = (ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.ru.md")))
@@ -54,7 +54,7 @@ def catalogue() -> tuple[list[str], list[str]]:
     """What the program says in English and in Russian, plural forms one by one."""
     said: list[str] = []
     translated: list[str] = []
-    for message in read_po("ru"):
+    for message in load("catalogues").translated("ru"):
         if message.id:
             said += [message.id] if isinstance(message.id, str) else message.id
             translated += [message.string] if isinstance(message.string, str) else message.string

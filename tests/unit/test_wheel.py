@@ -48,6 +48,10 @@ def test_the_wheel_holds_the_rooms_and_nothing_besides(wheel: zipfile.ZipFile) -
     assert inside == {*FOLDERS, "__init__.py", "__main__.py", "py.typed"}
 
 
+def test_the_wheel_speaks_russian(wheel: zipfile.ZipFile) -> None:
+    assert "deck/text/locale/ru/LC_MESSAGES/deck.mo" in wheel.namelist()
+
+
 def test_type_checkers_may_read_it(wheel: zipfile.ZipFile) -> None:
     marked = {name for name in wheel.namelist() if name.endswith("/py.typed")}
     assert marked == {"deck/py.typed", *(f"deck/{room}/py.typed" for room in ROOMS)}
@@ -78,6 +82,7 @@ def test_an_installed_deck_goes_beside_packages_of_the_same_names(installed: Ins
     assert installed.deck("--version").startswith("deck ")
     assert installed.python("-m", "deck", "--version") == installed.deck("--version")
     assert "01-hello" in installed.deck("list", "--lang", "en")
+    assert "узлы:" in installed.deck("list", "--lang", "ru")
     installed.deck("check", "09-brain")
     assert not installed.imported.exists()
 

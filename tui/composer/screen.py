@@ -264,7 +264,8 @@ class ComposerScreen(DeckScreen):
             hint = _("{key} sends the JSON to llm_parser.").format(key=self.deck.keys_of(Send)[0])
             if self.feed.replay is not None:
                 hint = _("This is a recording: nobody can hear it.")
-            self.outcome.show(f"{_('Nothing has been sent yet.')} {hint}", ())
+            nothing = _("Nothing has been sent yet.")
+            self.outcome.show(f"{nothing} {hint}", ())
             return
         at = clock.time_of_day(story.sent_s)
         self.outcome.show(_("Sent at {time}").format(time=at), story.entries(now_s))
