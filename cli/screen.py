@@ -29,7 +29,7 @@ def open_command(options: Namespace) -> int:
     profile = None if options.profile is None else profile_or_command(options.profile)
     if not has_terminal():
         return _without_screen(options)
-    from tui.app import run_screen
+    from tui.live import run_screen
 
     return run_screen(
         profile,
@@ -71,7 +71,7 @@ def attach_command(options: Namespace) -> int:
 
     # What is wrong with the name is told before there is a screen.
     session = find_running(options.name).session
-    from tui.app import run_screen
+    from tui.live import run_screen
 
     return run_screen(
         None,

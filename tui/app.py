@@ -3,32 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import import_module
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.events import Key, Paste
-from textual.widget import Widget
 
 from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
-from tui.actions import REGISTRY, Acting, Action, bindings
+from tui.actions import Acting, Action, bindings
 from tui.dialogs.opening import OpeningScreen
 from tui.emergency.control import EmergencyControl
+from tui.emergency.messages import EmergencyChanged
+from tui.emergency.state import FOLLOWED
 from tui.faults import Faults
 from tui.frame.actions.app import APP_ACTIONS, EmergencyStop
-from tui.frame.actions.recording import RECORDING_ACTIONS
+from tui.frame.actions.recording import RECORDING_ACTIONS, RecordToggle
 from tui.frame.actions.replay import REPLAY_ACTIONS
 from tui.frame.replay_bar import ReplayBar
 from tui.lifecycle.sessions import Sessions
 from tui.recording.recording import Recording
+from tui.screens import Screens
 from tui.session.feed import Feed, GraphReady
-from tui.session.messages import EmergencyChanged, LanguageChanged
-from tui.session.requests import OpenRequest
+from tui.session.messages import LanguageChanged
 from tui.session.strangers import Strangers
 from tui.terminal.bandwidth import Bandwidth
+from tui.terminal.driver import DeckDriver
 from tui.terminal.harmless import Harmless
 from tui.terminal.key_queue import KeyQueue
 from tui.terminal.stall_detector import KeyStallDetector
@@ -44,28 +44,7 @@ if TYPE_CHECKING:
 
     from tui.faults import Journal
     from tui.session.ports import SessionOpener
-
-SCREENS = {
-    "picker": ("tui.picker.screen", "PickerScreen"),
-    "deck": ("tui.deck.screen", "LessonDeck"),
-    "topics": ("tui.topics.screen", "TopicsScreen"),
-    "composer": ("tui.composer.screen", "ComposerScreen"),
-    "logs": ("tui.logs.screen", "LogsScreen"),
-    "graph": ("tui.graph.screen", "GraphScreen"),
-    "flow": ("tui.flow.screen", "FlowScreen"),
-    "devices": ("tui.devices.screen", "DevicesScreen"),
-}
-"""Imported when first shown: the first frame needs only one of them."""
-
-DIALOGS = (
-    "tui.lifecycle.end_session",
-    "tui.lifecycle.stopping",
-    "tui.help.screen",
-    "tui.lifecycle.domain_taken",
-    "tui.lifecycle.refused",
-    "tui.lifecycle.strays",
-)
-"""With actions of their own, imported when first shown."""
+    from tui.session.requests import OpenRequest
 
 STRANGERS_S = 20.0
 """How long it is told beside the title who publishes past the gate."""
@@ -75,6 +54,20 @@ def _commands() -> type[Provider]:
     from tui.palette import Commands
 
     return Commands
+
+
+class Surroundings(Protocol):
+    """What is around an app on a real terminal; without one there is nothing."""
+
+    @property
+    def terminal_fd(self) -> int:
+        """Where the terminal is written to."""
+
+    def arrive(self, app: DeckApp) -> None:
+        """Take note that the app runs now."""
+
+    def remember(self, **values: str) -> None:
+        """Keep this theme, language or lesson for the next time."""
 
 
 class DeckApp(App[int], Acting):
@@ -88,6 +81,8 @@ class DeckApp(App[int], Acting):
     ENABLE_COMMAND_PALETTE = False
     """Textual's own key for it; ours speaks the language of the screen."""
 
+    _surroundings: Surroundings | None = None
+
     def __init__(
         self,
         opener: SessionOpener,
@@ -95,22 +90,36 @@ class DeckApp(App[int], Acting):
         first_screen: str = "deck",
         driver_class: type[Driver] | None = None,
         journal: Journal | None = None,
+        bandwidth: Bandwidth | None = None,
+        surroundings: Surroundings | None = None,
     ) -> None:
         """`opener` lists and opens; a `request` that names nothing is asked for by the picker.
 
         With a `journal` the app outlives what its widgets raise, see `tui.faults`.
         """
         super().__init__(driver_class=driver_class)
-        self.faults = Faults(self, journal)
+        self._surroundings = surroundings
+        self.faults = Faults(self, self, journal)
         self.has_begun = False
         """Whether the first frame is out."""
-        self.sessions = Sessions(self, opener, request)
-        self.feed = Feed(self)
-        self.emergency = EmergencyControl(self)
+        self.feed = Feed(self, FOLLOWED, self.faults)
+        self.emergency = EmergencyControl(self, self.feed, self._emergency_changed)
         self.strangers = Strangers()
-        self.recording = Recording(self)
+        self.recording = Recording(self, self.feed, lambda: self.keys_of(RecordToggle)[0])
+        self._screens = Screens(self)
+        self.sessions = Sessions(
+            self,
+            self._screens,
+            self.feed,
+            self.recording,
+            self.emergency,
+            self.strangers,
+            opener,
+            request,
+        )
+        self.sessions.lesson_opened = lambda name: self._remember(lesson=name)
         self.stall_detector = KeyStallDetector()
-        self.bandwidth = Bandwidth()
+        self.bandwidth = bandwidth or Bandwidth()
         """What is written to the terminal, and how much of pictures that may be."""
         self._harmless = Harmless()
         self._key_queue = KeyQueue(self)
@@ -125,6 +134,8 @@ class DeckApp(App[int], Acting):
 
     def on_mount(self) -> None:
         """Go on when the first frame is out."""
+        if self._surroundings is not None:
+            self._surroundings.arrive(self)
         self.stall_detector.watch()
         # A moment of rest lets the threads that write to the terminal have their turn.
         self.call_after_refresh(self.set_timer, 0.01, self._begin)
@@ -156,37 +167,12 @@ class DeckApp(App[int], Acting):
     async def _begin(self) -> None:
         """Show the lesson, or the picker if none was named, and open what was asked for."""
         self.has_begun = True
-        await self.push_screen(self._made_screen(self._first_screen))
+        await self.push_screen(self._screens.made(self._first_screen))
         self.sessions.begin()
 
     async def show_screen(self, name: str) -> None:
-        """Bring one of `SCREENS` to the front."""
-        await self.switch_screen(self._made_screen(name))
-
-    def _made_screen(self, name: str) -> Screen[Any]:
-        """Return the screen called `name`, made when first asked for."""
-        if not self.is_screen_installed(name):
-            module, made = SCREENS[name]
-            self.install_screen(getattr(import_module(module), made)(), name)
-        return self.get_screen(name)
-
-    def lesson_opened(self, name: str) -> None:
-        """Take note of the profile that has been started."""
-        self.sessions.last_lesson = name
-
-    async def forget_screens(self) -> None:
-        """Take away the screens of a session that is over."""
-        for name in SCREENS:
-            if name != "picker" and self.is_screen_installed(name):
-                old = self.get_screen(name)
-                self.uninstall_screen(old)
-                if old.is_running:
-                    # What they have drawn would be held, by a cache of Textual's own.
-                    for widget in (old, *old.walk_children(Widget)):
-                        widget.refresh()
-                    await old.remove()
-        # Who watches the theme, as each TextArea does, is held until it changes, gone or not.
-        self.mutate_reactive(DeckApp.theme)
+        """Bring the screen of this name to the front."""
+        await self._screens.show(name)
 
     def get_css_variables(self) -> dict[str, str]:
         """Return the colours of the theme, as far as the terminal can tell them apart."""
@@ -227,6 +213,17 @@ class DeckApp(App[int], Acting):
         if self.is_screen_installed(broken):
             self.uninstall_screen(broken)
             await broken.remove()
+
+    def is_safe(self, screen: Screen[Any]) -> bool:
+        """Whether this is what is shown in place of a screen that cannot be drawn."""
+        from tui.dialogs.safe import SafeScreen
+
+        return isinstance(screen, SafeScreen)
+
+    def give_up(self, words: str) -> None:
+        """Leave, in order: nothing can be drawn any more."""
+        self.sessions.parting_words = words
+        self.sessions.leave(1)
 
     def _handle_exception(self, error: Exception) -> None:
         """Go on, where faults are isolated: Textual would end the app by any of them."""
@@ -270,7 +267,7 @@ class DeckApp(App[int], Acting):
             self.notify(words[0], severity="error", timeout=STRANGERS_S, markup=False)
         self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
 
-    def emergency_changed(self) -> None:
+    def _emergency_changed(self) -> None:
         """Tell every screen, and the keys: a release is possible only when engaged."""
         self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
         self.refresh_bindings()
@@ -304,6 +301,7 @@ class DeckApp(App[int], Acting):
     def speak(self, code: str) -> None:
         """Speak this language from now on, and draw every text anew."""
         set_language(code)
+        self._remember(language=code)
         for screen in self.screen_stack:
             screen.post_message(LanguageChanged())
         self.feed.tell(LanguageChanged)
@@ -314,8 +312,35 @@ class DeckApp(App[int], Acting):
         self.speak(LANGUAGES[(LANGUAGES.index(language()) + 1) % len(LANGUAGES)])
 
     def redraw(self) -> None:
-        """Draw everything anew."""
+        """Draw everything anew, whatever the terminal may show."""
+        if isinstance(self._driver, DeckDriver):
+            self._driver.forget()
         self.refresh(layout=True)
+
+    @property
+    def terminal_fd(self) -> int:
+        """Where the driver writes to, the usual output without a real terminal."""
+        return 1 if self._surroundings is None else self._surroundings.terminal_fd
+
+    def terminal_is_gone(self) -> bool:
+        """Tell whether there is a terminal no more; nothing is written to it from then on."""
+        if not isinstance(self._driver, DeckDriver) or not self._driver.gone:
+            return False
+        self._driver.give_up()
+        return True
+
+    def on_resize(self) -> None:
+        """Draw everything anew: a window made small and large again has lost its cells."""
+        if isinstance(self._driver, DeckDriver):
+            self.redraw()
+
+    def watch_theme(self, theme: str) -> None:
+        """Remember the theme."""
+        self._remember(theme=theme)
+
+    def _remember(self, **values: str) -> None:
+        if self._surroundings is not None:
+            self._surroundings.remember(**values)
 
     def get_key_display(self, binding: Binding) -> str:
         """Return how a key is written, in the language spoken now."""
@@ -324,33 +349,3 @@ class DeckApp(App[int], Acting):
     def next_theme(self) -> None:
         """Take the next theme of the cycle."""
         self.theme = after(self.theme)
-
-
-def every_action() -> frozenset[str]:
-    """Return the binding id of every action there is; it takes every screen to know them."""
-    for module, _made in SCREENS.values():
-        import_module(module)
-    for dialog in DIALOGS:
-        import_module(dialog)
-    return frozenset(REGISTRY)
-
-
-def run_screen(
-    profile: Path | None,
-    *,
-    hardware: str = "mock",
-    overrides: Sequence[str] = (),
-    domain: int | None = None,
-    lang: str | None = None,
-    attach: str | None = None,
-    bandwidth: int | None = None,
-) -> int:
-    """Show the screen until it is left; return the exit code of the program.
-
-    With a `profile` that is started, with `attach` that session is shown, else one is picked.
-    `bandwidth` is as in `run_live`.
-    """
-    from tui.live import run_live
-
-    request = OpenRequest(profile, attach, hardware, tuple(overrides), domain)
-    return run_live(request, lang, bandwidth)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from time import monotonic
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 from weakref import WeakKeyDictionary
 
 from textual.events import Resize
@@ -25,8 +25,6 @@ from tui.actions.action import REGISTRY
 if TYPE_CHECKING:
     from textual.app import App
 
-    from tui.app import DeckApp
-    from tui.panels.panel import Panel
 
 Journal = Callable[[str, str], None]
 """Takes what has failed, in a line, and its traceback."""
@@ -52,12 +50,46 @@ class Told:
     again: int = 0
 
 
+@runtime_checkable
+class Failing(Protocol):
+    """A panel: it can say in its own place that it has failed."""
+
+    @property
+    def title(self) -> str:
+        """Its name, marked by `N_`."""
+
+    @property
+    def failed(self) -> bool:
+        """Whether words stand in its place."""
+
+    def show_fault(self, words: str) -> None:
+        """Say in its place what has failed; nothing has if there are no words."""
+
+
+class SafetyNet(Protocol):
+    """What stands in place of a screen that cannot be drawn."""
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether the first frame is out."""
+
+    async def show_safe_screen(self, broken: Screen[Any]) -> None:
+        """Let go of a screen that cannot be drawn."""
+
+    def is_safe(self, screen: Screen[Any]) -> bool:
+        """Whether this is what is shown in place of others."""
+
+    def give_up(self, words: str) -> None:
+        """Leave, in order: nothing can be drawn any more."""
+
+
 class Faults:
     """Decides what becomes of an exception; without a journal it ends the app, as in a test."""
 
-    def __init__(self, app: DeckApp, journal: Journal | None) -> None:
-        """Tell of faults in `app`."""
+    def __init__(self, app: App[Any], net: SafetyNet, journal: Journal | None) -> None:
+        """Tell of faults in `app`; what cannot be drawn is for `net`."""
         self._app = app
+        self._net = net
         self._journal = journal
         self._told: dict[tuple[type[BaseException], str], Told] = {}
         self._undrawn: WeakKeyDictionary[Screen[object], list[float]] = WeakKeyDictionary()
@@ -68,7 +100,7 @@ class Faults:
     @property
     def isolates(self) -> bool:
         """Whether the app outlives an exception now: not before it has begun, or has ended."""
-        return self._journal is not None and self._app.is_running and self._app.has_begun
+        return self._journal is not None and self._app.is_running and self._net.has_begun
 
     def caught(self, error: Exception, place: Widget | None = None) -> str:
         """Take an exception that nobody else takes, and return it in words.
@@ -138,14 +170,11 @@ class Faults:
     def _replace(self, screen: Screen[object]) -> None:
         if screen is not self._app.screen or self.given_up:
             return
-        from tui.dialogs.safe import SafeScreen
-
-        if isinstance(screen, SafeScreen):
+        if self._net.is_safe(screen):
             self.given_up = True
-            self._app.sessions.parting_words = _("Deck cannot draw its screen any more.")
-            self._app.sessions.leave(1)
+            self._net.give_up(_("Deck cannot draw its screen any more."))
         else:
-            self._app.call_later(self._app.show_safe_screen, screen)
+            self._app.call_later(self._net.show_safe_screen, screen)
 
 
 def bear(widget: Widget, error: Exception) -> str:
@@ -183,13 +212,10 @@ def _name_of(place: Widget | None) -> str:
     return type(place).__name__ if shown_by is None else _(shown_by.title)
 
 
-def _panel_of(place: Widget | None) -> Panel | None:
+def _panel_of(place: Widget | None) -> Failing | None:
     """Return the panel that a widget is in, itself perhaps."""
-    # The first frame does without.
-    from tui.panels.panel import Panel
-
     nodes = () if place is None else place.ancestors_with_self
-    return next((node for node in nodes if isinstance(node, Panel)), None)
+    return next((node for node in nodes if isinstance(node, Failing)), None)
 
 
 def _cause(error: BaseException) -> BaseException:

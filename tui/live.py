@@ -19,9 +19,11 @@ from text.i18n import _, detect, set_language
 from text.output import say_error
 from text.plain import plain
 from tui import clock
-from tui.app import DeckApp, every_action
+from tui.app import DeckApp
 from tui.isolation import isolating
 from tui.lifecycle.opener import LiveOpener
+from tui.screens import every_action
+from tui.session.requests import OpenRequest
 from tui.settings import Settings, SettingsError, load, save, settings_path
 from tui.terminal.bandwidth import Bandwidth, default_limit
 from tui.terminal.driver import DeckDriver
@@ -30,8 +32,7 @@ from tui.themes import HIGH_CONTRAST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from tui.session.requests import OpenRequest
+    from pathlib import Path
 
 LOOK_S = 0.5
 """How often the terminal is asked whether it is still there."""
@@ -42,74 +43,60 @@ GARBAGE_AFTER = 10_000
 SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 
 
-class LiveApp(DeckApp):
-    """Leaves orderly whatever the terminal does, and remembers what was settled."""
+class RealTerminal:
+    """Has the app leave orderly whatever the terminal does, and remembers what was settled."""
 
-    def __init__(
-        self, request: OpenRequest, stray: StrayOutput, settings: Settings, bandwidth: Bandwidth
-    ) -> None:
-        super().__init__(LiveOpener(), request, driver_class=DeckDriver, journal=self.note_fault)
-        self.bandwidth = bandwidth
-        self.terminal_fd = stray.terminal_fd
+    def __init__(self, stray: StrayOutput, settings: Settings) -> None:
+        """`stray` takes what is printed past the screen."""
         self._stray = stray
         self._settings = settings
         self._stray_count = 0
         self._deserted = False
         self._settled = False
+        self._app: DeckApp | None = None
 
-    def on_mount(self) -> None:
-        """Take the settings, and watch the terminal."""
+    def arrive(self, app: DeckApp) -> None:
+        """Give the app its settings, and watch the terminal."""
+        self._app = app
         if self._settings.theme:
-            self.theme = self._settings.theme
-        self.set_keymap(self._settings.keys)
-        self.sessions.last_lesson = self._settings.lesson
+            app.theme = self._settings.theme
+        app.set_keymap(self._settings.keys)
+        app.sessions.last_lesson = self._settings.lesson
         loop = asyncio.get_running_loop()
         for number in SIGNALS:
             loop.add_signal_handler(number, self.desert, 128 + number)
-        self.set_interval(LOOK_S, self._look)
+        app.set_interval(LOOK_S, self._look)
+
+    @property
+    def app(self) -> DeckApp:
+        """The app that has arrived."""
+        assert self._app is not None
+        return self._app
+
+    @property
+    def terminal_fd(self) -> int:
+        """Where the terminal is written to."""
+        return self._stray.terminal_fd
 
     def desert(self, code: int) -> None:
         """Leave because nobody is there any more, or because the system says so."""
         if self._deserted:
-            self.sessions.stop_now()
+            self.app.sessions.stop_now()
             return
         self._deserted = True
-        self.sessions.leave(code)
-        self.set_timer(PATIENCE_S, self.sessions.stop_now)
+        self.app.sessions.leave(code)
+        self.app.set_timer(PATIENCE_S, self.app.sessions.stop_now)
 
-    def on_resize(self) -> None:
-        """Draw everything anew: a window made small and large again has lost its cells."""
-        self.redraw()
-
-    def redraw(self) -> None:
-        """Draw everything anew, whatever the terminal may show."""
-        if isinstance(self._driver, DeckDriver):
-            self._driver.forget()
-        super().redraw()
-
-    def watch_theme(self, theme: str) -> None:
-        """Remember the theme."""
-        self._remember(theme=theme)
-
-    def speak(self, code: str) -> None:
-        """Remember the language."""
-        super().speak(code)
-        self._remember(language=code)
-
-    def lesson_opened(self, name: str) -> None:
-        """Remember the lesson: the list opens on it the next time."""
-        super().lesson_opened(name)
-        self._remember(lesson=name)
-
-    def _remember(self, **values: str) -> None:
+    def remember(self, **values: str) -> None:
+        """Keep this theme, language or lesson in the file of settings."""
         changed: Any = replace(self._settings, **values)  # type: ignore[arg-type]
-        if not self.is_running or changed == self._settings:
+        if self._app is None or not self._app.is_running or changed == self._settings:
             return
         self._settings = changed
         try:
             save(settings_path(), changed)
         except SettingsError as error:
-            self.notify(plain(str(error)), severity="warning", markup=False)
+            self._app.notify(plain(str(error)), severity="warning", markup=False)
 
     def note_fault(self, words: str, trace: str) -> None:
         """Keep what has failed in the file of stray output, and tell of it in the log."""
@@ -118,24 +105,22 @@ class LiveApp(DeckApp):
 
     def _look(self) -> None:
         self._settle()
-        if isinstance(self._driver, DeckDriver) and self._driver.gone:
-            self._driver.give_up()
-            if not self._deserted:
-                self.desert(128 + signal.SIGHUP)
+        if self.app.terminal_is_gone() and not self._deserted:
+            self.desert(128 + signal.SIGHUP)
         self._note(self._stray.new_lines(), Severity.INFO)
 
     def _note(self, texts: Sequence[str], severity: Severity) -> None:
         """Add lines to the log, by the node `deck`."""
         first, self._stray_count = self._stray_count + 1, self._stray_count + len(texts)
         if texts:
-            self.feed.note(_as_lines(texts, first, severity))
+            self.app.feed.note(_as_lines(texts, first, severity))
 
     def _settle(self) -> None:
         """Once the first session is seen, look for garbage among what comes after that alone.
 
         All there is by then, most of it code, would hold up a key for 0.1 s each time.
         """
-        if not self._settled and self.feed.update is not None:
+        if not self._settled and self.app.feed.update is not None:
             self._settled = True
             gc.freeze()
 
@@ -147,6 +132,25 @@ def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogL
         LogLine("deck", first + at, now_s, severity, plain(text), source="deck")
         for at, text in enumerate(texts)
     ]
+
+
+def run_screen(
+    profile: Path | None,
+    *,
+    hardware: str = "mock",
+    overrides: Sequence[str] = (),
+    domain: int | None = None,
+    lang: str | None = None,
+    attach: str | None = None,
+    bandwidth: int | None = None,
+) -> int:
+    """Show the screen until it is left; return the exit code of the program.
+
+    With a `profile` that is started, with `attach` that session is shown, else one is picked.
+    `bandwidth` is as in `run_live`.
+    """
+    request = OpenRequest(profile, attach, hardware, tuple(overrides), domain)
+    return run_live(request, lang, bandwidth)
 
 
 def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = None) -> int:
@@ -167,7 +171,15 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
     set_language(detect(lang, settled=settings.language))
     limit = default_limit(os.environ) if bandwidth is None else bandwidth
     with stray, isolating():
-        app = LiveApp(request, stray, settings, Bandwidth(limit))
+        terminal = RealTerminal(stray, settings)
+        app = DeckApp(
+            LiveOpener(),
+            request,
+            driver_class=DeckDriver,
+            journal=terminal.note_fault,
+            bandwidth=Bandwidth(limit),
+            surroundings=terminal,
+        )
         app.run()
     if app.sessions.parting_words:
         return _refused(app.sessions.parting_words, app.return_code or 0)

@@ -15,7 +15,6 @@ from std_msgs.msg import Bool
 from graph.observer.observer import Observer
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
-from tui.app import DeckApp
 from tui.emergency.control import EmergencyControl
 from tui.emergency.state import FOLLOWED
 from tui.emergency.words import stop_words
@@ -35,7 +34,7 @@ class Screen:
             graph=self.observer, update=None, link=None, nodes={}, watching=True, replay=None
         )
         self.notes: list[str] = []
-        self.emergency = EmergencyControl(cast("DeckApp", self))
+        self.emergency = EmergencyControl(cast("Any", self), cast("Any", self.feed), lambda: None)
         self._workers: list[asyncio.Future[Any]] = []
         self.observer.start(self._inbox.put)
         self.observer.follow(FOLLOWED)
@@ -69,9 +68,6 @@ class Screen:
 
     def notify(self, words: str, **_looks: Any) -> None:
         self.notes.append(words)
-
-    def emergency_changed(self) -> None:
-        """Nothing is drawn here."""
 
     async def close(self) -> None:
         """Let go of the graph."""

@@ -18,7 +18,6 @@ from tests.ros.observing import Peer as Process
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
-from tui.app import DeckApp
 from tui.emergency import state as emergency
 from tui.emergency.control import EmergencyControl
 
@@ -42,9 +41,6 @@ class App:
 
     def notify(self, words: str, **_looks: Any) -> None:
         """Nobody reads it here."""
-
-    def emergency_changed(self) -> None:
-        """Nothing is drawn here."""
 
 
 @pytest.fixture
@@ -88,7 +84,7 @@ async def test_it_is_heard_at_once_while_everything_else_hangs(
     watcher: Watcher, hung: Process, ros_domain: int
 ) -> None:
     app = App(watcher)
-    stop = EmergencyControl(cast("DeckApp", app))
+    stop = EmergencyControl(cast("Any", app), cast("Any", app.feed), lambda: None)
     with Peer(ros_domain) as robot:
         heard: list[tuple[bool, float]] = []
         robot.node.create_subscription(

@@ -14,11 +14,12 @@ from tests.tui.recorded import RecordedPad
 from tests.tui.snapshots import Look, SnapCompare, every_look
 from text.i18n import N_
 from tui.actions import REGISTRY, Action, bindings
-from tui.app import DeckApp, every_action
+from tui.app import DeckApp
 from tui.frame.key_bar import KeyBar
 from tui.help.page import Page
 from tui.help.screen import HelpScreen
 from tui.lifecycle.stopping import StoppingScreen
+from tui.screens import every_action
 from tui.teleop.actions import MoveAction
 
 

@@ -14,10 +14,11 @@ from textual.widgets import OptionList
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedPad
 from tui.actions import REGISTRY
-from tui.app import SCREENS, DeckApp
+from tui.app import DeckApp
 from tui.composer.screen import ComposerScreen
 from tui.devices.screen import DevicesScreen
 from tui.palette import PLACES, entries
+from tui.screens import SCREENS
 from tui.session.requests import OpenRequest
 from tui.topics.screen import TopicsScreen
 

@@ -145,7 +145,7 @@ async def test_it_ends_with_the_session() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6")
         await until(pilot, lambda: app.recording.active)
-        await app.feed.disconnect()
+        await app.sessions.let_go()
         assert Recorder.made[0].stopped
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from text.i18n import set_language
-from tui.app import every_action
+from tui.screens import every_action
 from tui.settings import Settings, SettingsError, load, save
 
 THEMES = {"textual-dark", "textual-light"}

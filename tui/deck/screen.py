@@ -39,10 +39,10 @@ if TYPE_CHECKING:
     from textual.events import Resize
 
     from tui.actions import Action
+    from tui.emergency.messages import EmergencyChanged
     from tui.log_view.filter import LogFilter
     from tui.panels.panel import Panel
     from tui.session.messages import (
-        EmergencyChanged,
         GraphChanged,
         LanguageChanged,
         LogArrived,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robot.topics import EMERGENCY_STOP
 from text.i18n import _
@@ -14,10 +14,13 @@ from tui.emergency.state import Emergency, listeners
 from tui.emergency.words import shown_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from concurrent.futures import Future
 
+    from textual.app import App
+
     from graph.data import GraphUpdate
-    from tui.app import DeckApp
+    from tui.session.feed import Feed
 
 SENT_WITHIN_S = 2.0
 AGAIN_S = 1.0
@@ -32,9 +35,11 @@ WHY_S = 20.0
 class EmergencyControl:
     """Engages and releases; its `state` is what the banner shows."""
 
-    def __init__(self, app: DeckApp) -> None:
-        """Act on the session of `app`."""
+    def __init__(self, app: App[Any], feed: Feed, changed: Callable[[], None]) -> None:
+        """Act on the session of `feed`, and tell of it in `app`; `changed` shows the state anew."""
         self._app = app
+        self._feed = feed
+        self._changed = changed
         self.state = Emergency()
         self._released_s = self._said_s = 0.0
         """When a release was first and last said from here, unix time."""
@@ -63,12 +68,7 @@ class EmergencyControl:
         if state.engaged != before.engaged:
             self._end_publications()
         self._set(state)
-        if (
-            before.engaged
-            and not state.engaged
-            and not state.ours
-            and self._app.feed.replay is None
-        ):
+        if before.engaged and not state.engaged and not state.ours and self._feed.replay is None:
             words = _("Another has released the emergency stop: the wheels may turn.")
             self._app.notify(words, severity="warning", timeout=WHY_S, markup=False)
         now_s = clock.now()
@@ -88,7 +88,7 @@ class EmergencyControl:
 
     def prepare(self) -> None:
         """Have the publisher made, so that the first word goes out at once."""
-        graph = self._app.feed.graph
+        graph = self._feed.graph
         if graph is not None:
             prepared = graph.prepare_publisher(EMERGENCY_STOP, emergency.TOPIC_TYPE, latched=True)
             # If it cannot be made, publishing will say so.
@@ -96,7 +96,7 @@ class EmergencyControl:
 
     async def _stop(self, sent: Future[int] | None) -> None:
         """Where the stop cannot have reached anybody, stop all nodes as well."""
-        feed = self._app.feed
+        feed = self._feed
         reached = listeners(feed.update) > 0
         sending = asyncio.ensure_future(self._reached(sent))
         if reached and await sending:
@@ -113,7 +113,7 @@ class EmergencyControl:
 
     async def _start_again(self, ended: tuple[str, ...]) -> None:
         """Start the nodes that were stopped in place of the wheels, as they were."""
-        feed = self._app.feed
+        feed = self._feed
         names = [name for name in ended if name in feed.nodes]
         if feed.link is None or not names:
             return
@@ -124,7 +124,7 @@ class EmergencyControl:
 
     def _publish(self, *, engaged: bool) -> Future[int] | None:
         """Publish the latched word; None without a graph."""
-        graph = self._app.feed.graph
+        graph = self._feed.graph
         if graph is None:
             return None
         message = {"data": engaged}
@@ -135,7 +135,7 @@ class EmergencyControl:
 
         That is why what was begun during the stop ends, too, whoever releases it.
         """
-        feed = self._app.feed
+        feed = self._feed
         if feed.graph is None:
             return
         feed.graph.stop_publishing_all()
@@ -160,7 +160,7 @@ class EmergencyControl:
         shown = shown_of(self.state) != shown_of(state)
         self.state = state
         if shown:
-            self._app.emergency_changed()
+            self._changed()
 
 
 def _unheard(update: GraphUpdate | None) -> str:

@@ -9,12 +9,13 @@ from textual.events import ScreenResume
 from textual.screen import Screen
 
 from tui.actions import Acting
+from tui.emergency.messages import EmergencyChanged
 from tui.frame import title
 from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.replay_bar import ReplayBar
 from tui.frame.title_bar import TitleBar
-from tui.session.messages import EmergencyChanged, LanguageChanged, SessionChanged, StatusChanged
+from tui.session.messages import LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.working import Working
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,19 +15,40 @@ from text.plain import plain
 from tui.session.watching import WATCH
 
 if TYPE_CHECKING:
+    from textual.app import App
+
     from graph.replay.replay import Replay
     from launcher.status import SessionInfo, Stray
-    from tui.app import DeckApp
+    from tui.emergency.control import EmergencyControl
+    from tui.recording.recording import Recording
+    from tui.screens import Screens
+    from tui.session.feed import Feed
     from tui.session.ports import SessionLink, SessionOpener
     from tui.session.requests import OpenRequest
+    from tui.session.strangers import Strangers
 
 
 class Sessions:
     """The way into a session and out of it."""
 
-    def __init__(self, app: DeckApp, opener: SessionOpener, request: OpenRequest) -> None:
+    def __init__(
+        self,
+        app: App[Any],
+        screens: Screens,
+        feed: Feed,
+        recording: Recording,
+        emergency: EmergencyControl,
+        strangers: Strangers,
+        opener: SessionOpener,
+        request: OpenRequest,
+    ) -> None:
         """`opener` lists and opens; a `request` that names nothing is asked for by the picker."""
         self._app = app
+        self._screens = screens
+        self._feed = feed
+        self._recording = recording
+        self._emergency = emergency
+        self._strangers = strangers
         self.opener = opener
         self.request = request
         """What every request has: hardware, overrides, domain; and what was named to begin with."""
@@ -37,6 +58,8 @@ class Sessions:
         """What is being opened, empty if nothing is."""
         self.last_lesson = ""
         """The profile that was started last, where the list of lessons begins."""
+        self.lesson_opened: Callable[[str], None] = lambda _name: None
+        """Called with the profile that has been started."""
         self.parting_words = ""
         """Said on the terminal after the screen has gone."""
         self._strays_asked: set[Stray] = set()
@@ -75,11 +98,18 @@ class Sessions:
         """Stop a session that was started elsewhere, if a person says so once more."""
         self._app.run_worker(self._end_of_others(), exclusive=True, group="leaving")
 
-    def ended(self, reason: str) -> None:
+    async def ended(self, reason: str) -> None:
         """Say why the session on the screen is over, unless that was asked for here."""
         if self._stopping is None:
             words = plain(said(reason), 300)
             self._app.notify(words, severity="warning", timeout=30, markup=False)
+        await self.let_go(reason)
+
+    async def let_go(self, ended: str = "") -> None:
+        """Let go of the session; stopping it is not done here."""
+        # The recorder has threads of its own, and a bag to be ended in order.
+        await self._recording.end()
+        await self._feed.disconnect(ended)
 
     def stop_now(self) -> None:
         """Skip the waiting for nodes that do not end by themselves."""
@@ -101,7 +131,7 @@ class Sessions:
         opening = asyncio.create_task(self.opener.open(request))
         try:
             if self.picking:
-                await app.show_screen("deck")
+                await self._screens.show("deck")
             link = await opening
         except DomainTakenError as error:
             await self._ask_for_domain(request, error)
@@ -113,28 +143,29 @@ class Sessions:
             opening.cancel()
             self.opening = ""
         if request.profile is not None:
-            app.lesson_opened(link.session.name)
-        app.emergency.forget()
-        app.strangers.forget()
-        app.feed.connect(link, self.opener.observe(link.session))
-        if app.feed.replay is not None:
+            self.last_lesson = link.session.name
+            self.lesson_opened(link.session.name)
+        self._emergency.forget()
+        self._strangers.forget()
+        self._feed.connect(link, self.opener.observe(link.session))
+        if self._feed.replay is not None:
             await self._show_recording(link.session)
-        app.emergency.prepare()
+        self._emergency.prepare()
         app.refresh_bindings()
-        await app.feed.listen()
+        await self._feed.listen(self)
         app.refresh_bindings()
 
     async def _show_recording(self, session: SessionInfo) -> None:
         """Begin where there is something to see, and say what is missing of the recording."""
         if not session.panels:
-            await self._app.show_screen("topics")
-        replay = self._app.feed.replay
+            await self._screens.show("topics")
+        replay = self._feed.replay
         if replay is not None and replay.state.cut:
             self._warn(replay.state.cut)
 
     def tell_damage(self, words: str) -> None:
         """Say that something in the recording cannot be read, when that is first come to."""
-        replay = self._app.feed.replay
+        replay = self._feed.replay
         if replay is not None and self._damaged is not replay:
             self._damaged = replay
             self._warn(words)
@@ -172,7 +203,7 @@ class Sessions:
         from tui.lifecycle.strays import StraysScreen
 
         wanted = await self._app.push_screen_wait(StraysScreen(strays))
-        link = self._app.feed.link
+        link = self._feed.link
         if wanted and link is not None:
             with contextlib.suppress(LauncherError):
                 await link.stop_strays(strays)
@@ -191,7 +222,7 @@ class Sessions:
 
     async def _stop_now(self) -> None:
         link = self._stopping
-        if link is None or link is not self._app.feed.link:
+        if link is None or link is not self._feed.link:
             self._app.exit(return_code=self._code)
             return
         try:
@@ -203,16 +234,16 @@ class Sessions:
     async def _back_to_picker(self) -> None:
         """Go back to the list; the screens of the session go with it."""
         self.picking = True
-        self._app.feed.close()
-        await self._app.show_screen("picker")
-        await self._app.forget_screens()
+        self._feed.close()
+        await self._screens.show("picker")
+        await self._screens.forget()
 
     async def _end(self) -> None:
         """Stop the session if it is this screen's own, else let go of it."""
-        feed = self._app.feed
+        feed = self._feed
         if feed.link is None or not feed.link.own:
             self._say_what_is_left()
-            await feed.disconnect()
+            await self.let_go()
             return
         await self._stop(feed.link)
 
@@ -220,7 +251,7 @@ class Sessions:
         """Stop the nodes, with a dialog that shows what is waited for."""
         from tui.lifecycle.stopping import StoppingScreen
 
-        app, graph = self._app, self._app.feed.graph
+        app, graph = self._app, self._feed.graph
         self._stopping = link
         dialog = StoppingScreen()
         await app.push_screen(dialog)
@@ -230,7 +261,7 @@ class Sessions:
         for problem in await asyncio.gather(*ending, return_exceptions=True):
             if isinstance(problem, LauncherError):
                 self.parting_words = words_of(problem)
-        await app.feed.disconnect()
+        await self.let_go()
         self._stopping = None
         if dialog.is_running and app.screen is dialog:
             await dialog.dismiss()
@@ -238,18 +269,18 @@ class Sessions:
     async def _end_of_others(self) -> None:
         from tui.lifecycle.end_session import EndSessionScreen
 
-        link = self._app.feed.link
-        if link is None or not self._app.feed.of_others:
+        link = self._feed.link
+        if link is None or not self._feed.of_others:
             return
         wanted = await self._app.push_screen_wait(EndSessionScreen(link.session))
-        if wanted and link is self._app.feed.link:
+        if wanted and link is self._feed.link:
             async with self._going_back:
                 await self._stop(link)
                 await self._back_to_picker()
 
     def _say_what_is_left(self) -> None:
         """Name what goes on when this screen is left, and what ends it."""
-        feed = self._app.feed
+        feed = self._feed
         # Whose terminal is gone reads nothing.
         if not feed.of_others or feed.session is None or not self._leaving or self._code:
             return

@@ -6,7 +6,7 @@ All that touches the disk or ROS is done on threads; here it is only asked for a
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from text.i18n import _, said
 from text.plain import plain
@@ -21,13 +21,14 @@ from tui.recording.words import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
+    from textual.app import App
     from textual.timer import Timer
 
     from graph.recording.recorder import Recorder, RecordingStatus
     from launcher.status import SessionInfo
-    from tui.app import DeckApp
+    from tui.session.feed import Feed
 
 LOOK_S = 1.0
 
@@ -35,9 +36,11 @@ LOOK_S = 1.0
 class Recording:
     """The recording of the session on the screen, if there is one."""
 
-    def __init__(self, app: DeckApp) -> None:
-        """Record the session of `app`."""
+    def __init__(self, app: App[Any], feed: Feed, key: Callable[[], str]) -> None:
+        """Record the session of `feed`, and tell of it in `app`; `key` names what ends it."""
         self._app = app
+        self._feed = feed
+        self._key = key
         self._recorder: Recorder | None = None
         self._timer: Timer | None = None
         self._busy = asyncio.Lock()
@@ -83,7 +86,7 @@ class Recording:
         from launcher.errors import LauncherError
 
         async with self._busy:
-            session = self._app.feed.session
+            session = self._feed.session
             if session is None or self.active:
                 return
             try:
@@ -99,8 +102,7 @@ class Recording:
             self._timer = self._app.set_interval(LOOK_S, self._look)
         folder = plain(recorder.status.folder, 400)
         words = _("Recording into {folder}; {key} ends it.")
-        key = self._app.keys_of(_toggle())[0]
-        self._app.notify(words.format(folder=folder, key=key), markup=False)
+        self._app.notify(words.format(folder=folder, key=self._key()), markup=False)
         self._changed()
 
     def _look(self) -> None:
@@ -131,16 +133,10 @@ class Recording:
         self._app.notify(plain(sentence, 400), severity="warning", markup=False)
 
     def _changed(self) -> None:
-        front = self._app.feed.front
+        front = self._feed.front
         if front is not None:
             front.show_frame()
         self._app.refresh_bindings()
-
-
-def _toggle() -> type:
-    from tui.frame.actions.recording import RecordToggle
-
-    return RecordToggle
 
 
 def _started(session: SessionInfo, images: bool) -> Recorder:

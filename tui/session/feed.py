@@ -7,14 +7,12 @@ thread by way of an inbox.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from textual.message import Message
 
 from text.i18n import _
-from tui.emergency.state import FOLLOWED
-from tui.frame.screen import DeckScreen
 from tui.session.history import KEPT_LINES, LogHistory
 from tui.session.inbox import GraphInbox
 from tui.session.messages import GraphChanged, LogArrived, SessionChanged, StatusChanged
@@ -24,11 +22,13 @@ from tui.session.rosout import RosoutReader
 from tui.session.watching import WATCH
 
 if TYPE_CHECKING:
+    from textual.app import App
+
     from graph.data import GraphUpdate
     from graph.replay.replay import Replay
     from launcher.events import Event
-    from launcher.status import LogLine, NodeStatus, SessionInfo
-    from tui.app import DeckApp
+    from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
+    from tui.faults import Faults
     from tui.session.ports import GraphLink, SessionLink
 
 
@@ -36,14 +36,54 @@ class GraphReady(Message, bubble=False):
     """An update of the graph waits in the inbox."""
 
 
+@runtime_checkable
+class SessionScreen(Protocol):
+    """A screen that follows the session."""
+
+    period_s: float
+    """Seconds between two updates of the graph while it is in front."""
+    measure_all: bool
+    """Whether the rates of every topic are wanted while it is in front."""
+
+    def watch_topics(self) -> set[str]:
+        """Return the topics whose newest message is wanted while it is in front."""
+
+    def follow_topics(self) -> set[str]:
+        """Return the topics of which every message is wanted, also while another is in front."""
+
+    def keep_topics(self) -> set[str]:
+        """Return those of the watched topics that are wanted also while another is in front."""
+
+    def watch_goals(self) -> set[str]:
+        """Return the actions whose goals of others are wanted while it is in front."""
+
+    def show_frame(self) -> None:
+        """Show title, session and emergency stop as they are."""
+
+    def post_message(self, message: Message) -> bool:
+        """Take a message."""
+
+
+class SessionOwner(Protocol):
+    """Who has opened the session, and lets go of it."""
+
+    def ask_about(self, found: Sequence[Stray]) -> None:
+        """Offer to stop what an earlier run left behind."""
+
+    async def ended(self, reason: str) -> None:
+        """Let go of a session that is over."""
+
+
 class Feed:
     """What is known of the session; the only one who tells screens of it."""
 
-    def __init__(self, app: DeckApp) -> None:
-        """Post to the screens of `app`."""
+    def __init__(self, app: App[Any], followed: Collection[str], faults: Faults) -> None:
+        """Post to the screens of `app`; `followed`: topics that are wanted whatever is shown."""
         self._app = app
+        self._followed = frozenset(followed)
+        self._faults = faults
         self._inbox = GraphInbox(lambda: app.post_message(GraphReady()))
-        self._screens: list[DeckScreen] = []
+        self._screens: list[SessionScreen] = []
         self.link: SessionLink | None = None
         """None while nothing runs."""
         self.graph: GraphLink | None = None
@@ -97,10 +137,10 @@ class Feed:
         return self.link is not None or bool(self.ended)
 
     @property
-    def front(self) -> DeckScreen | None:
+    def front(self) -> SessionScreen | None:
         """The screen of the session that is in front, below any dialog."""
         stack = reversed(self._app.screen_stack)
-        return next((screen for screen in stack if isinstance(screen, DeckScreen)), None)
+        return next((screen for screen in stack if isinstance(screen, SessionScreen)), None)
 
     def connect(self, link: SessionLink, graph: GraphLink) -> None:
         """Show this session from now on."""
@@ -116,8 +156,6 @@ class Feed:
 
     async def disconnect(self, ended: str = "") -> None:
         """Let go of the session; stopping it is not done here."""
-        # The recorder has threads of its own, and a bag to be ended in order.
-        await self._app.recording.end()
         link, graph = self.link, self.graph
         self.link = self.graph = None
         self.ended = ended
@@ -156,8 +194,8 @@ class Feed:
         self.history.add(lines)
         self.tell(lambda: LogArrived(tuple(lines), {}))
 
-    async def listen(self) -> None:
-        """Hand over what the session says until it ends."""
+    async def listen(self, owner: SessionOwner) -> None:
+        """Hand over what the session says until it ends: to screens, else to its `owner`."""
         link = self.link
         if link is None:
             return
@@ -165,11 +203,11 @@ class Feed:
             if link is not self.link:
                 return
             try:
-                await self._on_event(event)
+                await self._on_event(event, owner)
             except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
-                self._app.faults.caught(error)
+                self._faults.caught(error)
 
-    async def _on_event(self, event: Event) -> None:
+    async def _on_event(self, event: Event, owner: SessionOwner) -> None:
         # The first frame does without.
         from launcher.events import ClosedEvent, LogEvent, StatusEvent, StraysEvent
 
@@ -179,10 +217,9 @@ class Feed:
             self.history.add(event.lines)
             self.tell(lambda: LogArrived(event.lines, event.skipped))
         elif isinstance(event, StraysEvent):
-            self._app.sessions.ask_about(event.strays)
+            owner.ask_about(event.strays)
         elif isinstance(event, ClosedEvent):
-            self._app.sessions.ended(event.reason)
-            await self.disconnect(event.reason)
+            await owner.ended(event.reason)
 
     def take_update(self) -> GraphUpdate | None:
         """Return the update that waits."""
@@ -224,7 +261,7 @@ class Feed:
         if lines:
             self.note(lines)
 
-    def catch_up(self, screen: DeckScreen) -> None:
+    def catch_up(self, screen: SessionScreen) -> None:
         """Tell a screen that has just been opened how things stand, and keep telling it."""
         if screen in self._screens:
             return
@@ -238,7 +275,7 @@ class Feed:
         if self.update is not None:
             screen.post_message(GraphChanged(self.update))
 
-    def forget(self, screen: DeckScreen) -> None:
+    def forget(self, screen: SessionScreen) -> None:
         """Tell this screen nothing any more."""
         if screen in self._screens:
             self._screens.remove(screen)
@@ -248,8 +285,10 @@ class Feed:
         graph, front = self.graph, self.front
         if graph is None:
             return
-        own = {*FOLLOWED, ROSOUT} if self._hears_everybody or self.outside.now else FOLLOWED
-        followed = set(own).union(*(screen.follow_topics() for screen in self._screens))
+        own = {ROSOUT} if self._hears_everybody or self.outside.now else set[str]()
+        followed = own.union(self._followed).union(
+            *(screen.follow_topics() for screen in self._screens)
+        )
         kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
         graph.watch(kept if front is None else kept | front.watch_topics())
         graph.follow(followed)

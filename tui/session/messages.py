@@ -14,7 +14,6 @@ from textual.message import Message
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
     from launcher.status import LogLine, NodeStatus
-    from tui.emergency.state import Emergency
 
 
 class StatusChanged(Message, bubble=False):
@@ -47,15 +46,6 @@ class GraphChanged(Message, bubble=False):
         """Carry the newest rows, and every sample since the message before."""
         super().__init__()
         self.update = update
-
-
-class EmergencyChanged(Message, bubble=False):
-    """The emergency stop was engaged, released, or has more to say."""
-
-    def __init__(self, emergency: Emergency) -> None:
-        """Carry the state from now on."""
-        super().__init__()
-        self.emergency = emergency
 
 
 class SessionChanged(Message, bubble=False):

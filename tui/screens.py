@@ -1,0 +1,78 @@
+"""The screens there are: made when first shown, taken away with the session they have shown."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from textual.app import App
+from textual.widget import Widget
+
+from tui.actions import REGISTRY
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+SCREENS = {
+    "picker": ("tui.picker.screen", "PickerScreen"),
+    "deck": ("tui.deck.screen", "LessonDeck"),
+    "topics": ("tui.topics.screen", "TopicsScreen"),
+    "composer": ("tui.composer.screen", "ComposerScreen"),
+    "logs": ("tui.logs.screen", "LogsScreen"),
+    "graph": ("tui.graph.screen", "GraphScreen"),
+    "flow": ("tui.flow.screen", "FlowScreen"),
+    "devices": ("tui.devices.screen", "DevicesScreen"),
+}
+"""Imported when first shown: the first frame needs only one of them."""
+
+DIALOGS = (
+    "tui.help.screen",
+    "tui.lifecycle.domain_taken",
+    "tui.lifecycle.end_session",
+    "tui.lifecycle.refused",
+    "tui.lifecycle.stopping",
+    "tui.lifecycle.strays",
+)
+"""With actions of their own, imported when first shown."""
+
+
+class Screens:
+    """Those of one app."""
+
+    def __init__(self, app: App[Any]) -> None:
+        """Install them in `app`."""
+        self._app = app
+
+    async def show(self, name: str) -> None:
+        """Bring one of `SCREENS` to the front."""
+        await self._app.switch_screen(self.made(name))
+
+    def made(self, name: str) -> Screen[Any]:
+        """Return the screen called `name`, made when first asked for."""
+        if not self._app.is_screen_installed(name):
+            module, made = SCREENS[name]
+            self._app.install_screen(getattr(import_module(module), made)(), name)
+        return self._app.get_screen(name)
+
+    async def forget(self) -> None:
+        """Take away the screens of a session that is over."""
+        for name in SCREENS:
+            if name != "picker" and self._app.is_screen_installed(name):
+                old = self._app.get_screen(name)
+                self._app.uninstall_screen(old)
+                if old.is_running:
+                    # What they have drawn would be held, by a cache of Textual's own.
+                    for widget in (old, *old.walk_children(Widget)):
+                        widget.refresh()
+                    await old.remove()
+        # Who watches the theme, as each TextArea does, is held until it changes, gone or not.
+        self._app.mutate_reactive(App.theme)
+
+
+def every_action() -> frozenset[str]:
+    """Return the binding id of every action there is; it takes every screen to know them."""
+    for module, _made in SCREENS.values():
+        import_module(module)
+    for dialog in DIALOGS:
+        import_module(dialog)
+    return frozenset(REGISTRY)
