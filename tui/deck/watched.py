@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from graph.housekeeping import is_housekeeping
 from text.i18n import _, ngettext
 from text.plain import plain
+from tui.session.watching import robot_nodes
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
@@ -14,11 +14,6 @@ if TYPE_CHECKING:
 MOST_NAMES = 12
 LONGEST_NAME = 60
 """The list of the Graph screen has longer ones whole."""
-
-
-def robot_nodes(update: GraphUpdate) -> list[str]:
-    """Return the full names of the nodes that count: those that lists show without being asked."""
-    return [node.name for node in update.nodes if not is_housekeeping(node.name)]
 
 
 def watched_words(update: GraphUpdate, domain: int) -> str:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from text.i18n import _, ngettext, pick, said
 from text.plain import plain
-from tui.deck.watched import robot_nodes
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
 from tui.frame.actions.app import (
@@ -21,6 +20,7 @@ from tui.frame.actions.app import (
     ShowTopics,
 )
 from tui.session.hardware_words import hardware_words
+from tui.session.watching import robot_nodes
 
 if TYPE_CHECKING:
     from launcher.status import SessionInfo

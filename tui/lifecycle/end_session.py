@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.content import Content
 
-from launcher.processes.owner import who_words
-from text.i18n import N_, _, ngettext, said
+from text.i18n import N_, _, ngettext
 from text.plain import plain
 from tui.actions import Action, bindings
 from tui.dialogs.dialog import Dialog
+from tui.session.started_words import started_words
 
 if TYPE_CHECKING:
     from textual.binding import BindingType
@@ -78,17 +77,8 @@ class EndSessionScreen(Dialog[bool]):
         lines = [
             Content.styled(plain(session.name), "bold"),
             Content(_("domain {domain}").format(domain=session.domain)),
-            Content(started(session)),
+            Content(started_words(session)),
             Content(""),
             Content(ends.format(n=count)),
         ]
         return Content("\n").join(lines)
-
-
-def started(session: SessionInfo) -> str:
-    """Say who has started a session, where and when."""
-    who = plain(said(who_words(session.started_by)), 200)
-    since = time.strftime("%H:%M", time.localtime(session.since_s))
-    if session.foreground:
-        return _("On another screen: {who}, since {since}").format(who=who, since=since)
-    return _("In the background, started by {who} at {since}").format(who=who, since=since)

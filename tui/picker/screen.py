@@ -19,10 +19,10 @@ from tui.frame.host import Host, host_of
 from tui.frame.key_bar import KeyBar
 from tui.frame.screen import BREAKPOINTS, HEIGHTS
 from tui.frame.title_bar import TitleBar
-from tui.lifecycle.end_session import started
 from tui.panels.registry import entry_of
 from tui.session.hardware_words import hardware_words
 from tui.session.requests import WatchRequest
+from tui.session.started_words import started_words
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
@@ -255,7 +255,7 @@ def _about_session(session: SessionInfo) -> Content:
             Content.styled(_title(session.name, session.title), "bold $accent"),
             Content(""),
             Content(_("Already running: Enter shows it and leaves it running.")),
-            Content(started(session)),
+            Content(started_words(session)),
             Content(""),
             _field(_("Domain"), str(session.domain)),
             _field(_("Hardware"), hardware_words(session.hardware)),

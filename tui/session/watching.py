@@ -6,7 +6,10 @@ import asyncio
 from collections.abc import AsyncIterator, Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from graph.housekeeping import is_housekeeping
+
 if TYPE_CHECKING:
+    from graph.data import GraphUpdate
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
 
@@ -74,3 +77,8 @@ def watched(domain: int, discovery: str = "localhost") -> WatchLink:
             foreground=False,
         )
     )
+
+
+def robot_nodes(update: GraphUpdate) -> list[str]:
+    """Return the full names of the nodes that count: those that lists show without being asked."""
+    return [node.name for node in update.nodes if not is_housekeeping(node.name)]

@@ -10,7 +10,7 @@ from tui.teleop.keys import Move
 
 if TYPE_CHECKING:
     from tui.session.feed import Feed
-    from tui.teleop.widget import TeleopPanel
+    from tui.teleop.keys import TeleopLimits
 
 
 class CanDrive(Protocol):
@@ -48,7 +48,20 @@ class OpenTeleop(Action["CanDrive"]):
         await target.open_teleop()
 
 
-class TeleopAction(Action["TeleopPanel"]):
+class Driving(Protocol):
+    """What is driven by the keys."""
+
+    limits: TeleopLimits
+    """How fast and how sharp the keys drive, from the next press on."""
+
+    def press(self, move: Move) -> None:
+        """A key is down."""
+
+    def close(self) -> None:
+        """Drive no more."""
+
+
+class TeleopAction(Action["Driving"]):
     """Something in the panel."""
 
 
@@ -63,7 +76,7 @@ class CloseTeleop(TeleopAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: TeleopPanel) -> None:
+    async def run(cls, target: Driving) -> None:
         """Stop and go."""
         target.close()
 
@@ -79,7 +92,7 @@ class Faster(TeleopAction):
     steps = 1
 
     @classmethod
-    async def run(cls, target: TeleopPanel) -> None:
+    async def run(cls, target: Driving) -> None:
         """Change the speed of the keys."""
         target.limits = target.limits.faster(cls.steps)
 
@@ -102,7 +115,7 @@ class MoveAction(TeleopAction):
     palette = False
 
     @classmethod
-    async def run(cls, target: TeleopPanel) -> None:
+    async def run(cls, target: Driving) -> None:
         """Press it once."""
         target.press(cls.move)
 
@@ -157,7 +170,7 @@ class Sharper(TeleopAction):
     steps = 1
 
     @classmethod
-    async def run(cls, target: TeleopPanel) -> None:
+    async def run(cls, target: Driving) -> None:
         """Change the steering of the keys."""
         target.limits = target.limits.sharper(cls.steps)
 
