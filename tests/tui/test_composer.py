@@ -15,11 +15,10 @@ from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
 from tests.tui.snapshots import Look, settle
 from tests.tui.test_outcome import drive, result
 from tui import clock
-from tui.composer.outcome_story import FOLLOWED
 from tui.composer.screen import ComposerScreen
 from tui.composer.sent import KEPT, Sent, sent_path
-from tui.composer.templates import TEMPLATES
-from tui.composer.templates_dialog import TemplatesDialog
+from tui.composer.templates import TEMPLATES, TemplatesDialog
+from tui.outcome.story import FOLLOWED
 
 if TYPE_CHECKING:
     from pathlib import Path

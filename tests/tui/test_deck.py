@@ -25,13 +25,13 @@ from tests.tui.snapshots import settle
 from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
-from tui.composer.outcome import Outcome
 from tui.deck.command_line import CommandLine
 from tui.deck.nodes_table import NodesTable
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
+from tui.outcome.view import Outcome
 from tui.panels.camera import CameraFeed
 from tui.panels.head.panel import HeadFeed
 from tui.panels.llm import LlmFeed

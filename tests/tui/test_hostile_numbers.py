@@ -21,7 +21,7 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSession
 from text.figures import elapsed, figure, short, whole
 from tui.clock import time_of_day
-from tui.composer.outcome import delay_text
+from tui.outcome.view import delay_text
 from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import HeadPanel
 from tui.panels.map.reading import goal_in, ground_in, pose_in

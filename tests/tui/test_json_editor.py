@@ -13,8 +13,7 @@ from textual.events import Paste
 
 from robot.commands.schema import CommandError, parse_llm
 from text.i18n import set_language
-from tui.composer.json_editor import JsonEditor
-from tui.composer.json_tokens import tokens
+from tui.composer.json_editor import JsonEditor, tokens
 from tui.composer.templates import TEMPLATES
 from tui.composer.verdict import JsonVerdict
 from tui.widgets.marked_editor import LONGEST_COLOURED, TextPlace, Token

@@ -13,8 +13,8 @@ from graph.data import Sample
 from robot.commands.schema import parse_llm
 from tests.tui.recorded import NOW_S, joints, sample
 from text.i18n import set_language
-from tui.composer.outcome import Outcome, delay_text
-from tui.composer.outcome_story import OutcomeEntry, Story
+from tui.outcome.story import OutcomeEntry, Story
+from tui.outcome.view import Outcome, delay_text
 
 SENT_S = NOW_S + 100
 LOOK_AND_DRIVE = parse_llm(

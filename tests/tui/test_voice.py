@@ -16,10 +16,9 @@ from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.recorded import NOW_S, lesson_update, sample, topic
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
-from tui.panels.voice.level import level_line
 from tui.panels.voice.panel import VoiceFeed
 from tui.panels.voice.reading import heard
-from tui.panels.voice.widget import VoicePanel
+from tui.panels.voice.widget import VoicePanel, level_line
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate

@@ -17,13 +17,12 @@ from tui import clock
 from tui.actions import bindings
 from tui.composer.actions import COMPOSER_ACTIONS, Send, SendAnyway
 from tui.composer.json_editor import JsonEditor
-from tui.composer.outcome import Outcome
-from tui.composer.outcome_story import FOLLOWED, Story
 from tui.composer.sent import Sent, sent_path
-from tui.composer.templates import TEMPLATES
-from tui.composer.templates_dialog import TemplatesDialog
+from tui.composer.templates import TEMPLATES, TemplatesDialog
 from tui.composer.verdict import JsonVerdict
 from tui.frame.screen import DeckScreen
+from tui.outcome.story import FOLLOWED, Story
+from tui.outcome.view import Outcome
 from tui.widgets.marked_editor import TextPlace
 from tui.widgets.trouble import names
 from tui.yaml_form.words import reason_words

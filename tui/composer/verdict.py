@@ -10,7 +10,7 @@ from textual.message import Message
 from textual.widgets import OptionList, Static
 
 from text.i18n import _, ngettext
-from tui.composer.json_words import problem_words
+from tui.outcome.problem_words import problem_words
 from tui.widgets.marked_editor import TextPlace
 
 if TYPE_CHECKING:

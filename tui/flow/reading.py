@@ -17,8 +17,8 @@ from robot.topics import (
     WHEEL_COMMANDS,
 )
 from text.plain import plain
-from tui.composer import outcome_words
 from tui.flow.chains import FlowStep, Lane, StepKind
+from tui.outcome import words as outcome_words
 from tui.panels.voice.reading import LEVELS, heard
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from robot.topics import AI_COMMAND, LLM_RAW_JSON, MICROPHONE
 from text.figures import figure
 from text.i18n import N_, _, ngettext
-from tui.composer import outcome_words
 from tui.flow.chains import Lane, StepKind
+from tui.outcome import words as outcome_words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

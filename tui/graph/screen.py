@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Protocol, cast
 
 from textual import on
 from textual.binding import Binding
 from textual.containers import Horizontal
 from textual.widgets import Input, Static, TextArea
 
-from graph.housekeeping import is_housekeeping
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
@@ -36,6 +35,13 @@ if TYPE_CHECKING:
     from tui.graph.index import GraphEntry
     from tui.graph.pane import GraphPane
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
+
+
+class ShowsTopic(Protocol):
+    """What the graph needs of the screen of topics."""
+
+    def show_topic(self, topic: str) -> None:
+        """Choose a topic, though a filter or an option had hidden it."""
 
 
 class GraphScreen(DeckScreen):
@@ -314,17 +320,8 @@ class GraphScreen(DeckScreen):
         self._arrive()
 
     async def _go_to_topic(self, topic: str) -> None:
-        from tui.topics.screen import TopicsScreen
-
         await self.deck.show_screen("topics")
-        screen = self.app.get_screen("topics")
-        if isinstance(screen, TopicsScreen):
-            screen.filter.value = ""
-            screen.table.filter("")
-            if is_housekeeping(topic) and not screen.table.order.housekeeping:
-                screen.toggle_housekeeping()
-            # A screen that has just been made hears of its topics first.
-            screen.call_later(screen.table.choose, topic)
+        cast("ShowsTopic", self.app.get_screen("topics")).show_topic(topic)
 
     def go_back(self) -> None:
         """Go back to where the newest link was followed, else to the list."""

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
 from tui import clock
-from tui.composer.outcome import Outcome
-from tui.composer.outcome_story import FOLLOWED, Story
 from tui.frame.actions.app import ShowComposer
 from tui.frame.host import host_of
+from tui.outcome.story import FOLLOWED, Story
+from tui.outcome.view import Outcome
 from tui.panels.panel import Panel, row_of
 
 if TYPE_CHECKING:

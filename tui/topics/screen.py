@@ -248,6 +248,15 @@ class TopicsScreen(DeckScreen):
 
     # What the actions do
 
+    def show_topic(self, topic: str) -> None:
+        """Choose a topic, though a filter or an option had hidden it."""
+        self.filter.value = ""
+        self.table.filter("")
+        if is_housekeeping(topic) and not self.table.order.housekeeping:
+            self.toggle_housekeeping()
+        # A screen that has just been made hears of its topics first.
+        self.call_later(self.table.choose, topic)
+
     def focus_filter(self) -> None:
         """Put the cursor into the filter."""
         self.set_focus(self.filter)

@@ -18,9 +18,9 @@ from robot.topics import (
 )
 from text.i18n import _, ngettext
 from text.plain import plain
-from tui.composer import outcome_words as words
-from tui.composer.json_words import reported_words
 from tui.emergency.state import blocked_reason
+from tui.outcome import words
+from tui.outcome.problem_words import reported_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
