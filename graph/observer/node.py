@@ -42,7 +42,7 @@ class ObserverNode:
         self.publications = RepeatedPublications(ros.node)
         self.held = Held(ros.node)
         self.parameters = ParameterCalls(self.calls, self._known_node, self._known_service)
-        self.breathe: Callable[[], object] = _nothing
+        self.serve_urgent: Callable[[], object] = _nothing
         """Called again and again by what takes its time, for what cannot wait."""
         self._ros = ros
         self._taps = Taps(ros.node)
@@ -82,7 +82,7 @@ class ObserverNode:
             self._tuned = tuned
             self._taps.tune(*tuned)
             self.seen_goals.tune(interest.actions, self._scan.actions)
-        return self._update(self._taps.drain(self.breathe))
+        return self._update(self._taps.drain(self.serve_urgent))
 
     def step(self) -> float | None:
         """Go on with what is under way; return when to go on with it, on the monotonic clock.
@@ -129,7 +129,7 @@ class ObserverNode:
         if not is_news and now_s - self._scanned_s < RESCAN_S:
             return
         self._signature, self._scanned_s = found, now_s
-        seen = scan(self._ros.node, self._ros.name, self.breathe)
+        seen = scan(self._ros.node, self._ros.name, self.serve_urgent)
         # Also if only the onlookers are others.
         self.publications.tune(seen.topics)
         if seen != self._scan:
@@ -150,7 +150,7 @@ class ObserverNode:
 
 
 def _nothing() -> None:
-    """Breathe for nobody."""
+    """Serve nobody."""
 
 
 def _sooner(one_s: float | None, other_s: float | None) -> float | None:

@@ -266,7 +266,7 @@ class Observer:
         try:
             # This imports rclpy; the screen need not wait for it.
             node = ObserverNode(open_ros(self._domain, self._discovery))
-            node.breathe = lambda: self._breathe(node)
+            node.serve_urgent = lambda: self._serve_urgent(node)
         except Exception as error:  # noqa: BLE001 - told to the screen
             words = say("ROS cannot be used: {error}", error=str(error))
             end = ObserverError(words)
@@ -305,7 +305,7 @@ class Observer:
             if self._wake.wait(max(0.0, until_s - time.monotonic())):
                 self._wake.clear()
 
-    def _breathe(self, node: ObserverNode) -> None:
+    def _serve_urgent(self, node: ObserverNode) -> None:
         """Do what cannot wait for the end of a look: stops, and what is held."""
         self._requests.carry_out_urgent(node)
         node.held.step()

@@ -63,14 +63,14 @@ class Taps:
             self._rows[topic] = self._still_row(topic, TopicEnds(topic, ()), None)
         self._rows = dict(sorted(self._rows.items()))
 
-    def drain(self, breathe: Callable[[], object]) -> dict[str, tuple[Sample, ...]]:
+    def drain(self, serve_urgent: Callable[[], object]) -> dict[str, tuple[Sample, ...]]:
         """Take what has come, and return the samples that somebody looks at.
 
-        `breathe` is called between two topics.
+        `serve_urgent` is called between two topics.
         """
         samples = {}
         for topic, tap in self._taps.items():
-            breathe()
+            serve_urgent()
             found = tap.drain(
                 one_publisher=self._one_publisher(topic), decode=self._how_many(topic)
             )

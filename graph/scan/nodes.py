@@ -41,7 +41,7 @@ class Party:
     calls: Offers
 
 
-def parties(node: Node, own_name: str, breathe: Callable[[], object]) -> dict[str, Party]:
+def parties(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> dict[str, Party]:
     """Ask the middleware what each node serves and calls; `own_name` is left out."""
     from rclpy.node import NodeNameNonExistentError
 
@@ -50,7 +50,7 @@ def parties(node: Node, own_name: str, breathe: Callable[[], object]) -> dict[st
         full = full_name(name, namespace)
         if full == own_name:
             continue
-        breathe()
+        serve_urgent()
         try:
             serves = node.get_service_names_and_types_by_node(name, namespace)
             calls = node.get_client_names_and_types_by_node(name, namespace)

@@ -65,16 +65,16 @@ def signature(node: Node) -> Signature:
     )
 
 
-def scan(node: Node, own_name: str, breathe: Callable[[], object]) -> Scan:
+def scan(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> Scan:
     """Ask the middleware for everything; `own_name` is Deck's node, which is left out.
 
-    It takes a tenth of a second for fifteen nodes: `breathe` is called in between, often.
+    It takes a tenth of a second for fifteen nodes: `serve_urgent` is called in between, often.
     """
     topics = {}
     for name, types in node.get_topic_names_and_types():
-        breathe()
+        serve_urgent()
         topics[name] = _topic(node, own_name, name, tuple(types))
-    found = parties(node, own_name, breathe)
+    found = parties(node, own_name, serve_urgent)
     return Scan(topics, node_rows(topics, found), service_rows(found), action_rows(found))
 
 

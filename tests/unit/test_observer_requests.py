@@ -71,7 +71,7 @@ def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:
     held = observer.hold("/drive", BOOL, word())
     stop = observer.publish("/stop", BOOL, STOP, latched=True)
     observer.let_go("/drive")
-    observer._breathe(node)
+    observer._serve_urgent(node)
     assert desk.done == ["hold /drive", "publish /stop True", "let go of /drive", "step"]
     assert stop.done()
     assert held.done()
@@ -85,7 +85,7 @@ def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
     node = cast("ObserverNode", desk)
     observer.hold("/drive", BOOL, word())
     observer.publish("/stop", BOOL, STOP, latched=True)
-    observer._breathe(node)
+    observer._serve_urgent(node)
     assert desk.done == ["step"]
     observer._requests.carry_out(node)
     assert desk.done[1:] == [
