@@ -12,7 +12,7 @@ from graph.calls.services import Calls
 from graph.data import GraphUpdate
 from graph.observer.interest import Interest
 from graph.observer.taps import Taps
-from graph.publishing.dead_man_switch import Held
+from graph.publishing.dead_man_switch import DeadManSwitch
 from graph.publishing.outbox import Outbox
 from graph.publishing.publications import RepeatedPublications
 from graph.scan.scan import Scan, Signature, is_complete, scan, signature
@@ -40,7 +40,7 @@ class ObserverNode:
         self.goals = Goals(ros.node)
         self.seen_goals = SeenGoals(ros.node, self.goals.has_sent)
         self.publications = RepeatedPublications(ros.node)
-        self.held = Held(ros.node)
+        self.dead_man_switch = DeadManSwitch(ros.node)
         self.parameters = ParameterCalls(self.calls, self._known_node, self._known_service)
         self.serve_urgent: Callable[[], object] = _nothing
         """Called again and again by what takes its time, for what cannot wait."""
@@ -90,7 +90,7 @@ class ObserverNode:
         None if nothing needs it before the next look.
         """
         # What is held may have to rest, before all else; then what is due.
-        due_s = _sooner(self.held.step(), self.publications.step())
+        due_s = _sooner(self.dead_man_switch.step(), self.publications.step())
         calling = self.calls.step()
         # What has just been answered leads to the next question.
         talking = self.parameters.step()
@@ -104,7 +104,7 @@ class ObserverNode:
     def close(self, error: Exception) -> None:
         """Have goals cancelled, let everything else that is under way fail, and leave the graph."""
         try:
-            self.held.close()
+            self.dead_man_switch.close()
             self.publications.close()
             self.goals.close()
             self.seen_goals.close()
@@ -134,7 +134,7 @@ class ObserverNode:
         self.publications.tune(seen.topics)
         if seen != self._scan:
             self._scan = seen
-            self.held.tune(seen.topics)
+            self.dead_man_switch.tune(seen.topics)
 
     def _update(self, samples: dict[str, tuple[Sample, ...]]) -> GraphUpdate | None:
         rows = self._taps.rows()

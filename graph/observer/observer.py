@@ -173,7 +173,7 @@ class Observer:
         """
 
         def prepare(node: ObserverNode, future: Future[None]) -> None:
-            node.held.prepare(topic, type_name, node.ends(topic))
+            node.dead_man_switch.prepare(topic, type_name, node.ends(topic))
             future.set_result(None)
 
         request = Begin[None](prepare)
@@ -188,17 +188,17 @@ class Observer:
         """
 
         def hold(node: ObserverNode, future: Future[int]) -> None:
-            if not node.held.knows(topic):
-                node.held.prepare(topic, type_name, node.ends(topic))
-            future.set_result(node.held.hold(topic, word))
+            if not node.dead_man_switch.knows(topic):
+                node.dead_man_switch.prepare(topic, type_name, node.ends(topic))
+            future.set_result(node.dead_man_switch.hold(topic, word))
 
         request = Begin[int](hold)
-        self._requests.hurry(request, lambda node: node.held.knows(topic))
+        self._requests.hurry(request, lambda node: node.dead_man_switch.knows(topic))
         return request.future
 
     def let_go(self, topic: str) -> None:
         """Publish the message of rest of what is held, at once."""
-        self._requests.hurry(Perform(lambda node: node.held.let_go(topic)))
+        self._requests.hurry(Perform(lambda node: node.dead_man_switch.let_go(topic)))
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
         """Send a goal; the future tells its number, and updates how it goes.
@@ -308,7 +308,7 @@ class Observer:
     def _serve_urgent(self, node: ObserverNode) -> None:
         """Do what cannot wait for the end of a look: stops, and what is held."""
         self._requests.carry_out_urgent(node)
-        node.held.step()
+        node.dead_man_switch.step()
 
     def _look(
         self, node: ObserverNode, interest: Interest, on_update: Callable[[GraphUpdate], None]

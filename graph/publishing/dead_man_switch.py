@@ -122,7 +122,7 @@ class _HeldTopic:
     grip: Grip
 
 
-class Held:
+class DeadManSwitch:
     """All that is held; each topic has a publisher, made when first asked for and kept."""
 
     def __init__(self, node: Node) -> None:

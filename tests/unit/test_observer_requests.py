@@ -22,7 +22,7 @@ class Desk:
     def __init__(self, *known: str) -> None:
         self.known = set(known)
         self.done: list[str] = []
-        self.outbox = self.held = self
+        self.outbox = self.dead_man_switch = self
 
     def knows_latched(self, topic: str, _type_name: str) -> bool:
         return topic in self.known
