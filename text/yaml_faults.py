@@ -1,25 +1,46 @@
 """What is wrong with a YAML text, in words that help whoever typed it: PyYAML's are for its makers.
 
-English, marked for the catalogue of the screen; a room makes sentences of its own of them.
+`events` reads for every room: a profile, a message and a parameter are told the same of the same.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
 from text.i18n import N_
+from text.sentences import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
-@dataclass(frozen=True)
-class Fault:
-    """What is wrong at a place, counted from 1."""
+class YamlError(ValueError):
+    """A text is not the YAML that was asked for; str() is `line:column: what is wrong`."""
 
-    line: int
-    column: int
-    words: str
-    """Empty where PyYAML's words are not known."""
+    def __init__(self, line: int, column: int, message: str) -> None:
+        """Say what is wrong at a place, counted from 1."""
+        super().__init__(f"{line}:{column}: {message}")
+        self.line = line
+        self.column = column
+        self.message = message
+        """Made by `text.sentences.say`, so that it can be translated."""
+
+
+LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def events(text: str) -> Iterator[yaml.Event]:
+    """Yield what stands in a text, piece by piece. Raises YamlError."""
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        raise character_error(text, error.start) from error
+    try:
+        yield from yaml.parse(text, Loader=LOADER)
+    except yaml.YAMLError as error:
+        raise _syntax_error(error, text) from error
 
 
 _LIST = N_("this list is not closed: a ',' or a ']' is missing")
@@ -58,20 +79,40 @@ _NO_COLON = N_(
 )
 
 
-def fault_of(error: yaml.MarkedYAMLError, text: str) -> Fault:
-    """Return where and what `error` finds wrong in `text`; it must have a mark."""
-    mark = error.problem_mark
-    assert mark is not None
+def character_error(text: str, offset: int) -> YamlError:
+    """Return that YAML does not allow a character."""
+    before = text[:offset]
+    line = before.count("\n") + 1
+    column = offset - (before.rfind("\n") + 1) + 1
+    code = f"{ord(text[offset]):04X}"
+    return YamlError(
+        line, column, say("the character U+{code} is not allowed: remove it", code=code)
+    )
+
+
+def _syntax_error(error: yaml.YAMLError, text: str) -> YamlError:
+    mark = getattr(error, "problem_mark", None)
+    if not isinstance(error, yaml.MarkedYAMLError) or mark is None:
+        for offset, character in enumerate(text):
+            if yaml.reader.Reader.NON_PRINTABLE.match(character):
+                return character_error(text, offset)
+        return YamlError(1, 1, say("not YAML: {reason}", reason=str(error)))
     lines = text.split("\n")
+    content = lines[mark.line] if mark.line < len(lines) else ""
+    indent = content[: len(content) - len(content.lstrip())]
+    if "\t" in indent:
+        tab = say("this line is indented with a tab: use spaces, not tabs")
+        return YamlError(mark.line + 1, indent.index("\t") + 1, tab)
     found = error.problem or str(error)
     meant = _meant(found, _BEGUN_BEFORE)
     if meant and error.context_mark:
         mark = error.context_mark
     place = _within(mark.line, mark.column, lines)
     if found.startswith(_COLON):
-        content = lines[mark.line] if mark.line < len(lines) else ""
         meant = _SECOND_COLON if ":" in content[: mark.column] else _NO_COLON
-    return Fault(*place, meant or _meant(found, _WORDS))
+    meant = meant or _meant(found, _WORDS)
+    reason = ", ".join(words for words in (error.problem, error.context) if words)
+    return YamlError(*place, say(meant) if meant else say("not YAML: {reason}", reason=reason))
 
 
 def _within(line: int, column: int, lines: list[str]) -> tuple[int, int]:

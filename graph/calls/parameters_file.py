@@ -7,10 +7,10 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.messages.yaml_faults import YamlError, tell_character
 from graph.messages.yaml_reading import Node, read
-from graph.messages.yaml_scalars import quoted, written
 from text.sentences import say
+from text.yaml_faults import YamlError, character_error
+from text.yaml_scalars import quoted, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -91,7 +91,7 @@ def load_file(path: Path, node: str) -> dict[str, Value]:
         line = raw.count(b"\n", 0, error.start) + 1
         raise YamlError(line, 1, say("this is not UTF-8 text")) from error
     if "\0" in text:
-        tell_character(text, text.index("\0"))
+        raise character_error(text, text.index("\0"))
     return load(text, node)
 
 

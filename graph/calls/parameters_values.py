@@ -199,11 +199,14 @@ def _elements(value: Value) -> list[Value]:
 
 
 def _parsed(text: str) -> Value:
-    import yaml
+    from graph.messages.yaml_reading import value_of
+    from text.yaml_faults import YamlError
 
     try:
-        value: Value = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError):
+        value: Value = value_of(text)
+    except YamlError as error:
+        if text.lstrip().startswith("["):
+            raise WrongValueError(error.message) from None
         return text
     return value
 

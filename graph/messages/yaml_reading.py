@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import yaml
 
-from graph.messages.yaml_faults import YamlError, tell_character, tell_syntax
-from graph.messages.yaml_scalars import meaning
 from text.sentences import Words, say
+from text.yaml_faults import YamlError, events
+from text.yaml_scalars import meaning
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MAX_BYTES = 1024 * 1024
 MAX_DEPTH = 64
-LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TAG = "tag:yaml.org,2002:"
 
 
@@ -63,19 +62,22 @@ class Node:
 
 def read(text: str) -> Node:
     """Return the only document of `text`, a mapping. Raises YamlError."""
-    try:
-        size = len(text.encode())
-    except UnicodeEncodeError as error:
-        tell_character(text, error.start)
-    if size > MAX_BYTES:
+    return _mapping(_read(text))
+
+
+def value_of(text: str) -> Any:  # noqa: ANN401 - whatever was written
+    """Return the value that the only document of `text` is, None for nothing. Raises YamlError."""
+    root = _read(text)
+    return None if root is None else root.plain()
+
+
+def _read(text: str) -> Node | None:
+    if len(text.encode(errors="replace")) > MAX_BYTES:
         raise YamlError(1, 1, say("is longer than {limit} KiB", limit=MAX_BYTES // 1024))
     builder = _Builder()
-    try:
-        for event in yaml.parse(text, Loader=LOADER):
-            builder.take(event)
-    except yaml.YAMLError as error:
-        tell_syntax(error, text)
-    return _mapping(builder.root)
+    for event in events(text):
+        builder.take(event)
+    return builder.root
 
 
 def _mapping(root: Node | None) -> Node:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from graph.messages.yaml_faults import YamlError
 from graph.messages.yaml_reading import read
-from graph.messages.yaml_scalars import written
+from text.yaml_faults import YamlError
+from text.yaml_scalars import written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,21 +1,20 @@
 """YAML to a tree with places, built from PyYAML's events so that nothing can blow up.
 
 Aliases share branches and are counted as if written out, depth is bounded, no tag constructs
-anything. Plain scalars mean what YAML 1.1 says, but for times and base 60 (`12:30` is text, as
-in YAML 1.2) and for `1e3`, which is a number.
+anything. What a word stands for is said in `text.yaml_scalars`.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import yaml
 
 from launcher.profile.tree import Branch, Entry, Listing, Place, Scalar
-from launcher.profile.yaml_errors import tell_syntax
 from text.sentences import say
+from text.yaml_faults import YamlError, events
+from text.yaml_scalars import meaning
 
 if TYPE_CHECKING:
     from launcher.profile.tree import Problems, Tree
@@ -23,22 +22,13 @@ if TYPE_CHECKING:
 MAX_VALUES = 20_000
 MAX_DEPTH = 24
 TAG = "tag:yaml.org,2002:"
-EXPONENT = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
-LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def read_yaml(text: str, file: str, problems: Problems) -> Branch | None:
     """Return the only document of `text`, a mapping, or None and problems that say why not."""
-    builder = _Builder(file, problems)
-    try:
-        for event in yaml.parse(text, Loader=LOADER):
-            builder.take(event)
-    except yaml.YAMLError as error:
-        tell_syntax(error, text, file, problems)
+    read, root = _read(text, file, problems)
+    if not read:
         return None
-    except _StopError:
-        return None
-    root = builder.root
     if root is None or (isinstance(root, Scalar) and root.value is None):
         problems.add(Place(file, 1, 1), (), say("is empty"), say("a profile has at least `nodes:`"))
         return None
@@ -51,16 +41,22 @@ def read_yaml(text: str, file: str, problems: Problems) -> Branch | None:
 
 def read_value(text: str, file: str, problems: Problems) -> Tree | None:
     """Return the value that a piece of YAML stands for, as of `--set`; None and a problem else."""
+    read, root = _read(text, file, problems)
+    return (root or Scalar("", "", Place(file))) if read else None
+
+
+def _read(text: str, file: str, problems: Problems) -> tuple[bool, Tree | None]:
+    """Return whether it could be read, and the only document, None if there is none."""
     builder = _Builder(file, problems)
     try:
-        for event in yaml.parse(text, Loader=LOADER):
+        for event in events(text):
             builder.take(event)
-    except yaml.YAMLError as error:
-        tell_syntax(error, text, file, problems)
-        return None
+    except YamlError as error:
+        problems.add(Place(file, error.line, error.column), (), error.message)
+        return False, None
     except _StopError:
-        return None
-    return builder.root or Scalar("", "", Place(file))
+        return False, None
+    return True, builder.root
 
 
 class _StopError(Exception):
@@ -90,7 +86,6 @@ class _Builder:
         self._problems = problems
         self._stack: list[_Open] = []
         self._anchors: dict[str, Tree] = {}
-        self._resolver: Any = yaml.resolver.Resolver()
         self._constructor = yaml.constructor.SafeConstructor()
 
     def take(self, event: yaml.Event) -> None:
@@ -184,8 +179,8 @@ class _Builder:
         place = self._place(event)
         tag = event.tag
         if tag is None or tag == "!":
-            quoted = not event.implicit[0]
-            tag = TAG + "str" if quoted or tag == "!" else self._tag_of(event.value)
+            is_text = bool(event.style) or tag == "!"
+            return Scalar(event.value if is_text else meaning(event.value), event.value, place)
         try:
             construct = self._constructor.yaml_constructors[tag]
             value = construct(self._constructor, yaml.ScalarNode(tag, event.value))
@@ -196,16 +191,6 @@ class _Builder:
             )
             value = None
         return Scalar(value, event.value, place)
-
-    def _tag_of(self, text: str) -> str:
-        tag: str = self._resolver.resolve(yaml.ScalarNode, text, (True, False))
-        if tag in (TAG + "timestamp", TAG + "value", TAG + "merge"):
-            return TAG + "str"
-        if tag in (TAG + "int", TAG + "float") and ":" in text:
-            return TAG + "str"
-        if tag == TAG + "str" and EXPONENT.fullmatch(text):
-            return TAG + "float"
-        return tag
 
     def _check_tag(self, event: yaml.NodeEvent) -> None:
         tag = getattr(event, "tag", None)

@@ -9,12 +9,12 @@ from textual.app import App, ComposeResult
 from textual.events import Paste
 
 from graph.data import ParameterRow, ParametersResult
-from graph.messages.yaml_scalars import in_quotes, unquoted
 from tests.hostile import EVIL
 from tests.tui.graph_room import opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import graph_update
 from text.plain import is_plain, plain
+from text.yaml_scalars import in_quotes, unquoted
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.graph.parameter_words import meant, typed
 from tui.widgets.field import Field

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from graph.calls.parameters_file import dump, load, load_file, save_file
 from graph.calls.parameters_values import TYPES, carried
 from graph.data import ParameterRow
-from graph.messages.yaml_faults import YamlError
+from text.yaml_faults import YamlError
 
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"))
 INTEGERS = st.integers(-(2**63), 2**63 - 1)

@@ -56,7 +56,7 @@ def test_what_fits_a_type_is_taken(kind: str, value: Any, made: Any) -> None:
         ("string", "\ud800", "not valid Unicode"),
         ("string_array", "abc", "expected a list, such as [1, 2], got 'abc'"),
         ("double_array", "[1, x]", "expected a number, got 'x'"),
-        ("double_array", "[1, ", "expected a list"),
+        ("double_array", "[1, ", "a value is missing here"),
         ("byte_array", [256], "expected bytes, 0 to 255"),
         ("not_set", [], "has no type"),
         ("not_set", [1, "a"], "one type"),

@@ -169,51 +169,51 @@ BAD = {
     ),
     "a tab": (
         "nodes:\n\ta: {exec: [x]}",
-        "2:1: this line is indented with a tab (use spaces, not tabs)",
+        "2:1: this line is indented with a tab: use spaces, not tabs",
     ),
     "an unclosed brace": (
         "nodes: {a: {exec: [x]}",
-        "1:8: not YAML: these braces are not closed: a ',' or a '}' is missing",
+        "1:8: these braces are not closed: a ',' or a '}' is missing",
     ),
     "an unclosed bracket": (
         "nodes:\n  a: {exec: [x}",
-        "2:13: not YAML: this list is not closed: a ',' or a ']' is missing",
+        "2:13: this list is not closed: a ',' or a ']' is missing",
     ),
     "a bracket with nothing in it": (
         "nodes: {a: {exec: [",
-        "1:20: not YAML: a value is missing here, or a ']' or '}'",
+        "1:20: a value is missing here, or a ']' or '}'",
     ),
     "a title with a colon": (
         "title: My robot: sonar\nnodes: {a: {exec: [x]}}",
-        ("1:16: not YAML: a second ':' in one line: put the text that holds it in quotes"),
+        ("1:16: a second ':' in one line: put the text that holds it in quotes"),
     ),
     "a text that begins with a sign": (
         "title: @home\nnodes: {a: {exec: [x]}}",
-        "1:8: not YAML: nothing can begin with this character: put the text in quotes",
+        "1:8: nothing can begin with this character: put the text in quotes",
     ),
     "a path of Windows in double quotes": (
         'title: "C:\\dir"\nnodes: {a: {exec: [x]}}',
-        "1:11: not YAML: YAML does not know this \\ in double quotes: use single quotes",
+        "1:11: YAML does not know this \\ in double quotes: use single quotes",
     ),
     "a list behind its key": (
         "title: - a\nnodes: {a: {exec: [x]}}",
-        "1:8: not YAML: a list cannot begin here: put it on a line of its own",
+        "1:8: a list cannot begin here: put it on a line of its own",
     ),
     "what nobody has words for": ("title: >b\nnodes: {a: {exec: [x]}}", "1:9: not YAML: did not"),
     "a missing colon": (
         "nodes:\n  a\n    exec: [x]",
         (
-            "3:9: not YAML: this line does not fit the one above: a ':' is missing there, or the"
+            "3:9: this line does not fit the one above: a ':' is missing there, or the"
             " indentation differs"
         ),
     ),
     "an unclosed text": (
         'nodes:\n  a: {exec: ["x]}',
-        "2:14: not YAML: the text in quotes is not closed",
+        "2:14: the text in quotes is not closed",
     ),
     "a crooked indent": (
         "nodes:\n  a:\n    exec: [x]\n   needs: [b]",
-        "4:4: not YAML: the indentation does not fit the lines above",
+        "4:4: the indentation does not fit the lines above",
     ),
     "an empty file": ("", "1:1: is empty (a profile has at least `nodes:`)"),
     "only a comment": ("# nothing\n", "1:1: is empty (a profile has at least `nodes:`)"),
@@ -239,7 +239,7 @@ BAD = {
     ),
     "a control character": (
         "title: a\x07b\nnodes: {}",
-        "1:9: the character U+0007 is not allowed (remove it)",
+        "1:9: the character U+0007 is not allowed: remove it",
     ),
     "a condition that is none": (
         "nodes: {a: {exec: [x], when: hardware = mock}}",

@@ -107,7 +107,7 @@ def test_set_overrides_a_parameter(override: str, name: str, value: Any, tmp_pat
         ("a.rate", "expected node.param=value"),
         (".rate=1", "expected node.param=value"),
         ("sonr.rate=1", "there is no node 'sonr' (did you mean sonar?)"),
-        ("sonar.rate=[", "not YAML"),
+        ("sonar.rate=[", "a value is missing here, or a ']' or '}'"),
         ("sonar.rate=[]", "sonar.rate: an empty list has no type in ROS"),
         ("sonar.ra te=1", "'ra te' is not a valid name for a ROS parameter"),
         ("real.rate=1", "real does not run on this hardware"),

@@ -197,7 +197,7 @@ class _Saving:
 
 async def _load(app: App[Any], table: GraphParameters, path: str) -> str:
     from graph.calls.parameters_file import load_file
-    from graph.messages.yaml_faults import YamlError
+    from text.yaml_faults import YamlError
 
     try:
         values = await asyncio.to_thread(load_file, _full(path), table.node)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from graph.messages.yaml_scalars import in_quotes, unquoted
 from text.i18n import N_, _
 from text.plain import is_plain, plain
+from text.yaml_scalars import in_quotes, unquoted
 
 if TYPE_CHECKING:
     from graph.data import ParameterRow, Value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from graph.messages.yaml_scalars import escaped
+from text.yaml_scalars import escaped
 from tui.widgets.marked_editor import MarkedEditor
 from tui.yaml_form.tokens import tokens
 

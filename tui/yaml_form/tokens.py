@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from graph.messages.yaml_scalars import meaning
+from text.yaml_scalars import meaning
 from tui.widgets.marked_editor import Token
 
 _TOKEN = re.compile(

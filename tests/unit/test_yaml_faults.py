@@ -1,0 +1,76 @@
+"""A profile, the form of a message and the value of a parameter read YAML alike."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from graph.calls.parameters_values import WrongValueError, carried
+from graph.messages.yaml_text import from_yaml
+from launcher.profile.tree import Problems, plain
+from launcher.profile.yaml_tree import read_yaml
+from text.yaml_faults import YamlError
+
+WORDS: list[tuple[str, object]] = [
+    ("inf", math.inf),
+    ("-.inf", -math.inf),
+    ("0o17", 15),
+    ("017", 15),
+    ("0x1F", 31),
+    ("1e3", 1000.0),
+    ("1_000", 1000),
+    ("1e400", "1e400"),
+    ("12:30", "12:30"),
+    ("2026-11-24", "2026-11-24"),
+    ("on", True),
+    ("'on'", "on"),
+    ("~", None),
+]
+WRONG = [
+    ("[1, 2", "this list is not closed: a ',' or a ']' is missing"),
+    ("[1, ", "a value is missing here, or a ']' or '}'"),
+    ("[1, 'x]", "the text in quotes is not closed"),
+    ("[@a]", "nothing can begin with this character: put the text in quotes"),
+    ("[\a]", "the character U+0007 is not allowed: remove it"),
+    ('["\\q"]', "YAML does not know this \\ in double quotes: use single quotes"),
+]
+
+
+def in_profile(text: str) -> Any:
+    problems = Problems()
+    tree = read_yaml(f"a: {text}", "a.yaml", problems)
+    if tree is None:
+        (problem,) = problems.found
+        raise YamlError(problem.line, problem.column, problem.message)
+    return plain(tree)["a"]
+
+
+def in_form(text: str) -> Any:
+    return from_yaml(f"a: {text}")["a"]
+
+
+@pytest.mark.parametrize(("text", "meant"), WORDS)
+def test_a_word_stands_for_the_same_everywhere(text: str, meant: object) -> None:
+    for found in (in_profile(text), in_form(text)):
+        assert (type(found), found) == (type(meant), meant)
+
+
+@pytest.mark.parametrize("text", ["[inf, 0o17, 1e3]", "[.inf, 15, 1000.0]"])
+def test_the_value_of_a_parameter_is_read_so_too(text: str) -> None:
+    assert carried("double_array", text)["double_array_value"] == [math.inf, 15.0, 1000.0]
+
+
+@pytest.mark.parametrize(("text", "words"), WRONG)
+def test_what_is_wrong_is_told_in_the_same_words_at_the_same_place(text: str, words: str) -> None:
+    places = set()
+    for read in (in_profile, in_form):
+        with pytest.raises(YamlError) as caught:
+            read(text)
+        assert caught.value.message == words
+        places.add((caught.value.line, caught.value.column))
+    assert len(places) == 1
+    with pytest.raises(WrongValueError) as refused:
+        carried("string_array", text)
+    assert str(refused.value) == words
