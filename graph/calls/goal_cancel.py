@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from graph.calls.goal_life import ANSWER_WITHIN_S, NO_WORD_OF_CANCEL, REFUSED
+from graph.calls.goal_life import NO_WORD_OF_CANCEL, REFUSED
 from graph.calls.goal_line import ActionLine
+from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import GoalStatus
 from text.sentences import say
 

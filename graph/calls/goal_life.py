@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import Goal, GoalStatus
 from graph.messages.values import to_tree
 from text.i18n import N_
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from graph.calls.goal_line import ActionLine, GoalAnswers
     from graph.messages.dated import Draft
 
-ANSWER_WITHIN_S = 5.0
-"""For a server to be found, to accept, to agree to cancel, and to hand over a result."""
 GONE_AFTER_S = 0.5
 """A server's last words may come a little after it has left the graph."""
 STATUS = {

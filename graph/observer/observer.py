@@ -13,6 +13,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import GraphUpdate, ParametersResult, SetResult
 from graph.observer.interest import Interest
 from graph.observer.node import LOOK_AT_GRAPH_S, ObserverNode
@@ -132,7 +133,11 @@ class Observer:
         return request.future
 
     def call(
-        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+        self,
+        service: str,
+        type_name: str,
+        request: Mapping[str, Value],
+        timeout_s: float = ANSWER_WITHIN_S,
     ) -> Future[CallResult]:
         """Call a service; the result tells of an answer or why there is none, it never raises."""
         asked = CallService(service, type_name, request, timeout_s)
@@ -225,7 +230,7 @@ class Observer:
         """Tell no more of a goal; one that has not ended is cancelled."""
         self._requests.put(Perform(lambda node: node.goals.forget(number)))
 
-    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+    def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
         """Read all parameters of a node, with descriptors; `timeout_s` is for each answer.
 
         The result tells of them or why there are none, the future never raises.
@@ -239,7 +244,7 @@ class Observer:
         return request.future
 
     def set_parameters(
-        self, node: str, values: Mapping[str, Value], timeout_s: float = 5.0
+        self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[SetResult]:
         """Set parameters by the types that they have, each for itself.
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from graph.bag.errors import BagError
 from graph.bag.reading import open_bag
+from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult
 from graph.observer.interest import Interest
 from graph.observer.requests import ObserverError
@@ -188,19 +189,23 @@ class Replay:
         """Do nothing: nothing is held."""
 
     def call(
-        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+        self,
+        service: str,
+        type_name: str,
+        request: Mapping[str, Value],
+        timeout_s: float = ANSWER_WITHIN_S,
     ) -> Future[CallResult]:
         """Answer that there is nobody to answer."""
         del type_name, request, timeout_s
         return _done(CallResult(service, False, None, _refusal(), 0.0))
 
-    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+    def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
         """Answer that there is nobody to ask."""
         del timeout_s
         return _done(ParametersResult(node, error=_refusal()))
 
     def set_parameters(
-        self, node: str, values: Mapping[str, Value], timeout_s: float = 5.0
+        self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[SetResult]:
         """Answer that there is nobody to tell."""
         del values, timeout_s

@@ -7,6 +7,8 @@ import signal
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+from launcher.processes.abandoned import KILLED_AFTER_S
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -29,7 +31,7 @@ class StopTimeouts:
 
 
 PATIENT = StopTimeouts(5.0, 5.0)
-QUICK = StopTimeouts(0.7, 0.4)
+QUICK = StopTimeouts(KILLED_AFTER_S, 0.4)
 """For whoever asks twice, and for a robot whose owner is gone: over well within 2 s."""
 
 STAGES = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)

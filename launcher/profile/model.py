@@ -13,6 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSche
 from pydantic_core import PydanticCustomError
 
 from launcher.domain.domain import LAST_DOMAIN
+from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.field_marks import AsText, Joined, PathFromProfile
 from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
@@ -197,7 +198,7 @@ class ReadyDocument(Document):
     )
     service: RosName | None = Field(None, description="Ready when this service is offered.")
     node: RosName | None = Field(None, description="Ready when this node is in the ROS graph.")
-    within: float = Field(10.0, gt=0, le=3600, description="Seconds that this may take.")
+    within: float = Field(READY_WITHIN_S, gt=0, le=3600, description="Seconds that this may take.")
 
 
 class NodeDocument(Document):

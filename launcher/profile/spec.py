@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from launcher import node_program
+from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.params import as_arguments
 
 if TYPE_CHECKING:
@@ -15,10 +16,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from launcher.errors import ProfileProblem
+    from launcher.profile.defaults import READY_WITHIN_S
     from launcher.profile.model import NodeDocument, ProfileDocument
-    from launcher.profile.params import Param
-
-DEFAULT_WITHIN_S = 10.0
+from launcher.profile.params import Param
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Ready:
     """Of a topic: the type awaited, `std_msgs/msg/Float32`; empty: any."""
     rate_hz: float = 0.0
     """Of a topic: how often messages must come; 0: none need come."""
-    within_s: float = DEFAULT_WITHIN_S
+    within_s: float = READY_WITHIN_S
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import signal
 import time
 from typing import TYPE_CHECKING
 
+from launcher.processes.abandoned import KILLED_AFTER_S, LEFT_AFTER_S
 from launcher.processes.signal import send
 from launcher.processes.table import RUN_MARK, processes, read_marks
 
@@ -18,11 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from launcher.processes.table import Process
-
-GRACE_S = 0.7
-"""From SIGINT to SIGKILL: with the search around it less than the 2 s of the promise."""
-PATIENCE_S = 10.0
-"""After that a process that SIGKILL does not end is left to the kernel."""
 
 
 def end_survivors(run_id: str, groups: Iterable[int]) -> None:
@@ -33,10 +29,10 @@ def end_survivors(run_id: str, groups: Iterable[int]) -> None:
     while True:
         left = survivors(run_id, wanted)
         elapsed = time.monotonic() - started
-        if not left or elapsed > PATIENCE_S:
+        if not left or elapsed > LEFT_AFTER_S:
             return
         for process in left:
-            if elapsed >= GRACE_S:
+            if elapsed >= KILLED_AFTER_S:
                 send(process, signal.SIGKILL)
             elif process.pid not in told:
                 send(process, signal.SIGINT)

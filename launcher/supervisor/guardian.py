@@ -12,6 +12,7 @@ import signal
 import time
 from typing import TYPE_CHECKING, NoReturn
 
+from launcher.processes.abandoned import KILLED_AFTER_S, LEFT_AFTER_S
 from launcher.processes.prctl import become_subreaper
 from launcher.processes.signal import send
 from launcher.processes.table import processes
@@ -20,10 +21,6 @@ from launcher.processes.title import show_name, show_title
 if TYPE_CHECKING:
     from launcher.processes.table import Process
 
-GRACE_S = 0.7
-"""From SIGINT to SIGKILL: with the search around it less than the 2 s of the promise."""
-PATIENCE_S = 10.0
-"""After that a process that SIGKILL does not end is left to the kernel."""
 _LOOK_EVERY_S = 0.05
 
 
@@ -59,10 +56,10 @@ def _end_all() -> None:
     told: set[int] = set()
     while left := _descendants():
         elapsed = time.monotonic() - began
-        if elapsed > PATIENCE_S:
+        if elapsed > LEFT_AFTER_S:
             return
         for process in left:
-            if elapsed >= GRACE_S:
+            if elapsed >= KILLED_AFTER_S:
                 send(process, signal.SIGKILL)
             elif process.pid not in told:
                 send(process, signal.SIGINT, signal.SIGCONT)

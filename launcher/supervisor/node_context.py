@@ -4,24 +4,30 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from launcher.processes.stop import Target
-
 if TYPE_CHECKING:
     import asyncio
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
+    from signal import Signals
 
     from launcher.clock import Clock
     from launcher.processes.exit import Exit
+    from launcher.processes.table import Process
     from launcher.status import NodeState, Severity
     from launcher.supervisor.plan import NodePlan
     from launcher.supervisor.readiness import ReadyCondition, Seen
 
 
-class RunningProcess(Target, Protocol):
+class RunningProcess(Protocol):
     """A process that was started for a node, with all that descends from it."""
 
     pid: int
     ended: asyncio.Future[Exit]
+
+    def left(self) -> Sequence[Process]:
+        """Return those of them that live."""
+
+    def signal(self, process: Process, number: Signals) -> None:
+        """Send one of them a signal."""
 
     async def close(self) -> None:
         """Nothing of it is left: read what it has still written, and let go of it."""

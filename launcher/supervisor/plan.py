@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import ros_environment
+from launcher.profile.defaults import READY_WITHIN_S
 from launcher.profile.driving import drives
 from launcher.supervisor.readiness import ReadyCondition
 
@@ -44,7 +45,7 @@ class NodePlan:
     cwd: str = "/"
     needs: tuple[str, ...] = ()
     ready: ReadyCondition | None = None
-    within_s: float = 10.0
+    within_s: float = READY_WITHIN_S
     restart: str = "never"
     optional: bool = False
 
@@ -172,7 +173,7 @@ def _node_plan(node: NodeSpec) -> NodePlan:
         ready=None
         if ready is None
         else ReadyCondition(ready.kind, ready.name, ready.type, ready.rate_hz),
-        within_s=10.0 if ready is None else ready.within_s,
+        within_s=READY_WITHIN_S if ready is None else ready.within_s,
         restart=said.restart,
         optional=said.optional,
     )

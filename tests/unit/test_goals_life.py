@@ -9,8 +9,9 @@ import pytest
 from deck_interfaces.action import DriveToPoint
 
 from graph.calls import goal_life as goals_life
-from graph.calls.goal_life import ANSWER_WITHIN_S, GONE_AFTER_S, GoalLife
+from graph.calls.goal_life import GONE_AFTER_S, GoalLife
 from graph.calls.goal_line import GoalAnswers
+from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import Goal, GoalStatus
 from graph.messages.dated import Draft
 

@@ -93,7 +93,7 @@ def test_the_robot_has_the_same_drivers_on_mock_and_on_real_hardware() -> None:
     mock = load_profile(PROFILES / "robot.yaml").nodes
     real = load_profile(PROFILES / "robot.yaml", hardware="real").nodes
     for name in ("chassis", "sonar_front", "sonar_rear", "head_controller", "safety_stop"):
-        assert mock[name].run == real[name].run
+        assert mock[name].document.run == real[name].document.run
         assert {**mock[name].params, "port": ""} == {**real[name].params, "port": ""}
     assert not [name for name, node in real.items() if "mock" in str(node.document.run)]
     assert set(real) - set(mock) == {"camera", "audio"}
@@ -105,13 +105,13 @@ def test_only_the_gate_leads_to_the_wheels_of_the_robot() -> None:
     assert nodes["safety_stop"].params["gate"] is True
     assert nodes["safety_stop"].params["rear_topic"] == "/sensor/sonar_rear"
     assert nodes["electronic_differential"].params["drive_topic"] == "/drive_safe"
-    assert nodes["drive_to_point"].remap == {"/drive": "/drive_action"}
+    assert nodes["drive_to_point"].document.remap == {"/drive": "/drive_action"}
     assert nodes["drive_to_point"].params["simulate"] == "never"
 
 
 def test_rviz_is_optional() -> None:
     rviz = load_profile(PROFILES / "06-rviz.yaml").nodes["rviz"]
-    assert rviz.optional
+    assert rviz.document.optional
     assert rviz.cwd is not None
     assert (rviz.cwd / "robot.rviz").is_file()
 

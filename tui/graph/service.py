@@ -11,6 +11,7 @@ from textual import on
 from textual.containers import Horizontal
 from textual.widgets import Input, Static
 
+from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import CallResult
 from text.figures import figure
 from text.i18n import N_, _, decimal, said
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     from graph.data import ServiceRow
 
-USUAL_S = "5"
+USUAL_S = f"{ANSWER_WITHIN_S:g}"
 LEAST_S, MOST_S = 0.1, 3600.0
 
 

@@ -11,6 +11,8 @@ from collections.abc import AsyncIterator, Callable, Iterable, Mapping
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Protocol
 
+from graph.calls.timeouts import ANSWER_WITHIN_S
+
 if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
     from graph.publishing.dead_man_switch import Holding
@@ -95,7 +97,11 @@ class GraphLink(Protocol):
         """Publish one message; the future tells how many it went to, or fails with a word why."""
 
     def call(
-        self, service: str, type_name: str, request: Mapping[str, Value], timeout_s: float = 5.0
+        self,
+        service: str,
+        type_name: str,
+        request: Mapping[str, Value],
+        timeout_s: float = ANSWER_WITHIN_S,
     ) -> Future[CallResult]:
         """Call a service."""
 
@@ -119,11 +125,11 @@ class GraphLink(Protocol):
     def let_go(self, topic: str) -> None:
         """Publish the rest of what is held, at once."""
 
-    def parameters(self, node: str, timeout_s: float = 5.0) -> Future[ParametersResult]:
+    def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
         """Read all parameters of a node with their descriptors; the future never raises."""
 
     def set_parameters(
-        self, node: str, values: Mapping[str, Value], timeout_s: float = 5.0
+        self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[SetResult]:
         """Set parameters, each by the type that it has; the future never raises."""
 

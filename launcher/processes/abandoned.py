@@ -1,0 +1,6 @@
+"""How long processes are given whose supervisor is gone, by whoever ends them in its place."""
+
+KILLED_AFTER_S = 0.7
+"""From SIGINT to SIGKILL: with the search around it less than the 2 s of the promise."""
+LEFT_AFTER_S = 10.0
+"""After that a process that SIGKILL does not end is left to the kernel."""
