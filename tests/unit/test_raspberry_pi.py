@@ -135,7 +135,7 @@ def test_the_variables_shown_are_those_of_the_robot(page: str) -> None:
     robot = load_profile(DOCS.parent / "profiles" / "robot.yaml", hardware="real")
     known = {
         variable(device, setting)
-        for device, settings in robot.devices.items()
+        for device, settings in robot.document.devices.items()
         for setting in settings
     }
     shown = set(re.findall(r"DECK_\w+", page))
