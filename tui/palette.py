@@ -53,7 +53,7 @@ WORD = 4
 
 
 @dataclass(frozen=True)
-class Place:
+class ActionPlace:
     """Where actions are: a screen, or what one of its actions opens there."""
 
     show: type[ShowScreen]
@@ -68,21 +68,21 @@ class Place:
 
 
 PLACES = (
-    Place(ShowDeck, (*DECK_ACTIONS, OpenTeleop)),
-    Place(ShowDeck, TELEOP_ACTIONS, OpenTeleop),
-    Place(ShowTopics, TOPICS_ACTIONS),
-    Place(ShowTopics, PUBLISH_ACTIONS, OpenPublish),
-    Place(ShowComposer, COMPOSER_ACTIONS),
-    Place(ShowLogs, LOGS_ACTIONS),
-    Place(ShowGraph, GRAPH_ACTIONS),
-    Place(ShowFlow, FLOW_ACTIONS),
-    Place(ShowDevices, DEVICES_ACTIONS),
+    ActionPlace(ShowDeck, (*DECK_ACTIONS, OpenTeleop)),
+    ActionPlace(ShowDeck, TELEOP_ACTIONS, OpenTeleop),
+    ActionPlace(ShowTopics, TOPICS_ACTIONS),
+    ActionPlace(ShowTopics, PUBLISH_ACTIONS, OpenPublish),
+    ActionPlace(ShowComposer, COMPOSER_ACTIONS),
+    ActionPlace(ShowLogs, LOGS_ACTIONS),
+    ActionPlace(ShowGraph, GRAPH_ACTIONS),
+    ActionPlace(ShowFlow, FLOW_ACTIONS),
+    ActionPlace(ShowDevices, DEVICES_ACTIONS),
 )
 """Every screen of a session, told without importing any of them: that would hold the keys up."""
 
 
 @dataclass(frozen=True)
-class Entry:
+class PaletteEntry:
     """One thing that the palette offers."""
 
     title: str
@@ -114,18 +114,18 @@ class Entry:
         return f"{self.title} ({best})" if matcher.match(best) > 0 else self.title
 
 
-def entries(app: App[Any], front: Screen[Any]) -> Iterable[Entry]:
+def entries(app: App[Any], front: Screen[Any]) -> Iterable[PaletteEntry]:
     """Yield what can be done now, then what is impossible in `front` now, or is done elsewhere."""
     yield from _possible(front)
     yield from _possible(app)
     for code, name in NAMES.items():
         run = partial(host_of(app).speak, code)
-        yield Entry(name, (name,), _("Use this language."), run)
+        yield PaletteEntry(name, (name,), _("Use this language."), run)
     for theme in sorted(app.available_themes):
         names = tuple(words.format(name=theme) for words in in_every_language("Theme: {name}"))
         take = partial(setattr, app, "theme", theme)
         words = _("Theme: {name}").format(name=theme)
-        yield Entry(words, names, _("Use these colours."), take, offered=theme in CYCLE)
+        yield PaletteEntry(words, names, _("Use these colours."), take, offered=theme in CYCLE)
     yield from _impossible(app, front)
     yield from _impossible(app, app)
     for place in PLACES:
@@ -134,8 +134,8 @@ def entries(app: App[Any], front: Screen[Any]) -> Iterable[Entry]:
                 yield _elsewhere(app, place, action)
 
 
-def _entry(action: type[Action[Any]], title: str, run: Run, weight: float = HERE) -> Entry:
-    return Entry(
+def _entry(action: type[Action[Any]], title: str, run: Run, weight: float = HERE) -> PaletteEntry:
+    return PaletteEntry(
         title,
         in_every_language(action.title),
         _(action.tooltip),
@@ -146,13 +146,13 @@ def _entry(action: type[Action[Any]], title: str, run: Run, weight: float = HERE
     )
 
 
-def _possible(target: DOMNode) -> Iterable[Entry]:
+def _possible(target: DOMNode) -> Iterable[PaletteEntry]:
     for action in bound(target):
         if action.palette and action.possible(target):
             yield _entry(action, _(action.label(target)), run=partial(action.run, target))
 
 
-def _impossible(app: App[Any], target: DOMNode) -> Iterable[Entry]:
+def _impossible(app: App[Any], target: DOMNode) -> Iterable[PaletteEntry]:
     for action in bound(target):
         if not action.palette or action.possible(target):
             continue
@@ -167,13 +167,13 @@ def _tell(app: App[Any], words: str) -> None:
     app.notify(words, severity="warning")
 
 
-def _elsewhere(app: App[Any], place: Place, action: type[Action[Any]]) -> Entry:
+def _elsewhere(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> PaletteEntry:
     title = f"{place.name} › {_(action.title)}"
     go = partial(_go, app, place, action)
     return _entry(action, title, run=go, weight=ELSEWHERE)
 
 
-async def _go(app: App[Any], place: Place, action: type[Action[Any]]) -> None:
+async def _go(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> None:
     """Bring the screen of an action to the front, and there do it if nothing can go wrong."""
     if not host_of(app).feed.opened:
         told = _("{title} is on the screen {place}: open a lesson first.")
@@ -183,7 +183,7 @@ async def _go(app: App[Any], place: Place, action: type[Action[Any]]) -> None:
     app.call_after_refresh(_arrive, app, place, action)
 
 
-async def _arrive(app: App[Any], place: Place, action: type[Action[Any]]) -> None:
+async def _arrive(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> None:
     front = app.screen
     if front is not app.get_screen(place.show.screen):
         return

@@ -1,4 +1,4 @@
-"""Live sessions: the supervisor and the observer behind the seams of the screen.
+"""Live sessions: the supervisor and the observer behind the two ports of the screen.
 
 Nothing of them is imported before the first frame is out, and then on a thread: pydantic and
 rclpy take their time.
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from launcher.profile.catalog import ProfileEntry
     from launcher.profile.load import Profile
     from launcher.status import SessionInfo
-    from tui.lifecycle.replay import ReplayLink
     from tui.session.ports import GraphLink, SessionLink
     from tui.session.requests import OpenRequest, ReplayRequest
+    from tui.session.watching import NodelessLink
 
 OF_ROS = ("rclpy.node", "rclpy.event_handler", "rclpy.serialization", "sensor_msgs.msg")
 """What the observer needs in nearly every lesson."""
@@ -143,17 +143,17 @@ def _read(path: Path, request: OpenRequest) -> Profile:
     return profile
 
 
-def _opened_bag(request: ReplayRequest) -> ReplayLink:
+def _opened_bag(request: ReplayRequest) -> NodelessLink:
     from graph.bag.errors import BagError
     from graph.replay.replay import Replay
     from launcher.errors import UsageError
-    from tui.lifecycle.replay import ReplayLink
+    from tui.lifecycle.replay import replayed
 
     try:
         replay = Replay(request.bag, rate=request.rate, loop=request.loop, start_s=request.start_s)
     except BagError as error:
         raise UsageError(error.words) from error
-    return ReplayLink(replay)
+    return replayed(replay)
 
 
 async def _imported(*modules: str) -> None:

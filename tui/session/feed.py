@@ -95,7 +95,7 @@ class Feed:
         self._rosout = RosoutReader()
         self.ended = ""
         """Why the session before has ended."""
-        self._remains: Mapping[str, NodeStatus] = {}
+        self._ended_nodes: Mapping[str, NodeStatus] = {}
         """Its nodes."""
 
     @property
@@ -129,7 +129,7 @@ class Feed:
     @property
     def nodes(self) -> Mapping[str, NodeStatus]:
         """Every node of the session, in the profile's order; of one that has ended, too."""
-        return self._remains if self.link is None else self.link.nodes
+        return self._ended_nodes if self.link is None else self.link.nodes
 
     @property
     def opened(self) -> bool:
@@ -145,7 +145,7 @@ class Feed:
     def connect(self, link: SessionLink, graph: GraphLink) -> None:
         """Show this session from now on."""
         self.link, self.graph = link, graph
-        self.update, self.ended, self._remains = None, "", {}
+        self.update, self.ended, self._ended_nodes = None, "", {}
         self.history.clear()
         self.outside.forget()
         self._rosout = RosoutReader()
@@ -161,18 +161,18 @@ class Feed:
         self.ended = ended
         self.outside.forget()
         if ended and link is not None:
-            self._show_remains(link.nodes)
+            self._show_ended(link.nodes)
         if graph is not None:
             await asyncio.to_thread(graph.stop)
         if link is not None:
             await link.aclose()
         self.tell(lambda: SessionChanged(ended))
 
-    def _show_remains(self, nodes: Mapping[str, NodeStatus]) -> None:
+    def _show_ended(self, nodes: Mapping[str, NodeStatus]) -> None:
         # The first frame does without.
         from tui.session.ended import ended_nodes, silent_graph
 
-        self._remains = ended_nodes(nodes, self.ended)
+        self._ended_nodes = ended_nodes(nodes, self.ended)
         self._tell_status(frozenset(nodes))
         if self.update is not None:
             silent = self.update = silent_graph(self.update)
@@ -180,7 +180,7 @@ class Feed:
 
     def close(self) -> None:
         """Forget the session that has ended, and the screens that showed it."""
-        self.ended, self._remains = "", {}
+        self.ended, self._ended_nodes = "", {}
         self._screens.clear()
         self.history.clear()
 

@@ -1,4 +1,4 @@
-"""The two seams of the screen: what it needs of the supervisor and of the ROS graph.
+"""The two ports of the screen: what it needs of the supervisor and of the ROS graph.
 
 `launcher.client.client.SupervisorClient` and `graph.observer.observer.Observer` fit them, and so do
 the recorded ones of the tests. A `SessionOpener` lists what can be opened and opens it. For type

@@ -10,6 +10,7 @@ from graph.housekeeping import is_housekeeping
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
+    from graph.replay.replay import Replay
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
 
@@ -17,11 +18,13 @@ WATCH = "watch"
 """The name of the session, where a profile's would stand."""
 
 
-class WatchLink:
-    """Fits the seam of a session, and has no nodes: there is nothing to start, stop or restart."""
+class NodelessLink:
+    """A `SessionLink` that has no nodes: there is nothing to start, stop or restart."""
 
-    def __init__(self, session: SessionInfo) -> None:
+    def __init__(self, session: SessionInfo, replay: Replay | None = None) -> None:
+        """`replay` is the recording that is played in place of a robot."""
         self.session = session
+        self.replay = replay
         self.own = False
         self.nodes: Mapping[str, NodeStatus] = {}
         self.strays: tuple[Stray, ...] = ()
@@ -57,7 +60,7 @@ class WatchLink:
         self._closed.set()
 
 
-def watched(domain: int, discovery: str = "localhost") -> WatchLink:
+def watched(domain: int, discovery: str = "localhost") -> NodelessLink:
     """Return the session of whatever runs in this domain.
 
     `discovery`: `localhost` for this machine only, `subnet` for the network too.
@@ -65,7 +68,7 @@ def watched(domain: int, discovery: str = "localhost") -> WatchLink:
     from launcher.status import SessionInfo
 
     title = {"en": "What runs in the domain", "ru": "Что работает в домене"}
-    return WatchLink(
+    return NodelessLink(
         SessionInfo(
             run_id=WATCH,
             profile="",

@@ -48,7 +48,7 @@ class OpenTeleop(Action["CanDrive"]):
         await target.open_teleop()
 
 
-class Driving(Protocol):
+class DrivenByKeys(Protocol):
     """What is driven by the keys."""
 
     limits: TeleopLimits
@@ -61,7 +61,7 @@ class Driving(Protocol):
         """Drive no more."""
 
 
-class TeleopAction(Action["Driving"]):
+class TeleopAction(Action["DrivenByKeys"]):
     """Something in the panel."""
 
 
@@ -76,12 +76,12 @@ class CloseTeleop(TeleopAction):
     footer = True
 
     @classmethod
-    async def run(cls, target: Driving) -> None:
+    async def run(cls, target: DrivenByKeys) -> None:
         """Stop and go."""
         target.close()
 
 
-class Faster(TeleopAction):
+class DriveFaster(TeleopAction):
     """A higher limit."""
 
     id = "teleop.faster"
@@ -92,12 +92,12 @@ class Faster(TeleopAction):
     steps = 1
 
     @classmethod
-    async def run(cls, target: Driving) -> None:
+    async def run(cls, target: DrivenByKeys) -> None:
         """Change the speed of the keys."""
         target.limits = target.limits.faster(cls.steps)
 
 
-class Slower(Faster):
+class DriveSlower(DriveFaster):
     """A lower limit."""
 
     id = "teleop.slower"
@@ -115,7 +115,7 @@ class MoveAction(TeleopAction):
     palette = False
 
     @classmethod
-    async def run(cls, target: Driving) -> None:
+    async def run(cls, target: DrivenByKeys) -> None:
         """Press it once."""
         target.press(cls.move)
 
@@ -170,7 +170,7 @@ class Sharper(TeleopAction):
     steps = 1
 
     @classmethod
-    async def run(cls, target: Driving) -> None:
+    async def run(cls, target: DrivenByKeys) -> None:
         """Change the steering of the keys."""
         target.limits = target.limits.sharper(cls.steps)
 
@@ -187,8 +187,8 @@ class Wider(Sharper):
 
 TELEOP_ACTIONS = (
     CloseTeleop,
-    Faster,
-    Slower,
+    DriveFaster,
+    DriveSlower,
     DriveForward,
     DriveBack,
     SteerLeft,

@@ -75,7 +75,7 @@ class OpenedAction(AppAction):
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
-        """Only while a session, or its remains, are shown."""
+        """Only while a session is shown, be it one that has ended."""
         return target.feed.opened
 
 

@@ -99,7 +99,7 @@ class Forward(ReplayAction):
         replay.skip(SKIP_S)
 
 
-class Slower(ReplayAction):
+class SlowerReplay(ReplayAction):
     """Slower."""
 
     id = "replay.slower"
@@ -113,7 +113,7 @@ class Slower(ReplayAction):
         replay.change_rate(faster=False)
 
 
-class Faster(ReplayAction):
+class FasterReplay(ReplayAction):
     """Faster."""
 
     id = "replay.faster"
@@ -141,4 +141,4 @@ class Loop(ReplayAction):
         replay.set_loop(not replay.state.loop)
 
 
-REPLAY_ACTIONS = (PlayPause, Step, Back, Forward, Slower, Faster, Loop)
+REPLAY_ACTIONS = (PlayPause, Step, Back, Forward, SlowerReplay, FasterReplay, Loop)
