@@ -1,1 +1,5 @@
-"""What is asked of other nodes, never waited for: services, goals, parameters."""
+"""What is asked of other nodes, never waited for: services, goals, parameters.
+
+The observer drives `services`, `goals`, `goals_seen` and `parameters` on its thread; from other
+rooms only `parameters_file` and `timeouts`.
+"""

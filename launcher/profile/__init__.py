@@ -1,1 +1,6 @@
-"""Profiles: from YAML to plain data that can be started (`spec`), each fault with its place."""
+"""Profiles: from YAML to plain data that can be started, each fault with its place.
+
+From outside: `load.load_profile`, the only way to a profile, `catalog` for which there are, and
+names of the format (`panels`, `devices`, `defaults`). A field is declared in `model` and nowhere
+else.
+"""

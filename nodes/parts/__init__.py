@@ -1,1 +1,4 @@
-"""What nodes are made of: their life, parameters, voice, and how they obey the emergency stop."""
+"""What nodes are made of: how they run and end, parameters, voice, the emergency stop.
+
+For every node, and for the other folders here; it depends on none of them.
+"""

@@ -1,1 +1,4 @@
-"""When the robot may move: distances, sources, the emergency stop."""
+"""When the robot may move: distances, sources, the emergency stop.
+
+Each module is one rule, and may be used by itself.
+"""
