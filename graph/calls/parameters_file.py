@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.messages.yaml_reading import Node, read
+from graph.messages.yaml_reading import YamlNode, read
 from text.sentences import say
 from text.yaml_faults import YamlError, character_error
 from text.yaml_scalars import quoted, written
@@ -134,7 +134,7 @@ def _scalar(value: object) -> str:
     return f'"{text}"' if isinstance(value, str) and not text.startswith('"') else text
 
 
-def _nodes(branch: Node, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
+def _nodes(branch: YamlNode, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
     """Yield nodes, or patterns for them, with their parameters."""
     for key, below in branch.value.items():
         if key == KEY:
@@ -158,14 +158,14 @@ def _nodes(branch: Node, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
         yield from _nodes(below, f"{path}/{key.strip('/')}")
 
 
-def _fields(node: Node) -> Node:
+def _fields(node: YamlNode) -> YamlNode:
     if not isinstance(node.value, dict):
         words = say("expected parameters as `name: value`")
         raise YamlError(node.line, node.column, words)
     return node
 
 
-def _flatten(branch: Node, prefix: str, found: dict[str, Value]) -> None:
+def _flatten(branch: YamlNode, prefix: str, found: dict[str, Value]) -> None:
     for key, below in branch.value.items():
         name = f"{prefix}{key}"
         if isinstance(below.value, dict):
@@ -177,7 +177,7 @@ def _flatten(branch: Node, prefix: str, found: dict[str, Value]) -> None:
             found[name] = _value(below, name)
 
 
-def _value(node: Node, name: str) -> Value:
+def _value(node: YamlNode, name: str) -> Value:
     if node.value is None:
         line, column = node.key_line or node.line, node.key_column or node.column
         raise YamlError(line, column, say("{name} has no value", name=repr(name)))
@@ -187,7 +187,7 @@ def _value(node: Node, name: str) -> Value:
     return value
 
 
-def _list(node: Node, name: str) -> Value:
+def _list(node: YamlNode, name: str) -> Value:
     for each in node.value:
         if isinstance(each.value, (dict, list)):
             words = say("{name} is a list: expected a single value here", name=repr(name))

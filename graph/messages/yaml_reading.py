@@ -23,7 +23,7 @@ _TAG = "tag:yaml.org,2002:"
 
 
 @dataclass(slots=True)
-class Node:
+class YamlNode:
     """A value and where it stands, counted from 1."""
 
     value: Any
@@ -42,7 +42,7 @@ class Node:
             return [node.plain() for node in self.value]
         return self.value
 
-    def find(self, path: str, prefix: str = "") -> Node:
+    def find(self, path: str, prefix: str = "") -> YamlNode:
         """Return the node of a path such as `points[2].x`, or the nearest one that is around it."""
         for name, node in self._children(prefix):
             if name == path:
@@ -51,7 +51,7 @@ class Node:
                 return node.find(path, name)
         return self
 
-    def _children(self, prefix: str) -> Iterator[tuple[str, Node]]:
+    def _children(self, prefix: str) -> Iterator[tuple[str, YamlNode]]:
         if isinstance(self.value, dict):
             for key, node in self.value.items():
                 yield (f"{prefix}.{key}" if prefix else key), node
@@ -60,7 +60,7 @@ class Node:
                 yield f"{prefix}[{index}]", node
 
 
-def read(text: str) -> Node:
+def read(text: str) -> YamlNode:
     """Return the only document of `text`, a mapping. Raises YamlError."""
     return _mapping(_read(text))
 
@@ -71,7 +71,7 @@ def value_of(text: str) -> Any:  # noqa: ANN401 - whatever was written
     return None if root is None else root.plain()
 
 
-def _read(text: str) -> Node | None:
+def _read(text: str) -> YamlNode | None:
     if len(text.encode(errors="replace")) > MAX_BYTES:
         raise YamlError(1, 1, say("is longer than {limit} KiB", limit=MAX_BYTES // 1024))
     builder = _Builder()
@@ -80,7 +80,7 @@ def _read(text: str) -> Node | None:
     return builder.root
 
 
-def _mapping(root: Node | None) -> Node:
+def _mapping(root: YamlNode | None) -> YamlNode:
     if root is None or root.value is None:
         raise YamlError(1, 1, say("is empty: write {} for a message with nothing but defaults"))
     if not isinstance(root.value, dict):
@@ -95,15 +95,15 @@ def _mapping(root: Node | None) -> Node:
 class _Open:
     """A mapping or a list that has not ended yet."""
 
-    node: Node
-    key: Node | None = None
+    node: YamlNode
+    key: YamlNode | None = None
 
 
 class _Builder:
     """Takes events, builds the tree."""
 
     def __init__(self) -> None:
-        self.root: Node | None = None
+        self.root: YamlNode | None = None
         self._stack: list[_Open] = []
 
     def take(self, event: yaml.Event) -> None:
@@ -130,7 +130,7 @@ class _Builder:
         self._put(node)
         self._stack.append(_Open(node))
 
-    def _put(self, node: Node) -> None:
+    def _put(self, node: YamlNode) -> None:
         """Put a value where it belongs: the root, a list, a name or a name's value."""
         if not self._stack:
             self.root = node
@@ -145,7 +145,7 @@ class _Builder:
             top.node.value[top.key.value] = node
             top.key = None
 
-    def _begin(self, top: _Open, key: Node) -> None:
+    def _begin(self, top: _Open, key: YamlNode) -> None:
         if isinstance(key.value, (dict, list)):
             raise YamlError(
                 key.line, key.column, say("expected a field's name, found a list or fields")
@@ -169,8 +169,8 @@ class _Builder:
         return event.value if is_text else meaning(event.value)
 
 
-def _node(event: yaml.NodeEvent, value: Any) -> Node:  # noqa: ANN401 - whatever was written
-    return Node(value, *_place(event))
+def _node(event: yaml.NodeEvent, value: Any) -> YamlNode:  # noqa: ANN401 - whatever was written
+    return YamlNode(value, *_place(event))
 
 
 def _place(event: yaml.Event) -> tuple[int, int]:

@@ -15,7 +15,16 @@ from typing import TYPE_CHECKING, Any
 from launcher.profile.device_variables import variable
 from launcher.profile.references import Filler, used_devices
 from launcher.profile.serial_choice import AUTO, KINDS, Unclear, WantedPort, choose
-from launcher.profile.tree import Branch, Entry, Listing, Problems, Scalar, find, place_of, plain
+from launcher.profile.tree import (
+    Branch,
+    Listing,
+    MappingEntry,
+    Problems,
+    Scalar,
+    find,
+    place_of,
+    plain,
+)
 from launcher.profile.when import HARDWARE
 from launcher.profile.yaml_tree import read_value
 from text.sentences import say
@@ -85,7 +94,7 @@ def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, WantedPort]:
 
 def _replaced(branch: Branch, key: str, value: Tree) -> Branch:
     entries = dict(branch.entries)
-    entries[key] = Entry(entries[key].key_place, value)
+    entries[key] = MappingEntry(entries[key].key_place, value)
     return Branch(entries, branch.place)
 
 
@@ -103,14 +112,14 @@ def _overridden(
 def _settings(
     device: str, written: Branch, hardware: str, environ: Mapping[str, str], problems: Problems
 ) -> Branch:
-    settings: dict[str, Entry] = {}
+    settings: dict[str, MappingEntry] = {}
     for name, entry in written.entries.items():
         if name not in HARDWARE and _single(entry.value, ("devices", device, name), problems):
             overriding = variable(device, name)
             value = entry.value
             if isinstance(value, Scalar) and overriding in environ:
                 value = _from_environment(overriding, environ[overriding], value, problems)
-            settings[name] = Entry(entry.key_place, value)
+            settings[name] = MappingEntry(entry.key_place, value)
     special = find(written, (hardware,))
     if isinstance(special, Branch):
         settings |= {

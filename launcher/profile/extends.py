@@ -13,7 +13,7 @@ from launcher.profile.field_marks import Joined, marked
 from launcher.profile.files import with_own_files
 from launcher.profile.model import NodeDocument, ProfileDocument
 from launcher.profile.text import SHIPPED, read_text, shown
-from launcher.profile.tree import Branch, Entry, empty, plain
+from launcher.profile.tree import Branch, MappingEntry, empty, plain
 from launcher.profile.yaml_tree import read_yaml
 from text.sentences import say
 from text.suggestions import did_you_mean
@@ -101,7 +101,7 @@ def _joined(base: Branch, own: Branch, joined: Any = JOINED) -> Branch:  # noqa:
         below = entries[key].value if key in entries else None
         inner = joined.get(key, joined.get("*"))
         if inner is not None and isinstance(below, Branch) and isinstance(entry.value, Branch):
-            entries[key] = Entry(entry.key_place, _joined(below, entry.value, inner))
+            entries[key] = MappingEntry(entry.key_place, _joined(below, entry.value, inner))
         else:
             entries.pop(RIVALS.get(key, ""), None)
             entries[key] = entry
@@ -112,9 +112,9 @@ def _without_removed(tree: Branch) -> Branch:
     nodes = tree.entries.get("nodes")
     if nodes is None or not isinstance(nodes.value, Branch):
         return tree
-    kept: dict[str, Entry] = {
+    kept: dict[str, MappingEntry] = {
         name: entry for name, entry in nodes.value.entries.items() if not empty(entry.value)
     }
     entries = dict(tree.entries)
-    entries["nodes"] = Entry(nodes.key_place, Branch(kept, nodes.value.place))
+    entries["nodes"] = MappingEntry(nodes.key_place, Branch(kept, nodes.value.place))
     return Branch(entries, tree.place)

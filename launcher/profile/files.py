@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from launcher.profile.field_marks import PathFromProfile, marked
 from launcher.profile.model import NodeDocument
-from launcher.profile.tree import Branch, Entry, Scalar
+from launcher.profile.tree import Branch, MappingEntry, Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,10 +25,10 @@ def with_own_files(profile: Branch, folder: Path) -> Branch:
     if nodes is None or not isinstance(nodes.value, Branch):
         return profile
     found = {
-        name: Entry(node.key_place, _with_full_paths(node.value, folder))
+        name: MappingEntry(node.key_place, _with_full_paths(node.value, folder))
         for name, node in nodes.value.entries.items()
     }
-    every = Entry(nodes.key_place, Branch(found, nodes.value.place, nodes.value.size))
+    every = MappingEntry(nodes.key_place, Branch(found, nodes.value.place, nodes.value.size))
     return Branch({**profile.entries, "nodes": every}, profile.place, profile.size)
 
 
@@ -39,14 +39,14 @@ def _with_full_paths(node: Tree, folder: Path) -> Tree:
     return Branch(parts, node.place, node.size)
 
 
-def _with_full_path(key: str, part: Entry, folder: Path) -> Entry:
+def _with_full_path(key: str, part: MappingEntry, folder: Path) -> MappingEntry:
     written = part.value
     if not isinstance(written, Scalar) or not isinstance(written.value, str):
         return part
     if key not in PATHS or not PATHS[key].is_meant(written.value):
         return part
     path = os.path.normpath(folder.absolute() / written.value)
-    return Entry(part.key_place, Scalar(path, written.text, written.place, written.size))
+    return MappingEntry(part.key_place, Scalar(path, written.text, written.place, written.size))
 
 
 def files_beside(folder: Path) -> list[str]:

@@ -21,7 +21,7 @@ from launcher.profile.params import flatten
 from launcher.profile.references import used_devices
 from launcher.profile.spec import NodeSpec, Profile, Ready
 from launcher.profile.text import shown
-from launcher.profile.tree import Branch, Place, Problems, Scalar, find, place_of
+from launcher.profile.tree import Branch, FilePlace, Problems, Scalar, find, place_of
 from launcher.profile.validate import validate
 from launcher.profile.when import HARDWARE
 from launcher.rundir import run_path
@@ -65,7 +65,7 @@ def load_profile(
     problems = Problems()
     if hardware not in HARDWARE:
         message = say("expected mock or real, found {found!r}", found=hardware)
-        problems.add(Place("--hardware"), (), message)
+        problems.add(FilePlace("--hardware"), (), message)
     tree = read_profile(path, problems)
     if tree is None or problems.found:
         raise ProfileError(problems.in_order())

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from launcher.profile.params import flatten
-from launcher.profile.tree import Branch, Entry, Place
+from launcher.profile.tree import Branch, FilePlace, MappingEntry
 from launcher.profile.yaml_tree import read_value
 from text.sentences import say
 from text.suggestions import did_you_mean
@@ -27,7 +27,7 @@ def read_sets(
     """
     result = dict(nodes)
     for text in overrides:
-        place = Place(f"--set {text}")
+        place = FilePlace(f"--set {text}")
         target, equals, written = text.partition("=")
         node, dot, param = target.strip().partition(".")
         if not (equals and dot and node and param):
@@ -41,7 +41,7 @@ def read_sets(
         else:
             value = read_value(written, place.file, problems)
             if value is not None:
-                one = Branch({param: Entry(place, value)}, place)
+                one = Branch({param: MappingEntry(place, value)}, place)
                 params = {**result[node].params, **flatten(one, (node,), problems)}
                 result[node] = replace(result[node], params=params)
     return result

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from launcher.profile.tree import Branch, Entry, Listing, Scalar
+from launcher.profile.tree import Branch, Listing, MappingEntry, Scalar
 from launcher.profile.when import WhenError, holds
 from text.sentences import say
 from text.suggestions import did_you_mean
@@ -33,7 +33,7 @@ class Filler:
     def nodes(self, nodes: Branch) -> Branch:
         """Return all nodes with everything put in."""
         filled = {
-            name: Entry(entry.key_place, self._node(name, entry.value))
+            name: MappingEntry(entry.key_place, self._node(name, entry.value))
             for name, entry in nodes.entries.items()
         }
         return Branch(filled, nodes.place)
@@ -41,7 +41,7 @@ class Filler:
     def branch(self, branch: Branch, where: Where) -> Branch:
         """Return a branch with everything put in."""
         filled = {
-            key: Entry(entry.key_place, self._tree(entry.value, (*where, key)))
+            key: MappingEntry(entry.key_place, self._tree(entry.value, (*where, key)))
             for key, entry in branch.entries.items()
         }
         return Branch(filled, branch.place)
@@ -50,7 +50,7 @@ class Filler:
         if not isinstance(node, Branch):
             return node
         parts = {
-            key: Entry(part.key_place, self._tree(part.value, ("nodes", name, key)))
+            key: MappingEntry(part.key_place, self._tree(part.value, ("nodes", name, key)))
             if key in REFERRING
             else part
             for key, part in node.entries.items()

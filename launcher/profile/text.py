@@ -7,7 +7,7 @@ import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.profile.tree import Place
+from launcher.profile.tree import FilePlace
 from text.os_words import os_reason
 from text.sentences import say
 
@@ -30,7 +30,7 @@ def shown(path: Path) -> str:
 
 def read_text(path: Path, problems: Problems) -> str | None:
     """Return the text of a profile, or None and a problem that says why not."""
-    place = Place(shown(path))
+    place = FilePlace(shown(path))
     try:
         # A pipe or a terminal would keep us waiting: ask what it is before it is opened.
         mode = path.stat().st_mode
@@ -78,7 +78,7 @@ def _decoded(data: bytes, file: str, problems: Problems) -> str | None:
         line = before.count(b"\n") + 1
         column = len(before[before.rfind(b"\n") + 1 :].decode("utf-8", "replace")) + 1
         problems.add(
-            Place(file, line, column),
+            FilePlace(file, line, column),
             (),
             say("is not UTF-8: byte 0x{byte:02x}", byte=data[error.start]),
             say("save the file as UTF-8"),

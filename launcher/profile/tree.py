@@ -20,7 +20,7 @@ Where: TypeAlias = "tuple[str | int, ...]"
 
 
 @dataclass(frozen=True)
-class Place:
+class FilePlace:
     """A position in a file, line and column counted from 1, or 0 and 0 for the file as such."""
 
     file: str
@@ -36,15 +36,15 @@ class Scalar:
     """str, bool, int, float or None."""
     text: str
     """As it is written, without quotes: `1e3`, `yes`, `010`."""
-    place: Place
+    place: FilePlace
     size: int = 1
 
 
 @dataclass(frozen=True)
-class Entry:
+class MappingEntry:
     """A key with its value."""
 
-    key_place: Place
+    key_place: FilePlace
     value: Tree
 
 
@@ -52,8 +52,8 @@ class Entry:
 class Branch:
     """A mapping, in the order of the file."""
 
-    entries: AbstractMapping[str, Entry]
-    place: Place
+    entries: AbstractMapping[str, MappingEntry]
+    place: FilePlace
     size: int = 1
     """How many values it has with all aliases written out."""
 
@@ -63,7 +63,7 @@ class Listing:
     """A sequence."""
 
     items: tuple[Tree, ...]
-    place: Place
+    place: FilePlace
     size: int = 1
 
 
@@ -76,7 +76,7 @@ class Problems:
 
     found: list[ProfileProblem] = field(default_factory=list)
 
-    def add(self, place: Place, where: Where, message: str, hint: str = "") -> None:
+    def add(self, place: FilePlace, where: Where, message: str, hint: str = "") -> None:
         """Note one problem; the same one twice is one."""
         problem = ProfileProblem(
             place.file, place.line, place.column, field_name(where), message, hint
@@ -123,7 +123,7 @@ def find(tree: Tree, where: Where) -> Tree | None:
     return tree
 
 
-def place_of(tree: Tree, where: Where, *, key: bool = False) -> Place:
+def place_of(tree: Tree, where: Where, *, key: bool = False) -> FilePlace:
     """Return where a value stands, or with `key` its key; the nearest parent's if it is missing."""
     place = tree.place
     for depth, part in enumerate(where):

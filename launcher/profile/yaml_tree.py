@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from launcher.profile.tree import Branch, Entry, Listing, Place, Scalar
+from launcher.profile.tree import Branch, FilePlace, Listing, MappingEntry, Scalar
 from text.sentences import say
 from text.yaml_faults import YamlError, events
 from text.yaml_scalars import meaning
@@ -30,7 +30,9 @@ def read_yaml(text: str, file: str, problems: Problems) -> Branch | None:
     if not read:
         return None
     if root is None or (isinstance(root, Scalar) and root.value is None):
-        problems.add(Place(file, 1, 1), (), say("is empty"), say("a profile has at least `nodes:`"))
+        problems.add(
+            FilePlace(file, 1, 1), (), say("is empty"), say("a profile has at least `nodes:`")
+        )
         return None
     if not isinstance(root, Branch):
         kind = say("a list") if isinstance(root, Listing) else say("a single value")
@@ -42,17 +44,17 @@ def read_yaml(text: str, file: str, problems: Problems) -> Branch | None:
 def read_value(text: str, file: str, problems: Problems) -> Tree | None:
     """Return the value that a piece of YAML stands for, as of `--set`; None and a problem else."""
     read, root = _read(text, file, problems)
-    return (root or Scalar("", "", Place(file))) if read else None
+    return (root or Scalar("", "", FilePlace(file))) if read else None
 
 
 def _read(text: str, file: str, problems: Problems) -> tuple[bool, Tree | None]:
     """Return whether it could be read, and the only document, None if there is none."""
-    builder = _Builder(file, problems)
+    builder = _TreeBuilder(file, problems)
     try:
         for event in events(text):
             builder.take(event)
     except YamlError as error:
-        problems.add(Place(file, error.line, error.column), (), error.message)
+        problems.add(FilePlace(file, error.line, error.column), (), error.message)
         return False, None
     except _StopError:
         return False, None
@@ -64,27 +66,27 @@ class _StopError(Exception):
 
 
 @dataclass
-class _Open:
+class _OpenCollection:
     """A mapping or a sequence that has not ended yet."""
 
-    place: Place
+    place: FilePlace
     anchor: str | None
     mapping: bool
     items: list[Tree] = field(default_factory=list)
-    entries: dict[str, Entry] = field(default_factory=dict)
+    entries: dict[str, MappingEntry] = field(default_factory=dict)
     merged: list[Branch] = field(default_factory=list)
-    key: tuple[str, Place] | None = None
+    key: tuple[str, FilePlace] | None = None
     size: int = 1
 
 
-class _Builder:
+class _TreeBuilder:
     """Takes events, builds the tree."""
 
     def __init__(self, file: str, problems: Problems) -> None:
         self.root: Tree | None = None
         self._file = file
         self._problems = problems
-        self._stack: list[_Open] = []
+        self._stack: list[_OpenCollection] = []
         self._anchors: dict[str, Tree] = {}
         self._constructor = yaml.constructor.SafeConstructor()
 
@@ -113,7 +115,7 @@ class _Builder:
         if len(self._stack) >= MAX_DEPTH:
             self._stop(place, say("is nested deeper than {limit} levels", limit=MAX_DEPTH))
         mapping = isinstance(event, yaml.MappingStartEvent)
-        self._stack.append(_Open(place, event.anchor, mapping))
+        self._stack.append(_OpenCollection(place, event.anchor, mapping))
 
     def _put(self, tree: Tree, *, merge: bool = False) -> None:
         """Put a finished value where it belongs: the root, a list, a key or a key's value."""
@@ -135,7 +137,7 @@ class _Builder:
             self._put_entry(top, top.key, tree)
             top.key = None
 
-    def _put_entry(self, top: _Open, key: tuple[str, Place], value: Tree) -> None:
+    def _put_entry(self, top: _OpenCollection, key: tuple[str, FilePlace], value: Tree) -> None:
         name, place = key
         if name == "<<":
             sources = value.items if isinstance(value, Listing) else (value,)
@@ -147,7 +149,7 @@ class _Builder:
             message = say("this key appears a second time; first on line {line}", line=first)
             self._problems.add(place, self._where(name), message, say("join them or rename one"))
         else:
-            top.entries[name] = Entry(place, value)
+            top.entries[name] = MappingEntry(place, value)
 
     def _key(self, tree: Tree) -> str:
         if isinstance(tree, Scalar):
@@ -205,16 +207,18 @@ class _Builder:
                 say("the tag {name} is refused: a profile holds plain data", name=name),
             )
 
-    def _place(self, event: yaml.Event) -> Place:
+    def _place(self, event: yaml.Event) -> FilePlace:
         mark = event.start_mark
-        return Place(self._file, mark.line + 1, mark.column + 1) if mark else Place(self._file)
+        return (
+            FilePlace(self._file, mark.line + 1, mark.column + 1) if mark else FilePlace(self._file)
+        )
 
-    def _stop(self, place: Place, message: str) -> None:
+    def _stop(self, place: FilePlace, message: str) -> None:
         self._problems.add(place, (), message)
         raise _StopError
 
 
-def _closed(opened: _Open) -> Tree:
+def _closed(opened: _OpenCollection) -> Tree:
     if not opened.mapping:
         return Listing(tuple(opened.items), opened.place, opened.size)
     entries = dict(opened.entries)

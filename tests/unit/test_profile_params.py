@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from launcher import node_program
 from launcher.profile.params import NAME, flatten, written
-from launcher.profile.tree import Branch, Entry, Place, Problems, Scalar
+from launcher.profile.tree import Branch, FilePlace, MappingEntry, Problems, Scalar
 from launcher.profile.yaml_tree import read_value
 from tests.unit.profile_files import loaded
 from text.yaml_scalars import meaning
@@ -173,8 +173,8 @@ def test_names_that_ros_knows(name: str) -> None:
 )
 def test_what_ros_cannot_carry_is_refused(value: object, told: str) -> None:
     problems = Problems()
-    place = Place("test", 1, 4)
-    tree = Branch({"p": Entry(place, Scalar(value, str(value), place))}, place)
+    place = FilePlace("test", 1, 4)
+    tree = Branch({"p": MappingEntry(place, Scalar(value, str(value), place))}, place)
     assert flatten(tree, (), problems) == {}
     assert [problem.message for problem in problems.found] == [told]
     assert (problems.found[0].line, problems.found[0].column) == (1, 4)
