@@ -15,7 +15,7 @@ PAGES = ("ARCHITECTURE.md", "CONTRIBUTING.md")
 EXAMPLES = re.compile(r"thermometer|notes")
 """In the names of what a reader of CONTRIBUTING.md is told to make."""
 NAME = re.compile(rf"`((?:{'|'.join(ROOMS)})(?:\.\w+)+)`")
-FILE = re.compile(r"`([\w.-]+/[\w./-]*)`")
+FILE = re.compile(r"`([\w.-]+/[\w./-]*)`|\b((?:scripts|tests|docs|profiles)/[\w./-]+\.\w+)")
 
 
 def test_the_picture_is_that_of_the_code() -> None:
@@ -60,7 +60,8 @@ def test_every_name_on_the_page_is_one_in_the_code(page: str) -> None:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_every_file_on_the_page_is_there(page: str) -> None:
-    files = {name for name in FILE.findall((ROOT / page).read_text()) if not EXAMPLES.search(name)}
+    found = {name or other for name, other in FILE.findall((ROOT / page).read_text())}
+    files = {name for name in found if not EXAMPLES.search(name)}
     assert files
     assert {name for name in files if not (ROOT / name).exists()} == set()
 
