@@ -45,7 +45,7 @@ class DeviceText(Text):
 
     def expected(self) -> str:
         """What can be named."""
-        return "name, part of one, number, none; empty: the default"
+        return N_("name, part of one, number, none; empty: the default")
 
 
 class Audio(LessonNode):

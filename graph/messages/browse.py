@@ -22,6 +22,7 @@ from graph.messages.types import (
     load_service,
 )
 from graph.messages.values import fields_of, to_tree
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -110,7 +111,11 @@ def definition(type_name: str) -> Definition:
         names = ("goal", "result", "feedback")
         made = tuple(_part(name, getattr(action, name.capitalize())) for name in names)
     else:
-        reason = f"'{type_name}' is not the name of a type; write it as package/msg/Name"
+        reason = say(
+            "'{type}' is not the name of a type; write it as package/{kind}/Name",
+            type=type_name,
+            kind="msg",
+        )
         raise UnknownTypeError(type_name, parts[0], reason)
     return Definition(type_name, made)
 

@@ -124,6 +124,16 @@ def _missing(error: ModuleNotFoundError, package: str, kind: str) -> Words:
     return _broken(package, error)
 
 
+def not_subscribed(topic: str, type_name: str, error: Exception) -> Words:
+    """Say that a topic cannot be heard, as where a second type is under one name."""
+    return say(
+        "{topic} cannot be subscribed as {type}: {error}",
+        topic=topic,
+        type=type_name,
+        error=error,
+    )
+
+
 def not_decoded(type_name: str, error: Exception) -> Words:
     """Say that the bytes of a message are not of its type."""
     return say("a message of {type} cannot be decoded: {reason}", type=type_name, reason=error)

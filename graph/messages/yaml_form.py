@@ -18,6 +18,7 @@ from graph.messages.types import (
 from graph.messages.values import fields_of, to_tree
 from graph.messages.yaml_reading import read
 from graph.messages.yaml_text import to_yaml
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -36,7 +37,11 @@ def form_class(type_name: str) -> type[Any]:
     """
     parts = type_name.split("/")
     if len(parts) != NAME_PARTS or parts[1] not in {"msg", "srv", "action"}:
-        reason = f"'{type_name}' is not the name of a type; write it as package/msg/Name"
+        reason = say(
+            "'{type}' is not the name of a type; write it as package/{kind}/Name",
+            type=type_name,
+            kind="msg",
+        )
         raise UnknownTypeError(type_name, parts[0], reason)
     found: type[Any]
     if parts[1] == "srv":

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from graph.data import Sample, TopicRow, Trouble
-from graph.messages.types import UnknownTypeError
+from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.interest import Interest
 from graph.observer.rates import QUIET_S
 from graph.observer.tap import FOLLOWED, Tap, first_depth
@@ -132,7 +132,7 @@ class Taps:
             except UnknownTypeError as error:
                 self._refused[key] = error
             except Exception as error:  # noqa: BLE001 - a second type under one name, for one
-                reason = f"{topic} cannot be subscribed as {type_name}: {error}"
+                reason = not_subscribed(topic, type_name, error)
                 self._refused[key] = UnknownTypeError(type_name, type_name.split("/")[0], reason)
         made = self._taps.get(topic)
         return made.unknown if made else self._refused[key]

@@ -8,7 +8,7 @@ from graph.bag.metadata import BagTopic, qos_offer
 from graph.bag.types import definition, hash_of
 from graph.data import EndpointInfo
 from graph.housekeeping import is_hidden
-from graph.messages.types import UnknownTypeError
+from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.qos import to_hear
 from graph.recording.tap import RecordingTap
 from graph.scan.endpoints import full_name
@@ -123,7 +123,7 @@ class RecordingTopics:
             self.skipped[name] = error.reason
             return None
         except Exception as error:  # noqa: BLE001 - a second type under one name, for one
-            self.skipped[name] = f"{name} cannot be subscribed as {type_name}: {error}"
+            self.skipped[name] = not_subscribed(name, type_name, error)
             return None
         self.skipped.pop(name, None)
         self._writer.add_topic(topic, text)

@@ -123,4 +123,4 @@ class SourceSetting(Text):
 
     def expected(self) -> str:
         """What it takes."""
-        return "number, /dev path, file or URL"
+        return N_("number, /dev path, file or URL")
