@@ -14,11 +14,11 @@ import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
+from robot.topics import EMERGENCY_STOP
 from tests.ros.observing import Peer as Process
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.waiting import wait_until
-from tui.emergency import state as emergency
 from tui.emergency.control import EmergencyControl
 
 ADD = "example_interfaces/srv/AddTwoInts"
@@ -88,9 +88,9 @@ async def test_it_is_heard_at_once_while_everything_else_hangs(
     with Peer(ros_domain) as robot:
         heard: list[tuple[bool, float]] = []
         robot.node.create_subscription(
-            Bool, emergency.TOPIC, lambda m: heard.append((m.data, time.monotonic())), LATCHED
+            Bool, EMERGENCY_STOP, lambda m: heard.append((m.data, time.monotonic())), LATCHED
         )
-        watcher.wait_for(emergency.TOPIC, lambda row: row.subscribers == 1, "the robot listens")
+        watcher.wait_for(EMERGENCY_STOP, lambda row: row.subscribers == 1, "the robot listens")
         stop.prepare()
         running, *waiting = begin_everything(watcher, hung)
         app.feed.update = watcher.update
