@@ -1,4 +1,7 @@
-"""What a person can do, and all that derives from it."""
+"""What a person can do, and all that derives from it.
+
+An action says what it needs of its target by a protocol beside it; it imports no screen.
+"""
 
 from tui.actions.action import REGISTRY, Acting, Action, bindings, bound
 

@@ -1,1 +1,4 @@
-"""Recording and playing back, from any tab."""
+"""Recording what runs: begun, looked at and ended by `recording.Recording`; all of it in `words`.
+
+The keys for it are in `tui.frame.actions`; what reads and writes bags is in `graph`.
+"""
