@@ -1,0 +1,1 @@
+"""Tests of `graph` with real ROS and real processes."""

@@ -1,0 +1,1 @@
+"""Tests of `launcher` with real ROS and real processes."""

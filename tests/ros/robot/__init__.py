@@ -1,0 +1,1 @@
+"""Tests of `robot` with real ROS and real processes."""

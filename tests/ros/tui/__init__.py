@@ -1,0 +1,1 @@
+"""Tests of `tui` with real ROS and real processes."""

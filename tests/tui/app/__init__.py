@@ -1,0 +1,1 @@
+"""Tests of the app as a whole: sessions, settings, languages, faults, hostile input."""

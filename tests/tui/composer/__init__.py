@@ -1,0 +1,1 @@
+"""Tests of `tui.composer`: the screen, fed by recorded data."""

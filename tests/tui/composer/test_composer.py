@@ -1,0 +1,316 @@
+"""The composer: what is wrong is pointed at, what stands there is sent, what came is told."""
+
+from __future__ import annotations
+
+import json
+from concurrent.futures import Future
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from textual.widgets import OptionList
+
+from graph.data import EndpointInfo, Sample, TopicRow
+from tests.tui.composer.test_outcome import drive, result
+from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
+from tests.tui.snapshots import Look, settle
+from tui import clock
+from tui.composer.screen import ComposerScreen
+from tui.composer.sent import KEPT, Sent, sent_path
+from tui.composer.templates import TEMPLATES, TemplatesDialog
+from tui.outcome.story import FOLLOWED
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from textual.pilot import Pilot
+
+    from tui.app import DeckApp
+
+HOME = Look((120, 40), "en")
+VALID = '{"thought": "go", "commands": [{"action": "drive", "speed": 0.1, "steering": 0.0}]}'
+TOO_FAST = VALID.replace("0.1", "9.0")
+PARSER = TopicRow(
+    "/llm_raw_json",
+    ("std_msgs/msg/String",),
+    publishers=0,
+    subscribers=1,
+    subscribed_by=(EndpointInfo("/llm_parser", "std_msgs/msg/String", "reliable", "volatile"),),
+)
+
+
+class Room:
+    """The composer over a recorded graph, under a pilot."""
+
+    def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
+        self.app, self.pilot, self.graph = app, pilot, graph
+
+    @property
+    def screen(self) -> ComposerScreen:
+        """The screen."""
+        screen = self.app.screen
+        assert isinstance(screen, ComposerScreen)
+        return screen
+
+    async def write(self, text: str) -> None:
+        """Put a text into the editor and wait until it is checked."""
+        self.screen.editor.replace_all(text)
+        self.screen.check()
+        await self.pilot.pause()
+
+    async def show(self, *samples: Sample, after_s: float = 0.02) -> None:
+        """Let these come so long after now."""
+        come = [replace(one, received_s=clock.now() + after_s) for one in samples]
+        topics = (*lesson_update().topics, PARSER)
+        self.graph.show(lesson_update(topics=topics, samples={one.topic: (one,) for one in come}))
+        await self.pilot.pause()
+        await self.pilot.pause()
+
+    def told(self) -> list[str]:
+        """What the outcome says."""
+        return [f"{one.mark} {one.topic}: {one.text}" for one in self.screen.outcome.entries]
+
+
+@pytest.fixture(autouse=True)
+def _own_history(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+
+
+@pytest.fixture
+def graph() -> RecordedGraph:
+    return RecordedGraph(update=lesson_update(topics=(*lesson_update().topics, PARSER), samples={}))
+
+
+@pytest.fixture
+async def room(graph: RecordedGraph) -> Any:
+    app = HOME.app("composer", RecordedPad(graph=graph))
+    async with app.run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        yield Room(app, pilot, graph)
+
+
+async def test_it_opens_with_a_valid_example_and_says_who_listens(room: Room) -> None:
+    assert room.screen.editor.text == TEMPLATES[0].text()
+    assert room.screen.problems == ()
+    assert str(room.screen.query_one("#composer-to").content) == "/llm_raw_json → llm_parser"
+    assert room.graph.prepared[-1][:2] == ("/llm_raw_json", "std_msgs/msg/String")
+
+
+async def test_sending_publishes_exactly_what_stands_there(room: Room) -> None:
+    text = VALID.replace("go", "вперёд 🤖 \\u0000")
+    await room.write(text)
+    await room.pilot.press("ctrl+s")
+    await room.pilot.pause()
+    assert room.graph.published == [("/llm_raw_json", "std_msgs/msg/String", {"data": text}, False)]
+    assert room.told() == ["· /llm_result: waiting for an answer"]
+
+
+async def test_what_came_of_it_is_told_with_its_delay(room: Room) -> None:
+    await room.write(VALID)
+    await room.pilot.press("ctrl+s")
+    await room.show(result(event="accepted", commands=1, thought="go"), after_s=0.012)
+    await room.show(drive("/drive", 0.1, 0.0), after_s=0.015)
+    assert room.told() == [
+        "✓ /llm_result: accepted: 1 command “go”",
+        "→ /drive: 0.10 m/s, 0.00 rad, straight on",
+    ]
+    assert [round(one.delay_s or 0, 3) for one in room.screen.outcome.entries] == [0.012, 0.015]
+
+
+async def test_the_trail_is_followed_also_while_another_screen_is_in_front(room: Room) -> None:
+    assert room.graph.followed >= FOLLOWED
+    await room.write(VALID)
+    await room.pilot.press("ctrl+s", "f5")
+    await settle(room.pilot)
+    assert room.graph.followed >= FOLLOWED
+    await room.show(result(event="accepted", commands=1, thought=""))
+    await room.pilot.press("f4")
+    await settle(room.pilot)
+    assert room.told()[0].startswith("✓ /llm_result: accepted")
+
+
+async def test_without_a_message_nothing_is_followed_behind_another_screen(room: Room) -> None:
+    await room.pilot.press("f5")
+    await settle(room.pilot)
+    assert not room.graph.followed & {"/drive", "/wheel_commands"}
+
+
+async def test_silence_is_told_after_three_seconds(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await room.write(VALID)
+    await room.pilot.press("ctrl+s")
+    later = clock.now() + 3.1
+    monkeypatch.setattr(clock, "now", lambda: later)
+    await room.show()
+    assert room.told() == [
+        "✗ /llm_result: no answer within 3 s: is llm_parser running? Listening: llm_parser"
+    ]
+
+
+async def test_what_is_wrong_is_marked_listed_and_not_sent(room: Room) -> None:
+    await room.write(TOO_FAST)
+    assert room.screen.editor.render_line(0).text.startswith("1✗")
+    listed = room.screen.verdict.query_one(OptionList)
+    assert str(listed.get_option_at_index(0).prompt) == (
+        "line 1, column 61: commands[0].speed: must be from -0.5 to 0.5 m/s, not 9"
+    )
+    await room.pilot.press("ctrl+s")
+    await room.pilot.pause()
+    assert room.graph.published == []
+    assert room.screen.editor.cursor_location == (0, 60)
+
+
+async def test_what_is_wrong_is_sent_by_a_key_of_its_own(room: Room) -> None:
+    await room.write(TOO_FAST)
+    await room.pilot.press("ctrl+o")
+    problem = {"field": "commands[0].speed", "line": 1, "column": 59, "message": "too fast"}
+    await room.show(result(event="refused", problems=[problem]))
+    assert room.graph.published[0][2] == {"data": TOO_FAST}
+    assert room.told() == [
+        "✗ /llm_result: refused: nothing of it is executed",
+        "✗ /llm_result: line 1, column 59: commands[0].speed: too fast",
+    ]
+
+
+async def test_that_key_does_nothing_while_all_is_well(room: Room) -> None:
+    await room.write(VALID)
+    await room.pilot.press("ctrl+o")
+    await room.pilot.pause()
+    assert room.graph.published == []
+
+
+async def test_typing_is_checked_by_itself(room: Room) -> None:
+    room.screen.editor.replace_all("")
+    await room.pilot.press("{")
+    for _round in range(200):
+        await room.pilot.pause(0.02)
+        if room.screen.problems:
+            break
+    assert "name in double quotes is expected" in room.screen.problems[0].message
+
+
+async def test_a_key_walks_from_problem_to_problem(room: Room) -> None:
+    await room.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
+    seen = []
+    for _press in range(3):
+        await room.pilot.press("ctrl+n")
+        seen.append(room.screen.editor.cursor_location)
+    assert seen == [(0, 12), (2, 12), (0, 12)]
+
+
+async def test_enter_in_the_list_of_problems_goes_to_the_place(room: Room) -> None:
+    await room.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
+    room.screen.verdict.query_one(OptionList).focus()
+    await room.pilot.press("end", "enter")
+    await room.pilot.pause()
+    assert room.screen.editor.cursor_location == (2, 12)
+    assert room.screen.editor.has_focus
+
+
+async def test_a_graph_that_refuses_is_told(room: Room) -> None:
+    room.graph.publish_error = RuntimeError("no publisher for you \x1b[2J")
+    await room.write(VALID)
+    await room.pilot.press("ctrl+s")
+    await room.pilot.pause()
+    assert room.told() == ["✗ /llm_raw_json: not sent: no publisher for you ␛[2J"]
+
+
+async def test_a_graph_that_never_answers_does_not_hold_the_keys(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(room.graph, "publish", lambda *_args, **_more: Future())
+    await room.write(VALID)
+    await room.pilot.press("ctrl+s")
+    await room.pilot.press("x")
+    assert room.screen.editor.text == "x" + VALID
+
+
+async def test_space_types_a_space_and_ctrl_x_stops_the_robot(room: Room) -> None:
+    await room.write("")
+    room.screen.editor.focus()
+    await room.pilot.press("a", "space", "1", "q")
+    assert room.screen.editor.text == "a 1q"
+    assert not room.app.emergency.state.engaged
+    await room.pilot.press("ctrl+x")
+    await room.pilot.pause()
+    assert room.app.emergency.state.engaged
+    assert room.screen.editor.text == "a 1q"
+
+
+async def test_enter_is_a_new_line_and_sends_nothing(room: Room) -> None:
+    await room.write("")
+    room.screen.editor.focus()
+    await room.pilot.press("enter")
+    assert room.screen.editor.text == "\n"
+    assert room.graph.published == []
+
+
+async def test_a_template_takes_the_place_of_the_text(room: Room) -> None:
+    await room.pilot.press("ctrl+t")
+    await room.pilot.pause()
+    assert isinstance(room.app.screen, TemplatesDialog)
+    await room.pilot.press("down", "enter")
+    await room.pilot.pause()
+    assert room.screen.editor.text == TEMPLATES[1].text()
+    await room.pilot.press("ctrl+t", "escape")
+    await room.pilot.pause()
+    assert room.screen.editor.text == TEMPLATES[1].text()
+
+
+async def test_what_was_sent_is_recalled_and_the_draft_comes_back(room: Room) -> None:
+    for text in (VALID, TOO_FAST):
+        await room.write(text)
+        await room.pilot.press("ctrl+o" if text == TOO_FAST else "ctrl+s")
+    await room.write("draft")
+    seen = []
+    for key in ("alt+up", "alt+up", "alt+up", "alt+down", "alt+down", "alt+down"):
+        await room.pilot.press(key)
+        seen.append(room.screen.editor.text)
+    assert seen == [TOO_FAST, VALID, VALID, TOO_FAST, "draft", "draft"]
+    assert Sent(sent_path()).texts == (VALID, TOO_FAST)
+
+
+async def test_without_a_lesson_nothing_is_sent() -> None:
+    graph = RecordedGraph()
+    app = HOME.app("composer", RecordedPad(graph=graph))
+    async with app.run_test(size=HOME.size) as pilot:
+        await settle(pilot)
+        await app.feed.disconnect("it has ended")
+        await pilot.press("ctrl+s")
+        await pilot.pause()
+        assert graph.published == []
+
+
+async def test_any_size_is_survived(room: Room) -> None:
+    await room.write(TOO_FAST)
+    for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
+        await room.pilot.resize_terminal(*size)
+        await room.show(drive("/drive", 0.1, 0.0))
+
+
+def test_a_broken_history_is_as_good_as_none(tmp_path: Path) -> None:
+    path = tmp_path / "composer.json"
+    for text in ("", "{", '{"a": 1}', "[1, null]", "[" * 100_000, "\x00"):
+        path.write_text(text, encoding="utf-8")
+        assert Sent(path).texts == ()
+    path.write_bytes(b"\xff\xfe")
+    assert Sent(path).texts == ()
+
+
+def test_the_history_is_bounded_and_knows_no_doubles(tmp_path: Path) -> None:
+    path = tmp_path / "state" / "composer.json"
+    sent = Sent(path)
+    for number in range(KEPT + 10):
+        sent.add(str(number))
+    sent.add("20")
+    assert len(sent.texts) == KEPT
+    assert sent.texts[-1] == "20"
+    assert json.loads(path.read_text(encoding="utf-8")) == list(sent.texts)
+
+
+def test_a_history_that_cannot_be_written_is_passed_over(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    sent = Sent(tmp_path / "file" / "composer.json")
+    sent.add("text")
+    assert sent.texts == ("text",)

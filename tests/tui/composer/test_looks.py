@@ -1,0 +1,129 @@
+"""How the composer looks, at three sizes and in both languages."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.tui.composer.test_composer import PARSER
+from tests.tui.composer.test_outcome import drive, head, result, safety, wheels
+from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tui import clock
+from tui.app import DeckApp
+from tui.composer.screen import ComposerScreen
+
+BAD = """{
+  "thought": "I am in a hurry",
+  "commands": [
+    {"action": "turn_head", "pan": 120, "tilt": 10.5},
+    {"action": "drive", "speed": "fast", "stering": 0.1},
+    {"action": "jump"}
+  ]
+}
+"""
+
+Before = Callable[[Pilot[Any]], Awaitable[None]]
+
+
+@pytest.fixture(autouse=True)
+def _own_history(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+
+
+def pad() -> RecordedPad:
+    """A lesson with llm_parser in it."""
+    topics = (*lesson_update().topics, PARSER)
+    return RecordedPad(graph=RecordedGraph(update=lesson_update(topics=topics)))
+
+
+def written(text: str | None, *keys: str, came: tuple[tuple[float, Any], ...] = ()) -> Before:
+    """Write this text, press these keys, and let these messages come so long after."""
+
+    async def before(pilot: Pilot[Any]) -> None:
+        await settle(pilot)
+        app = pilot.app
+        assert isinstance(app, DeckApp)
+        screen, graph = app.screen, app.feed.graph
+        assert isinstance(screen, ComposerScreen)
+        if text is not None:
+            screen.editor.replace_all(text)
+            screen.check()
+        await pilot.press(*keys)
+        samples: dict[str, tuple[Any, ...]] = {}
+        for after_s, message in came:
+            arrived = replace(message, received_s=clock.now() + after_s)
+            samples[arrived.topic] = (*samples.get(arrived.topic, ()), arrived)
+        topics = (*lesson_update().topics, PARSER)
+        graph.show(lesson_update(topics=topics, samples=samples))  # type: ignore[union-attr]
+        for _round in range(3):
+            await pilot.pause()
+
+    return before
+
+
+@every_look
+def test_accepted(look: Look, snap_compare: SnapCompare) -> None:
+    """The example in colour, valid; what came of it in order of time, each with its delay."""
+    came = (
+        (0.012, result(event="accepted", commands=2, thought="Something moved on the right.")),
+        (0.015, drive("/drive", 0.2, -0.3)),
+        (0.019, drive("/drive_safe", 0.2, -0.3)),
+        (0.031, wheels(6.36, 5.75)),
+        (0.4, head(-0.4, 0.1)),
+        (1.03, head(-0.7854, 0.1745)),
+        (1.043, result(event="head", pan=-45, tilt=10, sum=1)),
+    )
+    before = written(None, "ctrl+s", came=came)
+    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+
+
+@both_languages
+def test_wrong(look: Look, snap_compare: SnapCompare) -> None:
+    """Wrong values underlined, their lines marked, each problem listed with its place."""
+    app = look.app("composer", pad())
+    assert snap_compare(app, terminal_size=look.size, run_before=written(BAD))
+
+
+@both_languages
+def test_refused_and_held(look: Look, snap_compare: SnapCompare) -> None:
+    """Sent all the same: refused with its reasons; the safety node holds the wheels meanwhile."""
+    problem = {
+        "field": "commands[0].pan", "line": 4, "column": 36, "message": "must be a number",
+        "code": "number", "args": {},
+    }  # fmt: skip
+    came = (
+        (0.009, result(event="refused", problems=[problem])),
+        (0.2, safety("obstacle at 0.38 m")),
+    )
+    before = written(BAD, "ctrl+o", came=came)
+    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_hostile_text(language: str, snap_compare: SnapCompare) -> None:
+    """Escape sequences and markup in the editor, the problems and the answer: all harmless."""
+    look = Look((80, 24), language)
+    text = '{"thought": "\x1b]52;c;aGVsbG8=\x07 [red] \u202e", "\x1b[2J": "[/]"}'
+    answer = result(event="accepted", commands=1, thought="[b]\x1b[31m\x00\u202e[/b]")
+    before = written(text, "ctrl+o", came=((0.01, answer),))
+    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_templates(language: str, snap_compare: SnapCompare) -> None:
+    """A dialog over the composer lists the templates, right ones first."""
+    look = Look((120, 40), language)
+    before = written(None, "ctrl+t")
+    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+
+
+def test_a_tiny_terminal(snap_compare: SnapCompare) -> None:
+    """At 40x12 there is still an editor, a verdict and the beginning of what came."""
+    app = Look((40, 12), "en").app("composer", pad())
+    assert snap_compare(app, terminal_size=(40, 12), run_before=written(None, "ctrl+s"))

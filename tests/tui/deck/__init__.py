@@ -1,0 +1,1 @@
+"""Tests of `tui.deck`: the screen, fed by recorded data."""

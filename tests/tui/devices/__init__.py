@@ -1,0 +1,1 @@
+"""Tests of `tui.devices`: the screen, fed by recorded data."""

@@ -1,0 +1,1 @@
+"""Tests of `tui.emergency`: the screen, fed by recorded data."""

@@ -1,0 +1,1 @@
+"""Tests of `tui.flow`: the screen, fed by recorded data."""

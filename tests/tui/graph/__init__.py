@@ -1,0 +1,1 @@
+"""Tests of `tui.graph`: the screen, fed by recorded data."""

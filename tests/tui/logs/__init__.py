@@ -1,0 +1,1 @@
+"""Tests of `tui.logs`: the screen, fed by recorded data."""

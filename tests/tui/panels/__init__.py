@@ -1,0 +1,1 @@
+"""Tests of `tui.panels`: the screen, fed by recorded data."""

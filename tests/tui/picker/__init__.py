@@ -1,0 +1,1 @@
+"""Tests of `tui.picker`: the screen, fed by recorded data."""

@@ -1,0 +1,1 @@
+"""Tests of `tui.recording`: the screen, fed by recorded data."""

@@ -1,0 +1,1 @@
+"""Tests of `tui.teleop`: the screen, fed by recorded data."""

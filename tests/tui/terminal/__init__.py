@@ -1,0 +1,1 @@
+"""Tests of `tui.terminal`: the screen, fed by recorded data."""

@@ -1,0 +1,1 @@
+"""Tests of `tui.topics`: the screen, fed by recorded data."""

@@ -1,0 +1,1 @@
+"""Tests of `tui.widgets`: the screen, fed by recorded data."""

@@ -1,0 +1,1 @@
+"""Tests of `graph` that need no ROS and no terminal."""

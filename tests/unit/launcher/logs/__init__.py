@@ -1,0 +1,1 @@
+"""Tests of `launcher.logs` that need no ROS and no terminal."""

@@ -1,0 +1,1 @@
+"""Tests of `launcher.profile` that need no ROS and no terminal."""

@@ -1,0 +1,1 @@
+"""Tests of `launcher.supervisor` that need no ROS and no terminal."""

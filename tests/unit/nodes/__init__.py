@@ -1,0 +1,1 @@
+"""Tests of `nodes` that need no ROS and no terminal."""

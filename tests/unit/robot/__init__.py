@@ -1,0 +1,1 @@
+"""Tests of `robot` that need no ROS and no terminal."""

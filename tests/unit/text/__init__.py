@@ -1,0 +1,1 @@
+"""Tests of `text` that need no ROS and no terminal."""

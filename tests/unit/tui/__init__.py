@@ -1,0 +1,1 @@
+"""Tests of `tui` that need no ROS and no terminal."""
