@@ -37,6 +37,7 @@ os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
 # Whoever runs this by `&` in a script ignores it, and so would all that is started here.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+TESTS = Path(__file__).resolve().parent
 STATE_DIR = "DECK_STATE_DIR"
 _STATE = "deck-test-state-"
 
@@ -61,13 +62,13 @@ os.environ[STATE_DIR] = tempfile.mkdtemp(prefix=f"{_STATE}{os.getpid()}-")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Spread each room's files over the run: some wait for processes while others compute."""
-    rooms: dict[Path, list[Path]] = {}
+    """Spread the files of each kind over the run: some wait for processes while others compute."""
+    kinds: dict[str, list[Path]] = {}
     for path in dict.fromkeys(item.path for item in items):
-        rooms.setdefault(path.parent, []).append(path)
+        kinds.setdefault(path.relative_to(TESTS).parts[0], []).append(path)
     place = {
         path: (number + 0.5) / len(paths)
-        for paths in rooms.values()
+        for paths in kinds.values()
         for number, path in enumerate(paths)
     }
     items.sort(key=lambda item: place[item.path])
