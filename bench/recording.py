@@ -15,13 +15,13 @@ from pathlib import Path
 
 from bench.observer import program
 from bench.processes import cpu_s, pss_mb
-from bench.recording_load import HZ, SECONDS, SIZES
+from bench.recorders.load import HZ, SECONDS, SIZES
 
 DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
 ROUNDS = 3
 SUBJECTS = {
-    "bare raw subscriber, bytes to a file": "bench.recording_bare",
-    "deck record": "bench.recording_deck",
+    "bare raw subscriber, bytes to a file": "bench.recorders.bare",
+    "deck record": "bench.recorders.deck",
 }
 """The first is what the other is compared with."""
 ALL_CAME_WITHIN_S = 10.0
@@ -49,7 +49,7 @@ def measure(module: str, folder: Path) -> Figures:
     """Let one subject have its turn."""
     with (
         program(module, DOMAIN, str(folder)) as subject,
-        program("bench.recording_load", DOMAIN) as load,
+        program("bench.recorders.load", DOMAIN) as load,
     ):
         # The import of rclpy and the discovery are no part of the recording.
         time.sleep(4.0)

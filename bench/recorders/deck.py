@@ -1,6 +1,6 @@
 """Deck's recorder on the load, with no screen.
 
-`python -m bench.recording_deck DOMAIN FOLDER` answers each line on stdin with the number of
+`python -m bench.recorders.deck DOMAIN FOLDER` answers each line on stdin with the number of
 messages in the bag so far.
 """
 

@@ -1,6 +1,6 @@
 """What a person would write first: raw subscriptions whose callback writes the bytes to a file.
 
-`python -m bench.recording_bare DOMAIN FOLDER` answers each line on stdin with the number of
+`python -m bench.recorders.bare DOMAIN FOLDER` answers each line on stdin with the number of
 messages so far.
 """
 
@@ -18,7 +18,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from std_msgs.msg import UInt8MultiArray
 
-from bench.recording_load import SIZES
+from bench.recorders.load import SIZES
 
 
 def main() -> None:

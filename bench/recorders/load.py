@@ -1,6 +1,6 @@
 """10 MB/s for a recorder: one topic of 80 kB and ten of 2 kB, each at 100 Hz.
 
-`python -m bench.recording_load DOMAIN` publishes for ten seconds at each line on stdin, once
+`python -m bench.recorders.load DOMAIN` publishes for ten seconds at each line on stdin, once
 somebody listens to every topic, and answers with the number of messages.
 """
 

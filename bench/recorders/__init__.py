@@ -1,0 +1,1 @@
+"""The two recorders that `bench.recording` compares, and the load that both record."""
