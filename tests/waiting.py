@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import NoReturn, TypeVar
 
 import pytest
@@ -32,16 +33,27 @@ def wait_until(
         time.sleep(every_s)
 
 
+def comes(condition: Callable[[], object], within_s: float, every_s: float = 0.01) -> bool:
+    """Whether the condition holds within that time: what is asked again, or ends a test."""
+    deadline = time.monotonic() + within_s
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(every_s)
+    return True
+
+
 async def until(
-    condition: Callable[[], T],
+    condition: Callable[[], T | Awaitable[T]],
     what: str | Callable[[], str],
     within_s: float = 30.0,
     every_s: float = 0.02,
 ) -> T:
-    """As `wait_until`, while other tasks go on."""
+    """As `wait_until`, while other tasks go on; the condition may be one of them."""
     deadline = time.monotonic() + within_s
     while True:
-        result = condition()
+        answer = condition()
+        result = await answer if inspect.isawaitable(answer) else answer
         if result:
             return result
         if time.monotonic() > deadline:

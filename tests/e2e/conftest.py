@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import sys
-import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +14,7 @@ import pytest
 from tests.e2e import marked
 from tests.e2e.terminal import Terminal
 from tests.half_made import half_made
+from tests.waiting import comes
 
 __all__ = ["half_made"]
 
@@ -57,9 +57,7 @@ def deck(ros_domain: int, tmp_path: Path) -> Iterator[Deck]:
     for terminal in started.terminals:
         terminal.close()
     # A supervisor ends after its screen, and one that was made ready when it has begun.
-    deadline = time.monotonic() + 20
-    while (left := marked.alive(mark)) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    for pid in left:
+    comes(lambda: not marked.alive(mark), within_s=20)
+    for pid in (left := marked.alive(mark)):
         os.kill(pid, signal.SIGKILL)
     assert not left, f"left running: {left}"

@@ -24,6 +24,8 @@ from rich.console import Console
 from rich.style import Style
 from rich.text import Text
 
+from tests.waiting import wait_until
+
 KEYS = {
     "enter": "\r",
     "escape": "\x1b",
@@ -142,12 +144,12 @@ class Terminal:
         self, condition: Callable[[str], bool], what: str, within_s: float = 30.0
     ) -> str:
         """Wait until `condition` holds of the screen's text; return that text."""
-        deadline = time.monotonic() + within_s
-        while not condition(screen := self.text()):
-            if time.monotonic() > deadline:
-                raise AssertionError(f"not within {within_s:g} s: {what}; the screen:\n{screen}")
-            time.sleep(0.02)
-        return screen
+
+        def shown() -> str | None:
+            screen = self.text()
+            return screen if condition(screen) else None
+
+        return wait_until(shown, lambda: f"{what}; the screen:\n{self.text()}", within_s) or ""
 
     def wait_exit(self, within_s: float = 30.0) -> int:
         """Wait until the program has ended; return its exit code."""

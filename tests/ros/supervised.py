@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import json
 import os
 import sys
 import textwrap
-import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -100,13 +98,13 @@ async def running_pid(client: SupervisorClient, name: str) -> int:
 
 async def said(client: SupervisorClient, name: str, start: str) -> str:
     """Return what follows `start` in the first line of a node's log that starts so."""
-    deadline = time.monotonic() + NODE_DEADLINE_S
-    while time.monotonic() < deadline:
-        for line in await client.history(name, 1000):
-            if line.text.startswith(start):
-                return line.text.removeprefix(start).strip()
-        await asyncio.sleep(0.05)
-    pytest.fail(f"{name} has not said {start!r}")
+
+    async def line() -> str | None:
+        lines = [line.text for line in await client.history(name, 1000)]
+        return next((text for text in lines if text.startswith(start)), None)
+
+    found = await until(line, f"{start!r} of {name}", NODE_DEADLINE_S, every_s=0.05)
+    return (found or "").removeprefix(start).strip()
 
 
 def alive(pid: int) -> bool:

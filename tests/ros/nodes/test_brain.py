@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,7 +12,7 @@ from std_msgs.msg import ByteMultiArray, Float32, String
 
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
-from tests.waiting import wait_until
+from tests.waiting import comes, wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -67,10 +66,7 @@ class Brain:
         before = self.process.output.count("Decision: ")
         self.peer.say("/audio/mic_raw", voice(b"stop"))
         wait_until(lambda: self.process.output.count("Decision: ") > before, "a decision")
-        until_s = time.monotonic() + 1.0
-        while not (self.commands and self.spoken) and time.monotonic() < until_s:
-            time.sleep(0.01)
-        return bool(self.commands and self.spoken)
+        return comes(lambda: self.commands and self.spoken, within_s=1.0)
 
     def hear(self, sound: bytes) -> tuple[str, str]:
         """Say something to it; the word for the driver and the reply come back."""

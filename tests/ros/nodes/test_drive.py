@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import signal
-import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -14,7 +13,7 @@ from std_msgs.msg import Bool, String
 
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
-from tests.waiting import wait_until
+from tests.waiting import comes, wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,10 +63,7 @@ def drives(peer: Peer, heard: list[Any], word: str, speed: float, steering: floa
         return any((one.drive.speed, one.drive.steering_angle) == wanted for one in heard)
 
     peer.say("/ai_command", String(data=word))
-    until_s = time.monotonic() + 1.0
-    while not came() and time.monotonic() < until_s:
-        time.sleep(0.01)
-    return came()
+    return comes(came, within_s=1.0)
 
 
 @pytest.mark.parametrize("lang", ["en", "ru"])
@@ -149,7 +145,7 @@ def test_a_command_that_is_no_number_stops_the_wheels(peer: Peer, ros_domain: in
             wait_for_rims(heard, 0.3, 0.3)
             peer.say("/drive", drive(*bad))
             wait_for_rims(heard, 0.0, 0.0)
-        node.wait_for_words("no number")
+        node.wait_for_words("not a number")
 
 
 @pytest.mark.parametrize("qos", [LATCHED, 10], ids=["latched", "volatile"])

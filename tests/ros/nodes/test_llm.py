@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ from std_msgs.msg import String
 
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
-from tests.waiting import wait_until
+from tests.waiting import comes, wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,10 +72,7 @@ class Parser:
             heard = any(abs(one.drive.speed - speed) < 1e-6 for one in self.drives)
             return drove and heard and turned == self._head
 
-        until_s = time.monotonic() + 1.0
-        while not came() and time.monotonic() < until_s:
-            time.sleep(0.01)
-        return came()
+        return comes(came, within_s=1.0)
 
     def _turn(
         self, request: AddTwoInts.Request, response: AddTwoInts.Response

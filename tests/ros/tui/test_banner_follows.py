@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import signal
-import time
 from collections.abc import AsyncIterator, Callable
 from types import SimpleNamespace
 from typing import Any, cast
@@ -15,6 +14,7 @@ from std_msgs.msg import Bool
 from graph.observer.observer import Observer
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
+from tests.waiting import until
 from tui.emergency.control import EmergencyControl
 from tui.emergency.state import FOLLOWED
 from tui.emergency.words import stop_words
@@ -48,14 +48,15 @@ class Screen:
 
     async def until(self, condition: Callable[[], object], what: str) -> None:
         """Take in what comes until the condition holds."""
-        end_s = time.monotonic() + WITHIN_S
-        while not condition():
-            assert time.monotonic() < end_s, f"not in time: {what}; {self.emergency.state}"
+
+        def held() -> object:
             update = self._inbox.take()
             if update is not None:
                 self.feed.update = update
                 self.emergency.see(update)
-            await asyncio.sleep(0.02)
+            return condition()
+
+        await until(held, lambda: f"{what}; {self.emergency.state}", WITHIN_S)
 
     def says(self, engaged: bool) -> bool:
         """Whether the node has said so."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, replace
@@ -25,6 +24,7 @@ from tests.tui.recorded import (
     lesson_update,
 )
 from tests.tui.snapshots import settle
+from tests.waiting import until
 from tui.app import DeckApp
 from tui.deck.command_line import CommandLine
 from tui.deck.screen import LessonDeck
@@ -58,7 +58,7 @@ class Isolated:
 
     async def until(self, true: Callable[[], object]) -> None:
         """Wait for what must come about."""
-        await until(self.pilot, true)
+        await until(true, "what must come about", within_s=60)
 
     async def stops(self) -> bool:
         """Whether the space bar still stops the wheels."""
@@ -66,13 +66,6 @@ class Isolated:
         await self.until(lambda: self.graph.published)
         topic, _type, message = self.graph.published[-1][:3]
         return topic == "/emergency_stop" and message == {"data": True}
-
-
-async def until(pilot: Pilot[Any], true: Callable[[], object]) -> None:
-    deadline = time.monotonic() + 60
-    while not true():
-        assert time.monotonic() < deadline
-        await pilot.pause(0.02)
 
 
 @asynccontextmanager
@@ -257,7 +250,7 @@ async def test_when_nothing_can_be_drawn_the_nodes_are_stopped_the_normal_way() 
             await settle(pilot)
             with broken(Screen, "arrange"):
                 app.screen.refresh(layout=True)
-                await until(pilot, lambda: app.return_code is not None)
+                await until(lambda: app.return_code is not None, "the end of the app")
             assert app.return_code == 1
             assert ("shutdown",) in session.asked
             assert "cannot draw its screen" in app.sessions.parting_words
