@@ -84,7 +84,7 @@ class ChassisNode(LessonNode):
         Number(
             "wheel_radius",
             WHEEL_RADIUS_M,
-            "Of a rear wheel",
+            "Radius of a rear wheel",
             fixed=True,
             low=0.005,
             high=2.0,

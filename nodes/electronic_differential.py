@@ -91,7 +91,9 @@ class ElectronicDifferential(LessonNode):
             "wheelbase", WHEELBASE_M, "Between front and rear axle", low=0.02, high=10.0, unit="m"
         ),
         Number("track", TRACK_M, "Between the rear wheels", low=0.02, high=10.0, unit="m"),
-        Number("wheel_radius", WHEEL_RADIUS_M, "Of a rear wheel", low=0.005, high=2.0, unit="m"),
+        Number(
+            "wheel_radius", WHEEL_RADIUS_M, "Radius of a rear wheel", low=0.005, high=2.0, unit="m"
+        ),
         Number(
             "max_speed",
             SPEED.high,

@@ -37,7 +37,7 @@ class VlmAgentStub(LessonNode):
     SETTINGS = (
         Text("topic", CAMERA, "Where the pictures come from", fixed=True),
         Number("period", 3.0, "Time between two looks", low=0.1, high=3600.0, unit="s"),
-        Whole("quality", 80, "Of the JPEG", low=1, high=100),
+        Whole("quality", 80, "Quality of the JPEG", low=1, high=100),
     )
 
     def __init__(self) -> None:
