@@ -19,6 +19,8 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Float32
 
+from bench.until_stdin_ends import watch_stdin
+
 MANY = tuple(f"/many/float_{number:02}" for number in range(100))
 MANY_HZ = 100.0
 CLOUD, NUMBER = "/large/cloud", "/large/number"
@@ -72,8 +74,7 @@ def main() -> None:
             (node.create_publisher(Float32, NUMBER, 10), numbers),
         ]
         per_s = CLOUD_HZ * len(lines)
-    ended = threading.Event()
-    threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
+    ended = watch_stdin()
     print("ready", flush=True)
     publish(lines, per_s, ended)
     node.destroy_node()

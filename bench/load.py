@@ -21,6 +21,8 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Image
 from std_msgs.msg import Float32
 
+from bench.until_stdin_ends import watch_stdin
+
 FLOATS = tuple(f"/load/float_{number}" for number in range(10))
 IMAGE = "/load/image"
 RATES_HZ = {**dict.fromkeys(FLOATS, 50.0), IMAGE: 30.0}
@@ -58,12 +60,11 @@ def main() -> None:
     node = Node("load", context=context, enable_rosout=False, start_parameter_services=False)
     numbers = [serialize_message(Float32(data=0.01 * n)) for n in range(997)]
     pictures = [serialize_message(image(grey)) for grey in range(0, 250, 25)]
-    publishers = {
+    publishers: dict[str, tuple[Publisher, Iterator[bytes]]] = {
         **{topic: (node.create_publisher(Float32, topic, 10), cycle(numbers)) for topic in FLOATS},
         IMAGE: (node.create_publisher(Image, IMAGE, 10), cycle(pictures)),
     }
-    ended = threading.Event()
-    threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
+    ended = watch_stdin()
     print("ready", flush=True)
     publish(publishers, ended)
     node.destroy_node()

@@ -11,7 +11,6 @@ import os
 import statistics
 import sys
 import tempfile
-import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +20,7 @@ import numpy as np
 from bench.observer import program
 from bench.processes import cpu_s
 from bench.screen import screen_processes
+from bench.until_stdin_ends import watch_stdin
 from tests.e2e.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -55,8 +55,7 @@ def camera(domain: str) -> None:
     context.init(args=[], domain_id=int(domain))
     node = Node("camera", context=context, enable_rosout=False, start_parameter_services=False)
     publisher = node.create_publisher(Image, TOPIC, 10)
-    ended = threading.Event()
-    threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
+    ended = watch_stdin()
     print("ready", flush=True)
     started, number = time.monotonic(), 0
     while not ended.wait(max(0.0, started + number / RATE_HZ - time.monotonic())):

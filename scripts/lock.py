@@ -64,13 +64,13 @@ def requirements() -> dict[str, list[str]]:
 
 def resolved(uv: Path, lines: list[str]) -> str:
     """Return these requirements and all that they need, pinned, with the hashes of their files."""
-    command = [
+    command: list[str | Path] = [
         *(uv, "pip", "compile", "--no-config", "--quiet", "--generate-hashes"),
         *("--no-header", "--no-annotate", "--no-emit-index-url", "--no-emit-find-links"),
         *("--universal", "--python-version", OLDEST, "-"),
     ]
     text = "\n".join(lines)
-    done = subprocess.run(
+    done: subprocess.CompletedProcess[str] = subprocess.run(
         command, cwd=ROOT, input=text, stdout=subprocess.PIPE, text=True, check=True
     )
     return done.stdout
