@@ -6,7 +6,7 @@ import asyncio
 import inspect
 import time
 from collections.abc import Awaitable, Callable
-from typing import NoReturn, TypeVar
+from typing import Any, Literal, NoReturn, TypeVar, overload
 
 import pytest
 
@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 def wait_until(
-    condition: Callable[[], T],
+    condition: Callable[[], T | Literal[False] | None],
     what: str | Callable[[], str],
     within_s: float = 30.0,
     every_s: float = 0.02,
@@ -43,12 +43,30 @@ def comes(condition: Callable[[], object], within_s: float, every_s: float = 0.0
     return True
 
 
+@overload
 async def until(
-    condition: Callable[[], T | Awaitable[T]],
+    condition: Callable[[], Awaitable[T | Literal[False] | None]],
+    what: str | Callable[[], str],
+    within_s: float = ...,
+    every_s: float = ...,
+) -> T: ...
+
+
+@overload
+async def until(
+    condition: Callable[[], T | Literal[False] | None],
+    what: str | Callable[[], str],
+    within_s: float = ...,
+    every_s: float = ...,
+) -> T: ...
+
+
+async def until(
+    condition: Callable[[], Any],
     what: str | Callable[[], str],
     within_s: float = 30.0,
     every_s: float = 0.02,
-) -> T:
+) -> Any:
     """As `wait_until`, while other tasks go on; the condition may be one of them."""
     deadline = time.monotonic() + within_s
     while True:

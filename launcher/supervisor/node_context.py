@@ -36,7 +36,9 @@ class RunningProcess(Protocol):
 class NodeContext(Protocol):
     """What a node's life needs of the session around it."""
 
-    clock: Clock
+    @property
+    def clock(self) -> Clock:
+        """What the waits between two tries are measured by."""
 
     async def launch(self, plan: NodePlan) -> RunningProcess:
         """Start the node's process; raises `SpawnError`."""

@@ -56,9 +56,14 @@ def parts_of(type_name: str) -> list[tuple[str, type[Any]]]:
     return [(f"{type_name}.{name}", getattr(whole, name)) for name in names]
 
 
+def trees_of(cls: type[Any]) -> st.SearchStrategy[dict[str, Any]]:
+    """Return trees with every field of this class, made once."""
+    kind: Any = cls
+    return _trees_of(kind)
+
+
 @lru_cache(maxsize=1024)
-def trees_of(cls: Any) -> st.SearchStrategy[dict[str, Any]]:
-    """Return trees with every field of this class."""
+def _trees_of(cls: Any) -> st.SearchStrategy[dict[str, Any]]:
     return st.fixed_dictionaries({name: _values(parse(kind)) for name, kind in fields_of(cls)})
 
 

@@ -52,7 +52,7 @@ class Peer:
         # An observer of Deck's in this process silences all loggers without a level of their own.
         self.node.get_logger().set_level(LoggingSeverity.INFO)
         self._publishers: dict[str, Publisher] = {}
-        self._subscriptions: list[Subscription[Any]] = []
+        self._subscriptions: list[Subscription] = []
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._closing = False

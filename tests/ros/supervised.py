@@ -77,7 +77,7 @@ async def until_state(
         return status if status.state in states else None
 
     try:
-        status: NodeStatus = await until(there, f"{name} {words}", within_s)
+        status = await until(there, f"{name} {words}", within_s)
     except pytest.fail.Exception:
         node = client.nodes[name]
         needed = [client.nodes[need] for need in node.needs]
@@ -104,7 +104,7 @@ async def said(client: SupervisorClient, name: str, start: str) -> str:
         return next((text for text in lines if text.startswith(start)), None)
 
     found = await until(line, f"{start!r} of {name}", NODE_DEADLINE_S, every_s=0.05)
-    return (found or "").removeprefix(start).strip()
+    return found.removeprefix(start).strip()
 
 
 def alive(pid: int) -> bool:

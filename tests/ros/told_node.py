@@ -137,11 +137,11 @@ class Orders(ActionOrders):
         return int(self.publishers[topic].get_subscription_count())
 
     def listen(self, topic: str, type_name: str, **policies: Any) -> None:
+        def take(message: Any) -> None:
+            tell(heard=topic, value=str(message.data))
+
         self.subscriptions[topic] = self.node.create_subscription(
-            load_message(type_name),
-            topic,
-            lambda message: tell(heard=topic, value=str(message.data)),
-            qos(**policies),
+            load_message(type_name), topic, take, qos(**policies)
         )
 
     def serve(self, topic: str, after_s: float = 0.0) -> None:

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import psutil
@@ -294,6 +295,10 @@ def test_parameters_reach_the_node_with_their_types(warm: bool, tmp_path: Path) 
     }
 
 
+def gone(process: psutil.Process) -> bool:
+    return not alive(process.pid)
+
+
 def test_interrupting_twice_ends_a_run_whose_supervisor_hangs(tmp_path: Path) -> None:
     path = written(tmp_path, "nodes: {a: {exec: [sh, -c, echo up; sleep 100]}}")
     run = DeckProcess("run", str(path))
@@ -343,6 +348,6 @@ def test_interrupting_twice_ends_a_run_whose_supervisor_hangs_at_its_start(tmp_p
         run.signal(signal.SIGINT)
         run.finish()
         for child in children:
-            wait_until(lambda child=child: not alive(child.pid), "the end of the supervisor")
+            wait_until(partial(gone, child), "the end of the supervisor")
     finally:
         run.close()

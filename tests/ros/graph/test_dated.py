@@ -25,7 +25,7 @@ def ns(stamp: Any) -> int:
 
 
 @pytest.mark.parametrize("header", ["auto", {"stamp": "now"}])
-def test_it_is_the_time_of_each_sending(header: object) -> None:
+def test_it_is_the_time_of_each_sending(header: Any) -> None:
     made = draft(PoseStamped, {"header": header, "pose": {"position": {"x": 1.0}}})
     last = time.time_ns()
     for _sending in range(3):
@@ -58,7 +58,7 @@ def test_a_text_may_be_one_of_the_words() -> None:
     ("header", "field"),
     [("now", "header"), ({"stamp": "auto"}, "header.stamp"), ({"stamp": "later"}, "header.stamp")],
 )
-def test_a_word_in_the_wrong_place_is_refused(header: object, field: str) -> None:
+def test_a_word_in_the_wrong_place_is_refused(header: Any, field: str) -> None:
     with pytest.raises(FieldError) as caught:
         draft(PoseStamped, {"header": header})
     assert caught.value.field == field
@@ -66,12 +66,11 @@ def test_a_word_in_the_wrong_place_is_refused(header: object, field: str) -> Non
 
 def test_what_is_published_again_and_again_is_dated_anew(watcher: Watcher, peer: Peer) -> None:
     stamps: list[int] = []
-    peer.node.create_subscription(
-        PoseStamped,
-        "/goal",
-        lambda pose: stamps.append(ns(pose.header.stamp)),
-        50,
-    )
+
+    def take(pose: PoseStamped) -> None:
+        stamps.append(ns(pose.header.stamp))
+
+    peer.node.create_subscription(PoseStamped, "/goal", take, 50)
     before = time.time_ns()
     watcher.observer.start_publishing(
         "/goal", "geometry_msgs/msg/PoseStamped", {"header": "auto"}, 50.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 import rclpy
@@ -33,7 +34,7 @@ def watcher(module_domain: int) -> Iterator[Watcher]:
     watcher.close()
 
 
-def call(watcher: Watcher, service: str, request: dict[str, object], **how: object) -> CallResult:
+def call(watcher: Watcher, service: str, request: dict[str, Any], **how: Any) -> CallResult:
     type_name = str(how.pop("type_name", ADD))
     return watcher.observer.call(service, type_name, request, **how).result(40)
 
@@ -152,7 +153,8 @@ def test_a_server_that_dies_during_the_call_ends_in_a_time_out(
 
 def takes_a_request(service: Service) -> bool:
     with service.handle:
-        request, _ = service.handle.service_take_request(service.srv_type.Request)
+        kind: Any = service.srv_type
+        request, _ = service.handle.service_take_request(kind.Request)
     return request is not None
 
 

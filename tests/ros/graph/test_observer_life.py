@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -187,7 +188,8 @@ def test_one_look_that_fails_is_told_and_the_next_has_another_chance(
 
 
 def test_peers_named_by_their_address_are_found(ros_domain: int) -> None:
-    peer, updates = Peer("talker", ros_domain), []
+    peer = Peer("talker", ros_domain)
+    updates: list[GraphUpdate] = []
     observer = Observer(ros_domain, ("127.0.0.1",))
     observer.start(updates.append)
     wait_until(lambda: any(u.nodes for u in updates), "the graph")
@@ -212,7 +214,7 @@ def test_whoever_wants_something_else_again_and_again_does_not_put_off_the_next_
     for number in range(100):
         topic = f"/wanted_{number}"
         watcher.observer.watch([topic])
-        wait_until(lambda topic=topic: watcher.row(topic), f"{topic}")
+        wait_until(partial(watcher.row, topic), f"{topic}")
     watcher.observer.watch(["/beat"])
     peer.repeat("/beat", value={"data": 1.0}, hz=20)
     wait_until(lambda: len(watcher.of("/beat")) > 2, "messages", within_s=10)

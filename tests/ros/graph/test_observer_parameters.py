@@ -124,13 +124,8 @@ def test_one_without_a_value_hides_no_other(watcher: Watcher) -> None:
 
 
 def test_values_are_set_by_the_types_that_the_node_has(watcher: Watcher, node: Any) -> None:
-    result = set_them(
-        watcher,
-        speed=2,
-        gear="4",
-        any="now a text",
-        **{"arm.joints": "[x, y, z]", "arm.limits": [1, 2], "arm.bytes": [1, 2]},
-    )
+    arm: dict[str, Any] = {"arm.joints": "[x, y, z]", "arm.limits": [1, 2], "arm.bytes": [1, 2]}
+    result = set_them(watcher, speed=2, gear="4", any="now a text", **arm)
     assert (result.error, result.refused) == ("", {})
     values = {name: node.get_parameter(name).value for name in ("speed", "gear", "any")}
     assert values == {"speed": 2.0, "gear": 4, "any": "now a text"}
@@ -141,9 +136,8 @@ def test_values_are_set_by_the_types_that_the_node_has(watcher: Watcher, node: A
 
 
 def test_each_refusal_is_told_and_the_others_are_set(watcher: Watcher, node: Any) -> None:
-    result = set_them(
-        watcher, speed="fast", frame="map", on=False, nothing=1, gear=9, **{"arm.flags": [False]}
-    )
+    arm: dict[str, Any] = {"arm.flags": [False]}
+    result = set_them(watcher, speed="fast", frame="map", on=False, nothing=1, gear=9, **arm)
     assert result.error == ""
     assert result.refused["speed"] == "expected a number, got 'fast'"
     assert result.refused["frame"].startswith("it is read-only")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from typing import Any
 
 import pytest
@@ -72,6 +73,10 @@ def test_decks_own_echo_is_no_listener(watcher: Watcher, peer: Peer, echo_first:
     wait_until(lambda: (found := row(watcher, number)) and found.subscribers == 1, "the peer")
 
 
+def is_silent(peer: Peer, topic: str) -> bool:
+    return not peer.node.count_publishers(topic)
+
+
 def test_all_are_stopped_even_one_that_has_not_begun(watcher: Watcher, peer: Peer) -> None:
     start(watcher, "/one", 50.0)
     waiting = watcher.observer.start_publishing("/other", FLOAT, {"data": 1.0}, 50.0)
@@ -79,7 +84,7 @@ def test_all_are_stopped_even_one_that_has_not_begun(watcher: Watcher, peer: Pee
     waiting.result(30)
     wait_until(lambda: not watcher.update.publications, "no row")
     for topic in ("/one", "/other"):
-        wait_until(lambda topic=topic: not peer.node.count_publishers(topic), "no publisher")
+        wait_until(partial(is_silent, peer, topic), "no publisher")
     number = start(watcher, "/one", 50.0)
     wait_until(lambda: row(watcher, number), "a new one")
 

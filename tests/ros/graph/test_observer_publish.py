@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -135,7 +136,7 @@ def test_what_cannot_be_published_is_refused_in_words(
     watcher: Watcher,
     topic: str,
     type_name: str,
-    value: dict[str, object],
+    value: dict[str, Any],
     error: type[Exception],
     word: str,
 ) -> None:

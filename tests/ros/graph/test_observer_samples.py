@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 
@@ -92,7 +93,7 @@ def test_only_the_newest_is_decoded_of_a_watched_topic_and_all_of_a_followed_one
     watcher.observer.watch(["/burst/watched"])
     watcher.observer.follow(["/burst/followed"])
     for topic in ("/burst/watched", "/burst/followed"):
-        wait_until(lambda topic=topic: peer.listeners(topic), f"{topic} subscribed")
+        wait_until(partial(peer.listeners, topic), f"{topic} subscribed")
         peer.publish(topic, value={"data": "NUMBER"}, times=100)
     wait_until(lambda: watcher.of("/burst/followed")[-1:] == [99], "the last followed")
     wait_until(lambda: watcher.of("/burst/watched")[-1:] == [99], "the last watched")

@@ -26,7 +26,7 @@ def overrides(path: Path, domain: int) -> dict[str, Any]:
         start_parameter_services=False,
     )
     try:
-        found = node.get_parameters_by_prefix("")
+        found: dict[str, Any] = node.get_parameters_by_prefix("")
         return {name: parameter.value for name, parameter in found.items()}
     finally:
         node.destroy_node()

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from launcher.client.client import attach, running
+from launcher.events import ClosedEvent
 from launcher.processes.table import (
     NODE_MARK,
     RUN_MARK,
@@ -161,6 +162,7 @@ async def test_a_signal_to_the_supervisor_is_an_orderly_stop(
     await said(client, "node", "up")
     kill(client.session.supervisor_pid, number)
     events = [event async for event in client.events()]
+    assert isinstance(events[-1], ClosedEvent)
     assert events[-1].reason == f"{signal.Signals(number).name} received"
     assert note.read_text() == "orderly"
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from launcher.client.client import attach
 from launcher.events import LogEvent
@@ -180,15 +181,22 @@ async def test_output_without_line_ends_is_seen_and_bounded(start: Launch) -> No
     assert len(await client.history("node", 1000)) < 30
 
 
+def transport_of(client: SupervisorClient) -> asyncio.ReadTransport:
+    """The connection that a client reads, which can be told to wait."""
+    reader: Any = client._reader
+    transport: asyncio.ReadTransport = reader._transport
+    return transport
+
+
 async def test_a_slow_client_costs_nothing_and_is_right_at_once(start: Launch) -> None:
     client = await start({"flood": {"exec": script(FLOOD)}})
     await running_pid(client, "flood")
-    client._reader._transport.pause_reading()
+    transport_of(client).pause_reading()
     # For as long as the flood lasts.
     log = Path(client.session.log_dir) / "flood.log"
     await until(lambda: log.exists() and b"done" in log.read_bytes()[-4096:], "its end")
     before = proportional_memory([client.session.supervisor_pid]) or 0
-    client._reader._transport.resume_reading()
+    transport_of(client).resume_reading()
     lines, skipped, largest = await listen(client, "flood", "done")
     assert len(lines) + skipped == lines[-1].seq
     assert largest <= 10_000
@@ -203,8 +211,8 @@ async def test_a_node_whose_output_nobody_reads_is_never_blocked(start: Launch) 
         print("all written", file=sys.stderr)
     """
     client = await start({"node": {"exec": script(text)}})
-    client._reader._transport.pause_reading()
+    transport_of(client).pause_reading()
     log = Path(client.session.log_dir) / "node.log"
     await until(lambda: log.exists() and b"all written" in log.read_bytes(), "the end of it")
-    client._reader._transport.resume_reading()
+    transport_of(client).resume_reading()
     await until_state(client, "node", NodeState.EXITED)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -18,7 +19,7 @@ def telemetry(flags: str, refused: int = 0) -> Telemetry:
 
 
 def test_why_the_wheels_stand_is_told_again_while_it_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
+    clock: Any = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
     monkeypatch.setattr(_speech, "time", clock)
     log = Log()
     standing = Standing(Speech(log, "en"))  # type: ignore[arg-type]
@@ -42,7 +43,7 @@ def test_why_the_wheels_stand_is_told_again_while_it_lasts(monkeypatch: pytest.M
 
 
 def test_what_the_pico_refuses_is_told_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
+    clock: Any = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
     monkeypatch.setattr(_speech, "time", clock)
     log = Log()
     standing = Standing(Speech(log, "en"))  # type: ignore[arg-type]

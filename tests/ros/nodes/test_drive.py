@@ -42,10 +42,9 @@ def rims(message: JointState) -> tuple[float, float]:
 def wait_for_rims(heard: list[Any], left: float, right: float) -> JointState:
     heard.clear()
     wait_until(
-        lambda: heard and rims(heard[-1]) == (pytest.approx(left, abs=5e-5),
-                                              pytest.approx(right, abs=5e-5)),
+        lambda: heard and rims(heard[-1]) == pytest.approx((left, right), abs=5e-5),
         f"wheels at {left} and {right} m/s",
-    )  # fmt: skip
+    )
     return heard[-1]
 
 

@@ -58,9 +58,10 @@ class Asker:
         self.feedback.clear()
 
         def send() -> Future:
-            return self._client.send_goal_async(
+            sent: Future = self._client.send_goal_async(
                 goal, feedback_callback=lambda told: self.feedback.append(told.feedback.distance)
             )
+            return sent
 
         self.handle = self._peer.insist(
             lambda: self._peer.on_its_thread(send, "a goal on its way"), "an answer to the goal"
@@ -69,7 +70,13 @@ class Asker:
 
     def result(self) -> Future:
         """Ask for the result, which comes when the goal has ended."""
-        return self._peer.on_its_thread(self.handle.get_result_async, "a question for the result")
+        handle = self.handle
+
+        def ask() -> Future:
+            asked: Future = handle.get_result_async()
+            return asked
+
+        return self._peer.on_its_thread(ask, "a question for the result")
 
     def end(self) -> tuple[int, DriveToPoint.Result]:
         """Wait for the end; the status and the result."""

@@ -147,7 +147,13 @@ def wait_at(bench: ServoBench, pulses_us: dict[int, int]) -> None:
 def test_servos_go_where_the_head_is_asked_to_look_and_no_faster(
     peer: Peer, ros_domain: int, bench: ServoBench
 ) -> None:
-    params = {"speed": 180, "pan_trim": 9, "tilt_reversed": True, "tilt_servo": 7, "tilt_min": -20}
+    params: dict[str, Any] = {
+        "speed": 180,
+        "pan_trim": 9,
+        "tilt_reversed": True,
+        "tilt_servo": 7,
+        "tilt_min": -20,
+    }
     with Head(peer, ros_domain, bench.path, **params) as head:
         head.wait_says(f"The head at {bench.path}", "what was commanded", "answers")
         head.wait_unknown()

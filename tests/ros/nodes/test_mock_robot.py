@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import signal
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import pytest
 import serial
@@ -13,10 +14,10 @@ from sensor_msgs.msg import JointState
 
 from nodes.mock_robot import DEVICES
 from nodes.simulated.device_fault import FAULTS
-from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder
+from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder, ServoFrame
 from robot.wire.lsc16 import encode as encode_servo
 from robot.wire.pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode
-from robot.wire.tfluna import Model, TofDecoder
+from robot.wire.tfluna import Model, TofDecoder, TofFrame
 from tests.ros.devices import mock_robot, set_parameter
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tests.ros.node_process import NodeProcess
+
+Frame = TypeVar("Frame")
 
 NAMES = ("pico", "tof_front", "tof_rear", "lsc16")
 
@@ -51,6 +54,22 @@ def peer(module_domain: int) -> Iterator[Peer]:
 
 def open_port(folder: Path, name: str, baud: int = 115200) -> serial.Serial:
     return serial.Serial(str(folder / name), baud, timeout=0.05, exclusive=True)
+
+
+class Decoder(Protocol[Frame]):
+    """What makes frames of octets."""
+
+    def feed(self, data: bytes) -> list[Frame]:
+        """Take in what has come; the frames that are whole now."""
+        ...
+
+
+def has_come(
+    count: int, frames: list[Frame], port: serial.Serial, decoder: Decoder[Frame], octets: int = 90
+) -> bool:
+    """Read on into `frames`; whether there are so many."""
+    frames.extend(decoder.feed(port.read(octets)))
+    return len(frames) >= count
 
 
 @pytest.mark.usefixtures("robot")
@@ -97,12 +116,10 @@ def test_the_pico_answers_drives_and_stops_by_itself(folder: Path, peer: Peer) -
 @pytest.mark.usefixtures("robot")
 def test_the_sonars_see_the_room(folder: Path) -> None:
     for name, nearest in (("tof_front", 1.0), ("tof_rear", 0.5)):
-        decoder, frames = TofDecoder(), []
+        decoder = TofDecoder()
+        frames: list[TofFrame] = []
         with open_port(folder, name) as port:
-            wait_until(
-                lambda: frames.extend(decoder.feed(port.read(90))) or len(frames) > 20,  # noqa: B023
-                "frames",
-            )
+            wait_until(partial(has_come, 21, frames, port, decoder), "frames")
         assert nearest < frames[-1].distance_m(Model.LUNA) < 2.5
 
 
@@ -123,10 +140,11 @@ def test_a_late_comer_gets_the_room_as_a_map(peer: Peer) -> None:
 
 @pytest.mark.usefixtures("robot")
 def test_the_servo_controller_tells_its_battery(folder: Path) -> None:
-    decoder, frames = ServoDecoder(), []
+    decoder = ServoDecoder()
+    frames: list[ServoFrame] = []
     with open_port(folder, "lsc16", 9600) as port:
         port.write(encode_servo(BatteryRequest()))
-        wait_until(lambda: frames.extend(decoder.feed(port.read(16))) or frames, "an answer")
+        wait_until(lambda: has_come(1, frames, port, decoder, 16), "an answer")
     assert frames == [Battery(7400)]
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import pytest
 import serial
 
-from nodes.drivers import serial_link as _serial_link
 from nodes.drivers.serial_link import SerialLink
 from nodes.parts.speech import Speech
 from tests.waiting import wait_until
@@ -53,7 +52,7 @@ def test_why_a_port_does_not_open_is_told_with_the_mend(
     def refuse(*_: object, **__: object) -> NoReturn:
         raise serial.SerialException(number, "odd")
 
-    monkeypatch.setattr(_serial_link.serial, "Serial", refuse)
+    monkeypatch.setattr("nodes.drivers.serial_link.serial.Serial", refuse)
     link[0].start()
     wait_until(lambda: link[1].lines, "a line")
     assert mend in link[1].lines[0]
@@ -82,7 +81,7 @@ def test_every_way_in_which_pyserial_fails_leads_to_a_new_try(
             closed.append(True)
             raise error
 
-    monkeypatch.setattr(_serial_link.serial, "Serial", Broken)
+    monkeypatch.setattr("nodes.drivers.serial_link.serial.Serial", Broken)
     link[0].start()
     wait_until(lambda: link[0].traffic.connections >= 3, "three tries")
     assert len(closed) >= 2

@@ -7,6 +7,7 @@ import os
 import signal
 import time
 from collections.abc import Iterator
+from concurrent.futures import Future
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -69,7 +70,9 @@ def begin_everything(watcher: Watcher, hung: Process) -> list[Any]:
     wait_until(lambda: len(watcher.update.actions) == 2, "both actions")
     wait_until(lambda: watcher.serves("/slow"), "the service")
     os.kill(hung.process.pid, signal.SIGSTOP)
-    waiting = [observer.call("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0) for n in range(30)]
+    waiting: list[Future[Any]] = [
+        observer.call("/slow", ADD, {"a": n, "b": 1}, timeout_s=60.0) for n in range(30)
+    ]
     waiting.append(observer.parameters("/hung", timeout_s=60.0))
     waiting.append(observer.set_parameters("/hung", {"use_sim_time": True}, timeout_s=60.0))
     for n in range(3):
@@ -87,9 +90,11 @@ async def test_it_is_heard_at_once_while_everything_else_hangs(
     stop = EmergencyControl(cast("Any", app), cast("Any", app.feed), lambda: None)
     with Peer(ros_domain) as robot:
         heard: list[tuple[bool, float]] = []
-        robot.node.create_subscription(
-            Bool, EMERGENCY_STOP, lambda m: heard.append((m.data, time.monotonic())), LATCHED
-        )
+
+        def take(message: Bool) -> None:
+            heard.append((message.data, time.monotonic()))
+
+        robot.node.create_subscription(Bool, EMERGENCY_STOP, take, LATCHED)
         watcher.wait_for(EMERGENCY_STOP, lambda row: row.subscribers == 1, "the robot listens")
         stop.prepare()
         running, *waiting = begin_everything(watcher, hung)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 from typing import TYPE_CHECKING
 
 from tests.ros.observing import Peer
@@ -35,7 +36,7 @@ async def test_it_is_told_by_the_process_and_not_by_the_name(
     client = await start({"ours": {"run": "nodes.hello"}, "key": {"exec": OTHER_NAME}})
     await running_pid(client, "ours")
     for name in ("/ours", "/called_otherwise"):
-        await until(lambda name=name: processes(watcher, name), f"{name} and its process")
+        await until(partial(processes, watcher, name), f"{name} and its process")
     assert outside(watcher, client) == ()
     by_hand = [Peer("by_hand", ros_domain), Peer("ours", ros_domain)]
     try:
