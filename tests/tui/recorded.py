@@ -29,7 +29,7 @@ from tests.tui.recorded_lesson import (
     sample,
     topic,
 )
-from tui.session.ports import GraphLink, SessionLink
+from tui.session.ports import SessionLink
 from tui.session.requests import Lesson, OpenRequest
 
 __all__ = [
@@ -124,8 +124,8 @@ class RecordedSession:
 class RecordedPad:
     """Opens the recorded session, whatever is ordered."""
 
-    link: SessionLink = field(default_factory=RecordedSession)
-    graph: GraphLink = field(default_factory=RecordedGraph)
+    link: RecordedSession = field(default_factory=RecordedSession)
+    graph: RecordedGraph = field(default_factory=RecordedGraph)
     sessions: list[SessionInfo] = field(default_factory=list)
     """What runs in the background already."""
     known: list[Lesson] = field(default_factory=lambda: LESSONS)
@@ -152,6 +152,6 @@ class RecordedPad:
             raise self.refusal
         return self.link
 
-    def observe(self, session: SessionInfo) -> GraphLink:
+    def observe(self, session: SessionInfo) -> RecordedGraph:
         del session
         return self.graph

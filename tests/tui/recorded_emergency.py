@@ -28,7 +28,9 @@ def held(level: bytes, words: str) -> GraphUpdate:
 def gate_says(verdict: str, at_s: float) -> GraphUpdate:
     """The graph with one verdict of the gate, as the safety node words it."""
     values = [{"key": "verdict", "value": verdict}]
-    status = [{"level": b"\x02", "name": "safety_stop", "message": "held", "values": values}]
+    status: list[dict[str, Any]] = [
+        {"level": b"\x02", "name": "safety_stop", "message": "held", "values": values}
+    ]
     kind = "diagnostic_msgs/msg/DiagnosticArray"
     one = Sample(SAFETY_STATE, kind, at_s, 0.0, 120, {"status": status})
     return lesson_update(samples={SAFETY_STATE: (one,)})

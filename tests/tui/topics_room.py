@@ -41,6 +41,14 @@ class Room:
         assert isinstance(screen, TopicsScreen)
         return screen
 
+    def measures(self) -> bool:
+        """Whether the rates of all topics are asked for now."""
+        return self.graph.measured
+
+    def as_picture(self) -> bool:
+        """Whether the message is shown as a picture now."""
+        return self.screen.detail.as_picture
+
     async def choose(self, topic: str) -> None:
         """Choose a topic and wait until it is asked for."""
         self.screen.table.choose(topic)

@@ -6,6 +6,7 @@ import string
 from typing import Any
 
 import pytest
+from textual.binding import Binding
 from textual.pilot import Pilot
 
 from launcher.status import NodeState
@@ -88,6 +89,7 @@ def test_a_binding_carries_all_that_the_action_says() -> None:
         (binding,) = bindings(Dance)
     finally:
         del REGISTRY["test.dance"]
+    assert isinstance(binding, Binding)
     assert (binding.key, binding.id, binding.show) == ("d,D", "test.dance", True)
     assert binding.action == "act('test.dance')"
 

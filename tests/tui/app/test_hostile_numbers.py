@@ -21,6 +21,7 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSession
 from text.figures import elapsed, figure, short, whole
 from tui.clock import time_of_day
+from tui.frame.screen import DeckScreen
 from tui.outcome.view import delay_text
 from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import HeadPanel
@@ -228,6 +229,7 @@ async def shown(screen: str, said: list[Said]) -> None:
             await pilot.pause()
             if number == 2:
                 await pilot.resize_terminal(80, 24)
+        assert isinstance(app.screen, DeckScreen)
         assert app.screen.tab == screen
         assert any(strip.text.strip() for strip in app.screen._compositor.render_strips())
         graph.published.clear()

@@ -354,9 +354,7 @@ async def test_what_somebody_forgot_is_found_by_the_last_look(
 async def test_lines_that_come_over_rosout(kind: type[DeckApp]) -> None:
     pad = hostile_pad()
     async with on_stage(kind, "logs", pad) as stage:
-        pad.link.say(  # type: ignore[attr-defined]
-            StatusEvent((replace(NODES["camera"], detail=EVIL, state=NodeState.FAILED),))
-        )
+        pad.link.say(StatusEvent((replace(NODES["camera"], detail=EVIL, state=NodeState.FAILED),)))
         stage.app.feed.note([line("deck", 1, EVIL)])
         await stage.pilot.pause(0.1)
 

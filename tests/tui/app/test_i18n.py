@@ -90,7 +90,9 @@ def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
         if not entry.id:
             continue
         if entry.pluralizable:
-            said = tuple(compiled.ngettext(*entry.id, number) for number in (1, 2, 5))
+            said = tuple(
+                compiled.ngettext(entry.id[0], entry.id[1], number) for number in (1, 2, 5)
+            )
             assert said == tuple(entry.string)
         else:
             assert compiled.gettext(entry.id) == entry.string

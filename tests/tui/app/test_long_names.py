@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
+from textual.pilot import Pilot
 
 from graph.data import NodeRow
 from launcher.status import NodeState, NodeStatus
@@ -96,8 +98,9 @@ async def test_it_is_told_as_soon_as_the_window_is_too_narrow_for_it() -> None:
 def test_a_name_and_a_reason_that_are_cut(look: Look, snap_compare: SnapCompare) -> None:
     """The table, below it the chosen node's whole name and state, and the log as ever."""
 
-    async def choose(pilot: object) -> None:
+    async def choose(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)
+        assert isinstance(app.screen, LessonDeck)
         app.screen.table.choose(LONG)
         await look.settle(pilot)
 

@@ -44,13 +44,13 @@ from tui.panels.wheels.widget import WheelsPanel
 from tui.picker.screen import PickerScreen
 from tui.session.history import LogHistory
 from tui.session.inbox import GraphInbox
+from tui.session.ports import SessionLink
 from tui.session.requests import OpenRequest
 from tui.topics.screen import TopicsScreen
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot
 
-    from tui.session.ports import SessionLink
 
 ATTACHED = replace(SESSION, foreground=False, started_by=Who(4000, "ann", "pts/2", "10.0.0.7"))
 STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")
@@ -141,10 +141,12 @@ async def test_a_lesson_is_started_before_its_screen_is_drawn() -> None:
 
 def test_a_flood_of_updates_is_bounded_while_the_app_is_busy() -> None:
     inbox = GraphInbox(lambda: None)
-    threads = [
-        threading.Thread(target=lambda: [inbox.put(update_of(n)) for n in range(500)])
-        for _thread in range(4)
-    ]
+
+    def flood() -> None:
+        for n in range(500):
+            inbox.put(update_of(n))
+
+    threads = [threading.Thread(target=flood) for _thread in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -180,6 +182,7 @@ async def test_a_screen_in_the_background_misses_no_line() -> None:
         await pilot.pause()
         await pilot.press("4")
         await pilot.pause()
+        assert isinstance(app.screen, LogsScreen)
         assert app.screen.pane.view.ring.entries[-1].text == "while away"
 
 
@@ -348,7 +351,9 @@ async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_
         assert ["○ exited" in row and "the supervisor is gone" in row for row in rows] == well
         assert "ended by SIGSEGV" in rows[1]
         assert [drawing.stale_words for drawing in drawings] == ["nobody publishes this topic"] * 2
-        assert not any(action.possible(app.screen) for action in (StartAll, WriteCommand))
+        assert isinstance(app.screen, LessonDeck)
+        assert not StartAll.possible(app.screen)
+        assert not WriteCommand.possible(app.screen)
         await pilot.press("f9", "f9")
         await settle(pilot)
         assert [table.render_line(y).text for y in range(1, 9)] == rows
@@ -390,7 +395,8 @@ async def test_what_is_left_behind_may_be_let_be_and_is_asked_about_once() -> No
         pad.link.say(StraysEvent((STRAY,)))
         await pilot.pause()
         await pilot.pause()
-        assert isinstance(app.screen, StraysScreen)
+        asking = app.screen
+        assert isinstance(asking, StraysScreen)
         await pilot.press("escape")
         pad.link.say(StraysEvent((STRAY,)))
         await pilot.pause()

@@ -26,6 +26,7 @@ from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.frame import title
 from tui.frame.title_bar import TitleBar
+from tui.session.ports import SessionLink
 from tui.session.requests import OpenRequest, WatchRequest
 from tui.session.watching import WATCH, watched
 
@@ -56,8 +57,16 @@ def robot() -> GraphUpdate:
     return lesson_update(samples={**lesson_samples(), "/rosout": lines})
 
 
+class WatchingPad(RecordedPad):
+    """Opens a robot that is only looked at."""
+
+    async def open(self, order: OpenRequest) -> SessionLink:
+        await super().open(order)
+        return watched(42)
+
+
 def pad(update: GraphUpdate) -> RecordedPad:
-    return RecordedPad(watched(42), RecordedGraph(update))
+    return WatchingPad(graph=RecordedGraph(update))
 
 
 def app_of(look: Look, watching: RecordedPad) -> DeckApp:
@@ -71,7 +80,6 @@ async def watching(update: GraphUpdate) -> AsyncIterator[tuple[Pilot[Any], Recor
     app = app_of(Look((120, 40), "en"), found)
     async with app.run_test(size=(120, 40)) as pilot:
         await settle(pilot)
-        assert isinstance(found.graph, RecordedGraph)
         yield pilot, found.graph
 
 

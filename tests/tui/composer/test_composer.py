@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from textual.widgets import OptionList
+from textual.widgets import OptionList, Static
 
 from graph.data import EndpointInfo, Sample, TopicRow
 from tests.tui.composer.test_outcome import drive, result
@@ -92,7 +92,9 @@ async def room(graph: RecordedGraph) -> Any:
 async def test_it_opens_with_a_valid_example_and_says_who_listens(room: Room) -> None:
     assert room.screen.editor.text == TEMPLATES[0].text()
     assert room.screen.problems == ()
-    assert str(room.screen.query_one("#composer-to").content) == "/llm_raw_json → llm_parser"
+    assert (
+        str(room.screen.query_one("#composer-to", Static).content) == "/llm_raw_json → llm_parser"
+    )
     assert room.graph.prepared[-1][:2] == ("/llm_raw_json", "std_msgs/msg/String")
 
 
@@ -231,7 +233,8 @@ async def test_space_types_a_space_and_ctrl_x_stops_the_robot(room: Room) -> Non
     room.screen.editor.focus()
     await room.pilot.press("a", "space", "1", "q")
     assert room.screen.editor.text == "a 1q"
-    assert not room.app.emergency.state.engaged
+    before = room.app.emergency.state
+    assert not before.engaged
     await room.pilot.press("ctrl+x")
     await room.pilot.pause()
     assert room.app.emergency.state.engaged

@@ -86,6 +86,7 @@ async def test_the_line_of_the_cursor_keeps_its_colours() -> None:
         assert elsewhere <= colours(1)
         (end,) = list(app.editor.render_line(1))[-1:]
         cursor_line = app.editor.get_component_styles("text-area--cursor-line").background
+        assert end.style is not None
         assert end.style.bgcolor == (app.editor.background_colors[1] + cursor_line).rich_color
 
 

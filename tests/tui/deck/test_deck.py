@@ -37,7 +37,7 @@ from tui.panels.head.panel import HeadFeed
 from tui.panels.llm import LlmFeed
 from tui.panels.shelf import Shelf, heights, in_rows, paged
 from tui.panels.sonar.panel import SonarFeed
-from tui.panels.sonar.widget import SonarPanel
+from tui.panels.sonar.widget import Sonar, SonarPanel
 from tui.panels.voice.panel import VoiceFeed
 from tui.panels.wheels.panel import WheelsFeed
 from tui.panels.wheels.widget import WheelsPanel
@@ -198,7 +198,7 @@ async def test_panels_show_what_their_topics_say() -> None:
     async with opened(pad) as (app, pilot):
         await pilot.pause()
         gauge = app.screen.query_one(SonarFeed).query_one(SonarPanel)
-        assert gauge.query_one("#front").has_value
+        assert gauge.query_one("#front", Sonar).has_value
         assert app.screen.query_one(CameraFeed).query_one(ImageView).has_picture
         wheels = app.screen.query_one(WheelsFeed).query_one(WheelsPanel)
         assert "left wheel slower" in "\n".join(
@@ -212,7 +212,7 @@ async def test_without_a_differential_the_wheels_show_what_drive_would_do() -> N
     async with opened(pad) as (app, pilot):
         await pilot.pause()
         wheels = app.screen.query_one(WheelsFeed)
-        assert "← /drive" in wheels.border_title
+        assert "← /drive" in str(wheels.border_title)
         drawn = wheels.query_one(WheelsPanel)
         text = "\n".join(drawn.render_line(y).text for y in range(drawn.size.height))
         assert "0.25 m/s" in text
@@ -248,7 +248,8 @@ async def test_only_what_is_shown_is_asked_for() -> None:
     async with opened(pad) as (_app, pilot):
         assert "/camera/color/image_raw" in pad.graph.watched
         assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= pad.graph.followed
-        assert not pad.graph.measured
+        before = pad.graph.measured
+        assert not before
         await pilot.press("2")
         await pilot.pause()
         assert pad.graph.measured

@@ -212,7 +212,7 @@ async def test_why_there_is_no_driver(monkeypatch: pytest.MonkeyPatch) -> None:
         await at.until(lambda: "Drivers run in: robot." in at.empty())
         assert "No driver says anything on /diagnostics." in at.empty()
     starting = pad()
-    starting.graph.update = update(publishers=())  # type: ignore[attr-defined]
+    starting.graph.update = update(publishers=())
     async with stage(starting) as at:
         assert "chassis, sonar_front have not said anything" in at.empty()
 

@@ -83,7 +83,7 @@ def test_who_looks_later_sees_what_is_held_and_for_how_long() -> None:
         ({"by": "topic", "publishers": "/a\x1b[2J"}, "(by a␛[2J)"),
     ],
 )
-def test_it_is_said_who_has_given_it(more: dict[str, str], words: str) -> None:
+def test_it_is_said_who_has_given_it(more: dict[str, Any], words: str) -> None:
     free = word(CHASSIS, False, NOW_S, since_s=0.0)
     state = after(
         obeyed(free, at_s=NOW_S), obeyed(word(CHASSIS, True, NOW_S + 1, **more), at_s=NOW_S + 1)

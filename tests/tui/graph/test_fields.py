@@ -52,7 +52,7 @@ async def test_a_cursor_that_waits_sends_nothing_over_the_line() -> None:
         assert not field.cursor_blink
 
 
-@given(st.text(st.characters(exclude_categories=("Cs",)), max_size=80))
+@given(st.text(st.characters(exclude_categories=["Cs"]), max_size=80))
 def test_a_text_typed_as_it_is_shown_is_that_text(text: str) -> None:
     assert is_plain(typed(text))
     assert meant(typed(text)) == text

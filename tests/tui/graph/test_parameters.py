@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from textual.widgets import Input
@@ -66,11 +67,17 @@ async def test_another_value_is_set_and_read_back(room: Room) -> None:
     await room.wait(lambda: room.graph.asked_parameters == [NODE, NODE])
 
 
+def shown(room: Room) -> GraphUpdate:
+    """The graph as it is now."""
+    assert room.graph.update is not None
+    return room.graph.update
+
+
 def changed(room: Room, node: str) -> GraphUpdate:
     """The graph in which a node tells that `rate` was set from outside."""
-    value = {"node": node, "changed_parameters": [{"name": "rate"}]}
+    value: dict[str, Any] = {"node": node, "changed_parameters": [{"name": "rate"}]}
     event = Sample(PARAMETER_EVENTS, "rcl_interfaces/msg/ParameterEvent", 0.0, 0.0, 99, value)
-    return replace(room.graph.update, samples={PARAMETER_EVENTS: (event,)})
+    return replace(shown(room), samples={PARAMETER_EVENTS: (event,)})
 
 
 async def test_a_change_from_outside_is_read_at_once(room: Room) -> None:
@@ -89,10 +96,10 @@ async def test_a_change_from_outside_is_read_at_once(room: Room) -> None:
 
 def started(room: Room, *processes: int) -> GraphUpdate:
     """The graph in which the node lives in these processes, in none if there are none."""
-    others = [row for row in room.graph.update.nodes if row.name != NODE]
+    others = [row for row in shown(room).nodes if row.name != NODE]
     (node,) = (row for row in graph_update().nodes if row.name == NODE)
     nodes = (*others, replace(node, processes=processes)) if processes else tuple(others)
-    return replace(room.graph.update, nodes=nodes)
+    return replace(shown(room), nodes=nodes)
 
 
 async def test_a_node_that_was_started_again_is_read_anew(room: Room) -> None:

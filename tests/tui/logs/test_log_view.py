@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from rich.cells import cell_len
@@ -383,7 +383,12 @@ async def test_a_flood_measures_and_draws_next_to_nothing() -> None:
         layouts = []
         app = pilot.app
         refresh_layout = app.screen._refresh_layout
-        app.screen._refresh_layout = lambda *args: (layouts.append(1), refresh_layout(*args))[1]  # type: ignore[method-assign, assignment]
+
+        def note(*args: Any) -> None:
+            layouts.append(1)
+            refresh_layout(*args)
+
+        app.screen._refresh_layout = note  # type: ignore[method-assign, assignment]
         for batch in range(20):
             await shown(pilot, lines(101 + batch * 500, 500))
         assert not layouts
@@ -395,7 +400,12 @@ async def test_batches_that_come_close_together_are_drawn_once() -> None:
         view = await shown(pilot, lines(1, 10))
         drawn = []
         redraw = view._tail.redraw
-        view._tail.redraw = lambda **how: (drawn.append(1), redraw(**how))[1]  # type: ignore[method-assign]
+
+        def note(**how: Any) -> None:
+            drawn.append(1)
+            redraw(**how)
+
+        view._tail.redraw = note  # type: ignore[method-assign]
         for batch in range(20):
             view.append(lines(11 + batch * 10, 10))
         for _wait in range(200):

@@ -98,7 +98,7 @@ async def test_the_key_that_pauses_is_called_by_what_it_does_now() -> None:
 async def test_mute_and_only_this_work_on_the_row_of_the_list(keys: str) -> None:
     async with HOME.app("logs").run_test(size=HOME.size) as pilot:
         await settle(pilot)
-        screen, (go, mute, only) = screen_of(pilot), keys
+        screen, (go, mute, only) = screen_of(pilot), tuple(keys)
         everybody = nodes_shown(screen)
         await pilot.press(go, mute)
         assert nodes_shown(screen) == everybody - {"sonar_front"}
@@ -161,12 +161,16 @@ async def test_in_the_search_field_letters_and_space_are_text() -> None:
 async def test_on_a_narrow_screen_the_list_comes_and_goes() -> None:
     async with HOME.app("logs").run_test(size=(80, 24)) as pilot:
         await settle(pilot)
-        screen = screen_of(pilot)
-        assert not screen.node_list.display
+        nodes = screen_of(pilot).node_list
+
+        def listed() -> bool:
+            return nodes.display
+
+        assert not listed()
         await pilot.press("e")
-        assert screen.node_list.display
+        assert listed()
         await pilot.press("e")
-        assert not screen.node_list.display
+        assert not listed()
 
 
 async def test_it_fits_any_terminal() -> None:

@@ -12,6 +12,7 @@ from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
 from tui.panels.head.reading import HeadReading, head_in
 from tui.panels.head.widget import CAPTION_FROM, DRAWN_FROM, HeadPanel
+from tui.widgets.drawing import Line
 
 
 def test_radians_become_degrees_left_and_up() -> None:
@@ -61,7 +62,13 @@ async def test_an_age_that_nobody_is_told_of_is_no_reason_to_draw() -> None:
         panel.show(HeadReading(10, 0))
         panel.show_trouble(None, "", 0.2)
         drawn: list[int] = []
-        panel.draw = lambda width, _height: drawn.append(width) or []  # type: ignore[method-assign]
+
+        def note(width: int, height: int) -> list[Line]:
+            del height
+            drawn.append(width)
+            return []
+
+        panel.draw = note  # type: ignore[method-assign]
         panel.show_trouble(None, "", 0.4)
         assert not drawn
         panel.show_trouble(Trouble.QUIET, "", 5.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -119,7 +119,7 @@ def test_values_give_way_once_nothing_but_other_joints_comes() -> None:
 
 
 @pytest.mark.parametrize("names", [None, 7, "text", ["\x1b[31mred", "[b]bold[/b]"]])
-def test_hostile_names_do_no_harm(names: object) -> None:
+def test_hostile_names_do_no_harm(names: Any) -> None:
     bad = replace(OTHER, value={"name": names})
     told = heard((bad, 5.0)).instead
     assert told is not None

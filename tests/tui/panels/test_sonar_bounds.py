@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -75,7 +75,7 @@ async def test_the_gauge_stops_where_the_safety_node_does() -> None:
         ({"critical_m": "near"}, COURSE),
     ],
 )
-def test_bounds_are_those_that_the_node_tells(values: dict[str, str], bounds: Bounds) -> None:
+def test_bounds_are_those_that_the_node_tells(values: dict[str, Any], bounds: Bounds) -> None:
     assert bounds_of(told(**values), COURSE) == bounds
 
 

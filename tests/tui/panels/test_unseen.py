@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from robot.motion.odometry import Pose
-from tests.tui.app_runs import opened, settle
+from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
 from tests.tui.recorded_lesson import NOW_S
 from tests.tui.recorded_map import MAP_SESSION, map_update, odometry, reading
+from tests.tui.snapshots import settle
 from tui.panels.camera import CameraFeed
 from tui.panels.map.widget import RoomMap
 from tui.panels.panel import Panel

@@ -6,8 +6,10 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+from textual.screen import Screen
 from textual.widgets import Static
 
 from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
@@ -43,7 +45,7 @@ def _utc(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     time.tzset()
 
 
-def about(screen: PickerScreen) -> str:
+def about(screen: Screen[Any]) -> str:
     """Return what is said of the chosen row."""
     return str(screen.query_one("#about-text", Static).render())
 

@@ -33,7 +33,7 @@ class Terminal:
     def shows_after(self, sent: str) -> list[list[tuple[str, ...]]]:
         """Return every cell with its look."""
         self.stream.feed(sent)
-        rows = []
+        rows: list[list[tuple[str, ...]]] = []
         for y in range(HEIGHT):
             cells = (self.screen.buffer[y][x] for x in range(WIDTH))
             rows.append([(c.data, c.fg, c.bg, str(c.bold), str(c.reverse)) for c in cells])

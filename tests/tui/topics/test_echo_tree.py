@@ -46,7 +46,7 @@ class EchoApp(App[None]):
         yield EchoTree()
 
     @property
-    def tree(self) -> EchoTree:
+    def echo(self) -> EchoTree:
         """The tree."""
         return self.query_one(EchoTree)
 
@@ -137,24 +137,24 @@ def test_a_message_without_fields_says_so() -> None:
 async def test_a_fold_outlives_the_next_message_and_a_visit_to_another_topic() -> None:
     app = EchoApp()
     async with app.run_test(size=(60, 12)) as pilot:
-        app.tree.show("/joint_states", JOINTS)
-        app.tree.focus()
+        app.echo.show("/joint_states", JOINTS)
+        app.echo.focus()
         assert "header: (2 fields)" in app.screen_text()
         await pilot.press("right")
         assert "stamp" in app.screen_text()
-        app.tree.show("/joint_states", dict(JOINTS))
+        app.echo.show("/joint_states", dict(JOINTS))
         assert "stamp" in app.screen_text()
-        app.tree.show("/scan", SCAN)
+        app.echo.show("/scan", SCAN)
         assert "angle_min" in app.screen_text()
-        app.tree.show("/joint_states", JOINTS)
+        app.echo.show("/joint_states", JOINTS)
         assert "stamp" in app.screen_text()
 
 
 async def test_keys_walk_the_tree_and_open_what_is_folded() -> None:
     app = EchoApp()
     async with app.run_test(size=(60, 12)) as pilot:
-        app.tree.show("/scan", SCAN)
-        app.tree.focus()
+        app.echo.show("/scan", SCAN)
+        app.echo.focus()
         await pilot.press("down", "right")
         assert "[0]:" in app.screen_text()
         await pilot.press("down", "down", "left")
@@ -169,7 +169,7 @@ async def test_keys_walk_the_tree_and_open_what_is_folded() -> None:
 async def test_a_click_folds_and_unfolds() -> None:
     app = EchoApp()
     async with app.run_test(size=(60, 12)) as pilot:
-        app.tree.show("/joint_states", JOINTS)
+        app.echo.show("/joint_states", JOINTS)
         await pilot.pause()
         await pilot.click(EchoTree, offset=(2, 0))
         assert "nanosec" in app.screen_text()
@@ -180,47 +180,47 @@ async def test_a_click_folds_and_unfolds() -> None:
 async def test_only_the_value_that_changed_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     app = EchoApp()
     async with app.run_test(size=(40, 12)) as pilot:
-        app.tree.show("/joint_states", JOINTS)
+        app.echo.show("/joint_states", JOINTS)
         await pilot.pause()
         asked: list[tuple[Region, ...]] = []
 
         def refresh(*regions: Region, **_options: bool) -> EchoTree:
             asked.append(regions)
-            return app.tree
+            return app.echo
 
-        monkeypatch.setattr(app.tree, "refresh", refresh)
-        app.tree.show("/joint_states", dict(JOINTS))
+        monkeypatch.setattr(app.echo, "refresh", refresh)
+        app.echo.show("/joint_states", dict(JOINTS))
         assert asked == []
-        app.tree.show("/joint_states", {**JOINTS, "velocity": np.array([7.5, -11.3])})
+        app.echo.show("/joint_states", {**JOINTS, "velocity": np.array([7.5, -11.3])})
         assert asked == [(Region(31, 2, 9, 1),)]
 
 
 async def test_a_pause_keeps_the_message_and_its_end_shows_the_newest() -> None:
     app = EchoApp()
     async with app.run_test(size=(40, 6)):
-        app.tree.show("/sonar", {"data": 1.0})
-        app.tree.pause(True)
+        app.echo.show("/sonar", {"data": 1.0})
+        app.echo.pause(True)
         for distance in (2.0, 3.0):
-            app.tree.show("/sonar", {"data": distance})
+            app.echo.show("/sonar", {"data": distance})
         assert "1.0" in app.screen_text()
-        app.tree.pause(False)
+        app.echo.pause(False)
         assert "3.0" in app.screen_text()
 
 
 async def test_another_topic_ends_the_pause() -> None:
     app = EchoApp()
     async with app.run_test(size=(40, 6)):
-        app.tree.show("/sonar", {"data": 1.0})
-        app.tree.pause(True)
-        app.tree.show("/other", {"data": 2.0})
-        assert not app.tree.paused
+        app.echo.show("/sonar", {"data": 1.0})
+        app.echo.pause(True)
+        app.echo.show("/other", {"data": 2.0})
+        assert not app.echo.paused
         assert "2.0" in app.screen_text()
 
 
 async def test_words_stand_where_there_is_no_message() -> None:
     app = EchoApp()
     async with app.run_test(size=(30, 6)) as pilot:
-        app.tree.show_words("/drive", "nobody publishes this topic", "start [b]ai_driver[/b]")
+        app.echo.show_words("/drive", "nobody publishes this topic", "start [b]ai_driver[/b]")
         await pilot.pause()
         words = " ".join(app.screen_text().split())
         assert words == "nobody publishes this topic start [b]ai_driver[/b]"
@@ -231,9 +231,9 @@ async def test_every_line_fills_its_width_at_any_size(size: tuple[int, int]) -> 
     wide: Mapping[str, Value] = {**JOINTS, "text": "日本語のテキスト" * 9, "robot": "🤖" * 50}
     app = EchoApp()
     async with app.run_test(size=size) as pilot:
-        app.tree.show("/wide", wide)
+        app.echo.show("/wide", wide)
         await pilot.pause()
-        tree = app.tree
+        tree = app.echo
         assert {tree.render_line(y).cell_length for y in range(size[1])} == {
             tree.scrollable_size.width
         }

@@ -87,7 +87,7 @@ def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
         "offered": "best_effort", "requested": "reliable",
     }  # fmt: skip
     empty = {"hz": None, "bytes_per_s": None, "age_s": None}
-    changed = {
+    changed: dict[str, dict[str, Any]] = {
         "/sensor/sonar_front": {
             "trouble": Trouble.QOS_MISMATCH, "facts": facts, "published_by": (publisher,),
             "subscribed_by": (subscriber,), **empty,
@@ -112,7 +112,7 @@ def test_endpoints(look: Look, snap_compare: SnapCompare) -> None:
     front = EndpointInfo("/sonar_front", kind, "reliable", "transient_local", 1, "keep_last")
     brain = EndpointInfo("/ai_brain", kind, "reliable", "transient_local", liveliness="automatic")
     other = replace(front, node="/recorder", type_name="std_msgs/msg/Float64")
-    ends = {
+    ends: dict[str, Any] = {
         "published_by": (lidar, front), "subscribed_by": (brain, other), "publishers": 2,
         "type_names": (kind, "std_msgs/msg/Float64"), "jitter_s": 0.0123, "latency_s": 0.00045,
         "lost": 12,
@@ -189,7 +189,7 @@ def test_other_pictures(
 def test_an_unknown_type(look: Look, snap_compare: SnapCompare) -> None:
     """Rates stand in the head; in place of the message the package that would bring its type."""
     facts = {"type": "lidar_msgs/msg/Cloud", "package": "lidar_msgs", "reason": "not installed"}
-    unknown = {
+    unknown: dict[str, Any] = {
         "type_names": ("lidar_msgs/msg/Cloud",), "trouble": Trouble.UNKNOWN_TYPE, "facts": facts,
         "detail": "lidar_msgs is not installed",
     }  # fmt: skip

@@ -357,8 +357,9 @@ async def test_help_lists_the_keys_of_the_dialog_and_closes_again(desk: Desk) ->
     dialog = desk.dialog
     await desk.pilot.press("f1")
     await desk.pilot.pause()
-    assert isinstance(desk.app.screen, HelpScreen)
-    page = " ".join(desk.app.screen.query_one(Page).text.split())
+    page_screen = desk.app.screen
+    assert isinstance(page_screen, HelpScreen)
+    page = " ".join(page_screen.query_one(Page).text.split())
     assert PublishAtRate.tooltip in page
     await desk.pilot.press("escape")
     await desk.pilot.pause()

@@ -33,8 +33,9 @@ def filled(change: Callable[[PublishDialog], None], *keys: str) -> Before:
         await settle(pilot)
         app = pilot.app
         assert isinstance(app, DeckApp)
-        assert isinstance(app.screen, TopicsScreen)
-        app.screen.table.choose("/drive")
+        topics = app.screen
+        assert isinstance(topics, TopicsScreen)
+        topics.table.choose("/drive")
         await pilot.pause()
         app.feed.graph.show(lesson_update())  # type: ignore[union-attr]
         await pilot.pause()

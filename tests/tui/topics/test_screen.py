@@ -28,10 +28,10 @@ async def room() -> AsyncIterator[Room]:
 
 
 async def test_all_rates_are_measured_while_the_screen_is_in_front(room: Room) -> None:
-    assert room.graph.measured
+    assert room.measures()
     await room.pilot.press("4")
     await settle(room.pilot)
-    assert not room.graph.measured
+    assert not room.measures()
     assert room.graph.watched == set()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from rich.color import Color
 from textual.app import App, ComposeResult
 
 from tui.widgets.rows import Cell, Column, Row, Rows
@@ -60,6 +61,13 @@ async def test_a_row_that_is_chosen_as_soon_as_the_rows_come_is_in_sight() -> No
         assert any("▶ n9" in line for line in app.lines())
 
 
+def green(ink: Color | None) -> int:
+    """How much green is in a colour of RGB."""
+    assert ink is not None
+    assert ink.triplet is not None
+    return ink.triplet.green
+
+
 async def test_what_is_dim_is_between_text_and_background_in_every_theme() -> None:
     app = ListApp()
     async with app.run_test(size=(30, 20)) as pilot:
@@ -69,7 +77,8 @@ async def test_what_is_dim_is_between_text_and_background_in_every_theme() -> No
             await pilot.pause()
             (dim,) = [part for part in app.rows.render_line(2) if part.text.startswith("8")]
             text, ground = app.rows.rich_style.color, app.rows.rich_style.bgcolor
-            greys = [ink.triplet.green for ink in (ground, dim.style.color, text)]
+            assert dim.style is not None
+            greys = [green(ink) for ink in (ground, dim.style.color, text)]
             assert sorted(greys) in (greys, greys[::-1])
             assert len(set(greys)) == 3, theme
 
@@ -82,7 +91,9 @@ async def test_the_cursor_is_softer_while_the_list_has_no_focus() -> None:
         for focused in (app.rows, None):
             app.screen.set_focus(focused)
             await pilot.pause()
-            looks.append(next(iter(app.rows.render_line(1))).style.bgcolor)
+            style = next(iter(app.rows.render_line(1))).style
+            assert style is not None
+            looks.append(style.bgcolor)
         assert looks[0] != looks[1]
 
 
