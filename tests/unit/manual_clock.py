@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from typing import Any
 
 
 class ManualClock:
@@ -20,8 +21,9 @@ class ManualClock:
         sleeper = (self._now + within_s, alarm)
         self._sleepers.append(sleeper)
         coming = asyncio.ensure_future(event.wait())
+        either: list[asyncio.Future[Any]] = [alarm, coming]
         try:
-            await asyncio.wait([alarm, coming], return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
         finally:
             self._sleepers.remove(sleeper)
             coming.cancel()

@@ -81,9 +81,10 @@ class RandomDriver:
 
     def _gated(self, command: DriveSetpoint, zone: SafetyZone) -> DriveSetpoint:
         front, rear = (Reading(m, self.world.now_s - then) for m, then in self._readings)
-        sights = (look(one, zone.critical_m, zone.stale_after_s) for one in (front, rear))
+        ahead = look(front, zone.critical_m, zone.stale_after_s)
+        behind = look(rear, zone.critical_m, zone.stale_after_s)
         shares = Shares(share(front, zone), share(rear, zone))
-        return gate(command, where(*sights, False), shares)
+        return gate(command, where(ahead, behind, False), shares)
 
     def _carry(self) -> None:
         """Put the robot down anywhere on the free floor."""

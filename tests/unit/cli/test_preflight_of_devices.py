@@ -9,6 +9,7 @@ import pty
 import tty
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -135,13 +136,13 @@ def test_who_made_a_pseudo_terminal_is_not_in_the_way(tmp_path: Path) -> None:
 # -------------------------------------------------------------------- a profile
 
 
-def robot(*, used: bool = True, **devices: dict[str, object]) -> Profile:
+def robot(*, used: bool = True, **devices: dict[str, Any]) -> Profile:
     """Return a profile with these devices, all of them used or none."""
     return Profile(
         path=Path("robot.yaml"),
         name="robot",
         nodes={},
-        document=ProfileDocument(devices=devices),
+        document=ProfileDocument.model_validate({"devices": devices}),
         domain=0,
         hardware="real",
         used=tuple(devices) if used else (),

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from nodes.drivers import camera_source as _camera_source
 from nodes.drivers.camera_source import CameraSource, SourceKind, SourceSetting
 from nodes.parts.parameters import BadValueError
 from nodes.parts.pictures import fit
@@ -51,7 +50,7 @@ def test_files_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert CameraSource(str(path)).why_not() == "no such file"
     path.touch()
     assert "finds no video" in CameraSource(str(path)).why_not()
-    monkeypatch.setattr(_camera_source.os, "access", lambda *_: False)
+    monkeypatch.setattr("nodes.drivers.camera_source.os.access", lambda *_: False)
     assert "chmod" in CameraSource(str(path)).why_not()
     assert "usermod -aG video" in CameraSource("/dev/null").why_not()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import cast
 
 import pytest
 from packaging.markers import default_environment
@@ -19,7 +20,7 @@ NAMES = ["deck", "interfaces"]
 def machine(python: str) -> dict[str, str]:
     """Return what markers are judged by, on a Linux of today with this Python."""
     return {
-        **default_environment(),
+        **cast("dict[str, str]", default_environment()),
         "python_version": python,
         "python_full_version": f"{python}.4",
         "sys_platform": "linux",

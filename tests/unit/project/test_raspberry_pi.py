@@ -25,7 +25,8 @@ PAGES = ["raspberry-pi.md", "raspberry-pi.ru.md"]
 @pytest.fixture(params=PAGES)
 def page(request: pytest.FixtureRequest) -> str:
     """The text of the page, in each language."""
-    return (DOCS / request.param).read_text()
+    name: str = request.param
+    return (DOCS / name).read_text()
 
 
 def service() -> configparser.SectionProxy:

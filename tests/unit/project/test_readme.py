@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
+from textual.app import App
 
 from cli.arguments import COMMANDS
 from launcher.profile.catalog import list_profiles
 from launcher.profile.load import load_profile
-from launcher.profile.model import NodeDocument, Panel, ProfileDocument
+from launcher.profile.model import NodeDocument, ProfileDocument
+from launcher.profile.panels import Panel
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 
@@ -22,7 +24,8 @@ READMES = ["README.md", "README.ru.md"]
 @pytest.fixture(params=READMES)
 def readme(request: pytest.FixtureRequest) -> str:
     """The text of a README, in each language."""
-    return (ROOT / request.param).read_text()
+    name: str = request.param
+    return (ROOT / name).read_text()
 
 
 def test_the_profile_shown_is_valid_and_starts_what_it_says(readme: str, tmp_path: Path) -> None:
@@ -85,5 +88,5 @@ def test_the_page_on_profiles_tells_every_key_and_panel(page: str) -> None:
     ],
 )
 def test_the_keys_shown_do_what_is_said(key: str, action: str) -> None:
-    assert DeckApp  # the app's module brings its actions
+    assert issubclass(DeckApp, App)  # the app's module brings its actions
     assert key in REGISTRY[action].key.split(",")

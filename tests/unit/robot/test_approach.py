@@ -150,7 +150,7 @@ def test_a_full_circle_comes_back() -> None:
 
 def test_it_drives_where_it_looks() -> None:
     end = advance(Pose(1.0, 2.0, math.pi / 2), DriveSetpoint(0.5, 0.0), 2.0)
-    assert (end.x_m, end.y_m) == (pytest.approx(1.0), pytest.approx(3.0))
+    assert (end.x_m, end.y_m) == pytest.approx((1.0, 3.0))
     assert advance(Pose(), DriveSetpoint(0.3, 0.4), 0.5).y_m > 0
 
 

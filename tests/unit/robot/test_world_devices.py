@@ -12,7 +12,7 @@ import pytest
 
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoMove, decode
 from robot.wire.lsc16 import encode as encode_servo
-from robot.wire.pico import Drive, Halt, Hello, PicoDecoder, Release, Telemetry, encode
+from robot.wire.pico import Drive, Halt, Hello, Message, PicoDecoder, Release, Telemetry, encode
 from robot.world.pico import SimulatedPico
 from robot.world.servos import SimulatedServos
 from robot.world.world import World
@@ -89,19 +89,17 @@ def test_the_simulated_pico_does_what_the_firmware_does(seed: int) -> None:
         octets = b""
         if dice.random() < 0.4:
             sequence = (sequence + dice.choice([1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 40_000])) % 65536
-            message = dice.choices(
-                [
-                    Drive(sequence, 0, 0, 0.1),
-                    Drive(sequence, 5, 4, -0.1),
-                    Drive(sequence, 18, 4, -0.1),
-                    Drive(sequence, 5, 4, -0.6),
-                    Hello(sequence),
-                    Hello(sequence, 2),
-                    Halt(sequence),
-                    Release(sequence),
-                ],
-                [20, 30, 1, 1, 2, 0.3, 0.5, 1.5],
-            )[0]
+            said: list[Message] = [
+                Drive(sequence, 0, 0, 0.1),
+                Drive(sequence, 5, 4, -0.1),
+                Drive(sequence, 18, 4, -0.1),
+                Drive(sequence, 5, 4, -0.6),
+                Hello(sequence),
+                Hello(sequence, 2),
+                Halt(sequence),
+                Release(sequence),
+            ]
+            message = dice.choices(said, [20, 30, 1, 1, 2, 0.3, 0.5, 1.5])[0]
             octets = encode(message)
             if dice.random() < 0.05:
                 octets = octets.replace(b",", b";", 1)

@@ -18,7 +18,7 @@ from launcher.profile.yaml_tree import read_value
 from tests.unit.profile_files import loaded
 from text.yaml_scalars import meaning
 
-TEXTS = st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=40)
+TEXTS = st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=40)
 TRICKY = st.sampled_from(
     [
         "1",

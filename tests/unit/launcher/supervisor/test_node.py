@@ -250,7 +250,8 @@ async def test_a_crash_loop_ends_with_a_word_why(session: FakeSession) -> None:
 async def test_a_node_given_up_can_be_started_by_hand(session: FakeSession) -> None:
     node = await started(session, replace(PLAN, restart="never"))
     await crash(session)
-    assert node.state is NodeState.FAILED
+    given_up = node.state
+    assert given_up is NodeState.FAILED
     node.start()
     await settle()
     assert node.state is NodeState.RUNNING
@@ -477,11 +478,15 @@ async def test_a_program_that_is_not_installed_is_told_and_no_alarm_if_optional(
 
 def test_words_can_be_translated() -> None:
     from launcher.control.protocol import pack_text, unpack_text
-    from text.sentences import say
+    from text.sentences import Words, say
 
     words = say("{why}; again in {seconds:g} s", why=say("exit code {code}", code=1), seconds=2.0)
     packed = pack_text(words)
     again = unpack_text(packed)
     assert again == words == "exit code 1; again in 2 s"
+    assert isinstance(words, Words)
+    assert isinstance(again, Words)
     assert again.template == words.template
-    assert again.values["why"].template == "exit code {code}"
+    why = again.values["why"]
+    assert isinstance(why, Words)
+    assert why.template == "exit code {code}"
