@@ -1,4 +1,4 @@
-"""Whether the nodes of a run are well, told from their statuses alone."""
+"""Whether the nodes of a run are healthy, judged by their statuses alone."""
 
 from __future__ import annotations
 

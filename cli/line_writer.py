@@ -1,4 +1,4 @@
-"""Standard output for a run that must not wait: written on a thread, its reader may stall or go."""
+"""Standard output for a run that must not wait: written on a thread, as its reader may stall."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`deck`: finds the command, imports only what it needs, and ends with a code that means something.
+"""`deck`: finds the command, imports only what it needs, and ends with a meaningful exit code.
 
 0 all went well, 1 something failed, 2 what was asked for cannot be right, 130 interrupted.
 """

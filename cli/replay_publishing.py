@@ -1,4 +1,4 @@
-"""`deck replay --publish`: a recording onto the ROS graph, with no screen.
+"""`deck replay --publish`: a recording into the ROS graph, without a screen.
 
 What moves a robot is left out unless it is asked for, and so is every topic that somebody else
 publishes: by a recorded distance beside a measured one a robot drives into what it does not see.

@@ -34,7 +34,7 @@ DECK = "deck"
 
 @dataclass(frozen=True)
 class Summary:
-    """How a run went."""
+    """The result of a run."""
 
     nodes: Sequence[NodeStatus]
     """As they were before they were stopped."""
@@ -56,7 +56,7 @@ class Summary:
 
 
 class Report(Protocol):
-    """Tells a run as it goes."""
+    """Reports on a run while it goes on."""
 
     def session(self, session: SessionInfo) -> None:
         """Tell what was started."""
@@ -160,7 +160,7 @@ class TextReport:
 
 
 class JsonReport:
-    """One JSON object a line; the module's text tells which."""
+    """One JSON object per line, as the module describes."""
 
     def __init__(self, write: Write) -> None:
         self._write = write

@@ -1,4 +1,4 @@
-"""Which domain a command means that names none: that of the robot which runs."""
+"""The domain of a command that names none: that of the running robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What options are made of: words into values, or a word why not."""
+"""The values of options: words are parsed into values, or refused with a reason."""
 
 from __future__ import annotations
 

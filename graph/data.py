@@ -173,7 +173,7 @@ class ActionRow:
 
 
 class GoalStatus(str, Enum):
-    """Where a goal stands (source: action_msgs/GoalStatus, and before it)."""
+    """The status of a goal (action_msgs/GoalStatus, and the states before it)."""
 
     SENDING = "sending"
     REJECTED = "rejected"
@@ -221,7 +221,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class SeenGoal:
-    """One goal that somebody else has sent, as its server tells everybody of it."""
+    """One goal that somebody else has sent, as its server publishes it."""
 
     action: str
     type_name: str
@@ -245,7 +245,7 @@ class SeenGoal:
 
 @dataclass(frozen=True)
 class Publication:
-    """A message that Deck publishes again and again."""
+    """A message that Deck publishes periodically."""
 
     number: int
     """Deck's own, from 1."""
@@ -279,7 +279,7 @@ class ParameterRow:
 
 @dataclass(frozen=True)
 class ParametersResult:
-    """What a node says of its parameters, or why it says nothing."""
+    """The parameters that a node reports, or why it does not."""
 
     node: str
     parameters: tuple[ParameterRow, ...] = ()
@@ -289,7 +289,7 @@ class ParametersResult:
 
 @dataclass(frozen=True)
 class SetResult:
-    """What came of setting parameters: name to reason for those refused, empty if all was taken."""
+    """The result of setting parameters: reasons by name of the refused ones, or nothing."""
 
     node: str
     refused: Mapping[str, str] = field(default_factory=dict)
@@ -314,7 +314,7 @@ class CallResult:
 
 @dataclass(frozen=True)
 class GraphUpdate:
-    """All that changed since the update before, handed over at the observer's rate."""
+    """Everything that changed since the previous update, handed over at the observer's rate."""
 
     time_s: float
     """Unix time of this update."""

@@ -1,4 +1,4 @@
-"""Which names of the ROS graph are ROS's own business, for lists that show the robot's."""
+"""Which names of the ROS graph are ROS's own, so that lists can show the robot's alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the C library keeps memory: pictures come ten times a second and are let go at once."""
+"""How the C library keeps memory: pictures arrive ten times a second and are freed at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which quality of service Deck asks for and offers, so that it hears and is heard by all."""
+"""Which quality of service Deck requests and offers, so that it is compatible with everybody."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ VOLATILE = "volatile"
 
 @dataclass(frozen=True)
 class Qos:
-    """What Deck asks for or offers; the other policies stay at their defaults."""
+    """What Deck requests or offers; the other policies keep their defaults."""
 
     reliability: str = RELIABLE
     durability: str = VOLATILE

@@ -1,4 +1,4 @@
-"""Who on a topic cannot hear whom, by which policy, and what to change.
+"""Which endpoints of a topic are incompatible, by which policy, and what to change.
 
 The rule of every policy: an offer may exceed the request, never fall short of it.
 Source: ROS 2 documentation, "Quality of Service settings", tables of compatibilities.
@@ -28,7 +28,7 @@ AUTOMATIC, MANUAL = "automatic", "manual_by_topic"
 
 @dataclass(frozen=True)
 class Mismatch:
-    """A publisher and a subscriber of one topic that the middleware does not join."""
+    """A publisher and a subscriber of one topic that the middleware does not connect."""
 
     policy: str
     """`reliability`, `durability`, `liveliness`, `deadline`, or `lease`: the liveliness lease."""

@@ -1,4 +1,4 @@
-"""Time as the supervisor sees it, so that a test need not wait for a backoff of half a minute."""
+"""Time as the supervisor sees it, so that a test need not wait out a backoff of 30 s."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol
 
 
 class Clock(Protocol):
-    """A monotonic clock that one can wait on."""
+    """A monotonic clock with a way to wait."""
 
     def now(self) -> float:
         """Return monotonic seconds."""

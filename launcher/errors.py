@@ -41,7 +41,7 @@ class LauncherError(Exception):
 
 
 class UsageError(LauncherError):
-    """What was asked for cannot be right, nothing was started."""
+    """The request cannot be right; nothing was started."""
 
     exit_code = 2
 
@@ -111,7 +111,7 @@ class ProfileNotFoundError(UsageError):
 
 
 class DomainError(UsageError):
-    """No ROS domain."""
+    """Not a valid ROS domain."""
 
 
 class DomainTakenError(UsageError):
@@ -170,7 +170,7 @@ class SessionError(LauncherError):
 
 
 class NotRunningError(SessionError):
-    """None runs, or none of that name."""
+    """No session runs, or none of that name."""
 
     def __init__(self, name: str | None = None, running: Sequence[str] = ()) -> None:
         """`name`: what was asked for; `running`: what there is."""

@@ -1,4 +1,4 @@
-"""What a client of the supervisor hears: one plain class per kind of news."""
+"""What a client of the supervisor receives: one plain class per kind of event."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from launcher.status import LogLine, NodeStatus, Stray
 
 @dataclass(frozen=True)
 class StatusEvent:
-    """Nodes whose status is not what it was; the others are unchanged."""
+    """Nodes whose status has changed."""
 
     nodes: tuple[NodeStatus, ...]
 

@@ -1,4 +1,4 @@
-"""Files and folders that are made for their user alone, whatever the umask is.
+"""Files and folders that only their user can open, whatever the umask is.
 
 What was there before is never changed.
 """

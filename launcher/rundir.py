@@ -1,4 +1,4 @@
-"""Where the launcher keeps what lives as long as a run, and what outlives it: logs, recordings.
+"""Where the launcher keeps the data of a run, and what outlives it: logs, recordings.
 
 The run directory holds control sockets: it must be the user's own, and nobody else may write to
 it. One that Deck makes is closed to all others; one that was there before is never changed.

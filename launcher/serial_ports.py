@@ -1,4 +1,4 @@
-"""The serial ports of this machine: what is plugged in, and under which name it stays findable."""
+"""The serial ports of this machine: what is plugged in, and under which permanent name."""
 
 from __future__ import annotations
 

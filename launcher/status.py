@@ -61,7 +61,7 @@ _RANKS = {severity: rank for rank, severity in enumerate(Severity)}
 
 @dataclass(frozen=True)
 class NodeStatus:
-    """One node of the running profile, as of now."""
+    """The current state of one node of the running profile."""
 
     name: str
     """The key of the node in the profile, which is also its name in the ROS graph."""
@@ -113,7 +113,7 @@ class LogLine:
 
 @dataclass(frozen=True)
 class Who:
-    """Somebody at work, as far as it is known."""
+    """A user and where they work, as far as known."""
 
     pid: int = 0
     user: str = ""

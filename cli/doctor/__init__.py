@@ -1,4 +1,4 @@
-"""`deck doctor`: what is there, what is missing, and how to mend it.
+"""`deck doctor`: what is there, what is missing, and how to fix it.
 
 Each module here looks at one thing: `look` gathers plain facts, `judge` says what they mean and
 does nothing else, so that it can be tested with facts of any machine.

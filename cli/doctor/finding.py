@@ -1,4 +1,4 @@
-"""What the doctor says about one thing: how it is, and the mend if it is not well."""
+"""What the doctor says about one thing: its state, and the fix if something is wrong."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import Enum
 
 
 class Level(str, Enum):
-    """How grave a finding is."""
+    """How serious a finding is."""
 
     OK = "ok"
     WARN = "warn"
@@ -18,7 +18,7 @@ class Level(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One line of the doctor."""
+    """One line of the doctor's report."""
 
     key: str
     """Stable, for programs: `ros.rclpy`."""

@@ -23,7 +23,7 @@ NEEDED = ("dialout", "video", "audio")
 
 @dataclass(frozen=True)
 class GroupFacts:
-    """What is there."""
+    """The user's groups, and those that the devices need."""
 
     pi: bool = False
     """Whether this is a Raspberry Pi, and so most likely the robot itself."""

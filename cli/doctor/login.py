@@ -24,7 +24,7 @@ FOLDERS = ("/usr/lib/systemd", "/run/systemd", "/etc/systemd")
 
 @dataclass(frozen=True)
 class LoginFacts:
-    """What is there."""
+    """Facts about the login session."""
 
     logind: bool = False
     """Whether systemd-logind runs this machine's logins."""

@@ -19,7 +19,7 @@ CARD = re.compile(r"^\s*\d+\s+\[[^]]*\]:\s*(.+)$", re.MULTILINE)
 
 @dataclass(frozen=True)
 class MediaFacts:
-    """What is there."""
+    """The cameras and sound cards found."""
 
     cameras: tuple[tuple[str, str, bool], ...] = ()
     """Device, name, and whether this user may open it."""

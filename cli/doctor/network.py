@@ -1,4 +1,4 @@
-"""The ROS domain and who may hear it: what the environment says, and what comes of it."""
+"""The ROS domain and who may hear it: what the environment says, and what follows from it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ VARIABLES = (
 
 @dataclass(frozen=True)
 class NetworkFacts:
-    """What is there."""
+    """The environment that decides who hears whom."""
 
     environ: Mapping[str, str] = field(default_factory=dict)
     """Those of VARIABLES that are set."""

@@ -26,7 +26,7 @@ ADAPTS = ("intel_pstate", "amd-pstate", "amd-pstate-epp")
 
 @dataclass(frozen=True)
 class PowerFacts:
-    """What is there."""
+    """Supply and speed as the system reports them."""
 
     pi: str = ""
     """Model of the Raspberry Pi, empty if it is none."""

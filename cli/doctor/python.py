@@ -24,7 +24,7 @@ PACKAGES = ("textual", "pydantic", "PyYAML", "psutil", "numpy", "pyserial", "set
 
 @dataclass(frozen=True)
 class PythonFacts:
-    """What is there."""
+    """The Python and the packages found."""
 
     version: tuple[int, int, int]
     executable: str

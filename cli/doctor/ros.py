@@ -1,4 +1,4 @@
-"""Which ROS 2 there is, and whether it works: asked of a process of its own, which may crash."""
+"""Which ROS 2 is installed and whether it works: tested in its own process, which may crash."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ sys.stdout.write("\\n" + json.dumps(found))
 
 @dataclass(frozen=True)
 class RosFacts:
-    """What is there."""
+    """The ROS found."""
 
     rclpy: str = ""
     """Path of the module, empty if it is not there."""

@@ -1,4 +1,4 @@
-"""Deck's own things: its directories, what runs, and what an earlier run left behind."""
+"""Deck's own state: its directories, what runs, and what an earlier run left behind."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LEAST_FREE = 200 * 10**6
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What is there."""
+    """Deck's directories and processes found."""
 
     run_dir: str = ""
     log_dir: str = ""

@@ -1,4 +1,4 @@
-"""Serial ports: which there are, by which lasting name, and whether they may be opened."""
+"""Serial ports: which exist, under which permanent names, and whether they may be opened."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Access(NamedTuple):
 
 @dataclass(frozen=True)
 class SerialFacts:
-    """What is there."""
+    """The serial ports found."""
 
     ports: tuple[Access, ...] = ()
     user: str = ""

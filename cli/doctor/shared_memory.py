@@ -1,4 +1,4 @@
-"""/dev/shm, through which nodes of one machine talk: its room, and what dead nodes left in it."""
+"""/dev/shm, through which nodes of one machine talk: its free space, and what dead nodes left."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DELETE_MINE = "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -del
 
 @dataclass(frozen=True)
 class SharedMemoryFacts:
-    """What is there."""
+    """The state of /dev/shm."""
 
     exists: bool = True
     free: int = 2**30

@@ -26,7 +26,7 @@ TRUECOLOR_TERMS = ("-direct", "-truecolor", "kitty", "alacritty", "wezterm", "gh
 
 @dataclass(frozen=True)
 class TerminalFacts:
-    """What is there."""
+    """What the terminal supports."""
 
     is_terminal: bool = True
     environ: Mapping[str, str] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Whether the device at a port is the one that is meant: it is heard, and asked what moves nothing.
+"""Whether the device at a port is the expected one: by listening, and harmless questions.
 
 A sonar is only listened to; the Pico is greeted, which moves nothing and stops what moves; the
 servo board is asked for its battery. No drive line and no move is ever sent.
@@ -34,7 +34,7 @@ ENOUGH_FRAMES = 3
 
 
 class DeviceAnswer(NamedTuple):
-    """What came of asking."""
+    """The result of asking a device."""
 
     level: Level
     text: str

@@ -1,4 +1,4 @@
-"""`deck check PROFILE --hardware real --preflight`: one line a device, and its mend."""
+"""`deck check PROFILE --hardware real --preflight`: one line per device, and the fix."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which programs have a device open, as far as /proc lets one look."""
+"""Which programs have a device open, as far as /proc shows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A port that was opened to be asked: bytes in and out, each with a deadline."""
+"""A port that was opened for questions: bytes in and out, each with a deadline."""
 
 from __future__ import annotations
 

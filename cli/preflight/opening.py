@@ -1,4 +1,4 @@
-"""Opening the port of a device; why it cannot be opened, with the mend for just that."""
+"""Opening the port of a device; why it cannot be opened, and how to fix that."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ LISTED = frozenset({"bool", "string", "wstring"})
 
 
 class TypeText(NamedTuple):
-    """What a bag says of a type."""
+    """The definition of a type in a bag."""
 
     name: str
     text: str = ""

@@ -1,4 +1,4 @@
-"""Files of a bag that are no such files, told by their first bytes: which, and why."""
+"""Files that are not bag files after all, recognised by their first bytes."""
 
 from __future__ import annotations
 

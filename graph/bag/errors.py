@@ -1,4 +1,4 @@
-"""What can go wrong with a bag, in sentences that name the file and the mend."""
+"""What can go wrong with a bag, in sentences that name the file and the fix."""
 
 from __future__ import annotations
 

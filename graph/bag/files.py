@@ -22,7 +22,7 @@ Raw = tuple["Connection", int, bytes]
 
 
 class BagReader(Protocol):
-    """What a bag is read by."""
+    """The interface of whatever reads a bag."""
 
     connections: list[Connection]
     start_ns: int
@@ -42,7 +42,7 @@ class BagReader(Protocol):
 
 
 class WholeBag:
-    """A bag with its index, by the library's reader."""
+    """A bag with its index, read by the library's reader."""
 
     def __init__(self, path: Path) -> None:
         """Raises whatever the library does for what it cannot read."""
@@ -102,7 +102,7 @@ class _CutFile:
 
 
 class CutFiles:
-    """MCAP files of which the last has no end: read up to the last whole record."""
+    """MCAP files of which the last is cut short: read up to the last whole record."""
 
     distro = ""
 

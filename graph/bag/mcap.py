@@ -50,7 +50,7 @@ class Lost(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """What is whole of a file that has no index."""
+    """The intact parts of a file without an index."""
 
     sound: list[tuple[int, int]]
     """Where records can be read, from one place in the file to another."""
@@ -61,7 +61,7 @@ class Parts(NamedTuple):
 
 
 class SparingMcap(McapReader):
-    """The library's reader, save that a damaged chunk costs no more than that chunk."""
+    """The library's reader, except that a damaged chunk costs no more than that chunk."""
 
     def __init__(self, path: Path) -> None:
         """Read this file, once it is opened."""

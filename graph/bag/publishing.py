@@ -1,4 +1,4 @@
-"""A bag published into a ROS domain: raw messages in the rhythm in which they were recorded.
+"""A bag published into a ROS domain: raw messages, timed as they were recorded.
 
 Nothing is decoded. A topic that somebody else publishes is left to him, from the moment on at which
 he is seen: two publishers of one sensor are worse than none.

@@ -1,4 +1,4 @@
-"""Deck's service clients: made when they are needed, kept while they are used."""
+"""Deck's service clients: created when needed, kept while in use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SETTLE_S = 0.1
 
 
 class Clients:
-    """Clients by service and type, the one that was used last at the end."""
+    """Clients by service and type, the most recently used one last."""
 
     def __init__(self, node: Node) -> None:
         self._node = node

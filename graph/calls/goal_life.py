@@ -1,4 +1,4 @@
-"""The life of one goal, from being sent to its end: what comes in, what is to go out."""
+"""The life of one goal, from sending to its end: what arrives, and what is to be sent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One action as a client has it: requests go out, and what has come in is taken, nothing waits.
+"""The client side of one action: sends requests and takes what has arrived, without blocking.
 
 rclpy's own ActionClient needs an executor to be woken by; this one holds the same handle of rcl
 and is asked a few times a second.
@@ -22,7 +22,7 @@ LOOK_AT_SERVERS_S = 0.25
 
 @dataclass
 class GoalAnswers:
-    """What came since the look before; responses by the number of their request."""
+    """What has arrived since the previous look; responses by the number of their request."""
 
     accepted: dict[int, bool] = field(default_factory=dict)
     results: dict[int, Any] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Deck's own goals: any number of them at once, each watched to its end, none waited for."""
+"""Deck's own goals: any number at once, each followed to its end, none blocking."""
 
 from __future__ import annotations
 

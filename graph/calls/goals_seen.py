@@ -1,4 +1,4 @@
-"""Goals that others have sent: what every server of an action tells everybody, and their end.
+"""Goals that others have sent, as every action server publishes them, and how they end.
 
 A server publishes the state of all its goals, latched, and their feedback; whoever sent a goal
 and whoever looks on hear the same. So Deck needs no client until it is told to cancel one.
@@ -54,7 +54,7 @@ class _Seen:
 
 
 class SeenAction:
-    """What is heard of one action."""
+    """What is known of the goals of one action."""
 
     def __init__(self, node: Node, action: str, type_name: str) -> None:
         """Begin to listen. Raises what rclpy raises for a name that is none."""
@@ -148,7 +148,7 @@ class SeenAction:
 
 
 class SeenGoals:
-    """The actions that are looked at."""
+    """The actions that are watched."""
 
     def __init__(self, node: Node, is_own: Callable[[bytes], bool]) -> None:
         """`is_own` tells of an id whether Deck itself has sent that goal."""

@@ -1,4 +1,4 @@
-"""Reading and setting the parameters of any node, any number of nodes at once, none waited for."""
+"""Reading and setting the parameters of any node, any number of nodes at once, without blocking."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class _Talking:
 
 
 class ParameterCalls:
-    """The talks that are under way."""
+    """The requests that are under way."""
 
     def __init__(
         self,

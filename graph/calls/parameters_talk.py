@@ -1,4 +1,4 @@
-"""What is said between Deck and a node about its parameters, question by question.
+"""The exchange between Deck and a node about its parameters, request by request.
 
 A talk is a generator: it yields questions, is sent the answers as trees, and knows neither time
 nor ROS; `graph.calls.parameters` carries the questions over.

@@ -1,4 +1,4 @@
-"""Service calls with a time-out, any number at once, none of them waited for."""
+"""Service calls with a time-out, any number at once, none of them blocking."""
 
 from __future__ import annotations
 

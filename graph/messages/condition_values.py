@@ -1,4 +1,4 @@
-"""The value of an expression over a message: each kind of node that `condition` lets in."""
+"""The value of an expression over a message: each kind of syntax node that `condition` allows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The moment of sending in a message: `stamp: now` and `header: auto`, as `ros2 topic pub` has it.
+"""The time of sending in a message: `stamp: now` and `header: auto`, as in `ros2 topic pub`.
 
 Source of the two words: ros2cli, `ros2 topic pub --help`.
 """
@@ -30,7 +30,7 @@ Path: TypeAlias = "tuple[str | int, ...]"
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A message to be sent, once or again and again."""
+    """A message to be sent, once or periodically."""
 
     message: Any
     stamps: tuple[Path, ...] = ()

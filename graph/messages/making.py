@@ -1,4 +1,4 @@
-"""Trees of plain values, as a person types them, into messages; what does not fit is named."""
+"""Converts trees of plain values, as a person types them, to messages; names what does not fit."""
 
 from __future__ import annotations
 

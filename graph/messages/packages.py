@@ -1,4 +1,4 @@
-"""What to install for a package of messages that is missing, by each of the three roads."""
+"""What to install for a missing message package, for each of the three ways to install ROS."""
 
 from __future__ import annotations
 

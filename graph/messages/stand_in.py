@@ -1,4 +1,4 @@
-"""A class for a type that is not installed: enough to take its messages, not to read them.
+"""A class for a type that is not installed: enough to receive its messages, not to decode them.
 
 A subscription needs of a type its name and functions to read and write it. Messages are taken as
 they came, so the functions are never called: those of `std_msgs/String` stand there in their place.

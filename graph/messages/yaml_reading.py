@@ -1,4 +1,4 @@
-"""YAML into plain values with their places, built from PyYAML's events so that nothing can blow up.
+"""YAML into plain values with their places, built from PyYAML's events, so memory stays bounded.
 
 Anchors, aliases and tags are refused, depth and size are bounded.
 """
@@ -24,7 +24,7 @@ _TAG = "tag:yaml.org,2002:"
 
 @dataclass(slots=True)
 class YamlNode:
-    """A value and where it stands, counted from 1."""
+    """A value and its position, counted from 1."""
 
     value: Any
     """A single value, a dict of names to nodes, or a list of nodes."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Interest:
-    """What somebody looks at."""
+    """What a screen wants to see."""
 
     watched: frozenset[str] = frozenset()
     followed: frozenset[str] = frozenset()

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class Losses:
-    """The middleware's own count for one subscription, asked and not waited for.
+    """The middleware's own count for one subscription, read without blocking.
 
     It has the messages of all publishers that were lost on the way. Not among them are those that
     came and were overwritten in Deck's own queue, nor those that were sent before Deck listened.

@@ -1,4 +1,4 @@
-"""All that the observer's thread owns: the node, the graph as last seen, the subscriptions."""
+"""Everything that the observer's thread owns: the node, the last known graph, the subscriptions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ RESCAN_S = 3.0
 
 
 class ObserverNode:
-    """One open node at work; every method returns soon."""
+    """One open node at work; no method blocks."""
 
     def __init__(self, ros: Ros) -> None:
         self.calls = Calls(ros.node)

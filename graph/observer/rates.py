@@ -1,4 +1,4 @@
-"""How fast a topic is and how evenly it comes, from messages looked at a few times a second."""
+"""The rate of a topic and how evenly it arrives, from messages polled a few times a second."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What other threads ask of the observer, and the queue on which it goes to its own thread."""
+"""Requests of other threads to the observer, and the queue that carries them to its own thread."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Request(Protocol):
 
 
 class UrgentRequest(NamedTuple):
-    """A request that may be carried out in the middle of a look, once there is what it needs."""
+    """A request that may be carried out in the middle of a poll, once what it needs is there."""
 
     request: Request
     ready: Callable[[ObserverNode], bool]
@@ -126,7 +126,7 @@ class CallService:
 
 @dataclass(frozen=True)
 class Perform:
-    """Have something done that nobody waits for; without an observer there is nothing to do."""
+    """Have something done without waiting for it; without an observer nothing is done."""
 
     act: Callable[[ObserverNode], None]
 
@@ -140,7 +140,7 @@ class Perform:
 
 @dataclass(frozen=True)
 class Begin(Generic[T]):
-    """Have something begun that has a future for its end."""
+    """Start something whose end a future reports."""
 
     begin: Callable[[ObserverNode, Future[T]], None]
     """Called on the observer's thread; may raise anything."""

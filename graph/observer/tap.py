@@ -1,4 +1,4 @@
-"""One subscription, looked at a few times a second instead of woken for every message."""
+"""One subscription, polled a few times a second instead of woken for every message."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ NANOSECONDS = 1e-9
 
 
 class Tap:
-    """A subscription of Deck's with its rates; make it, drain it, close it."""
+    """A subscription of Deck's with its rates; create it, drain it, close it."""
 
     def __init__(
         self,

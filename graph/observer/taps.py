@@ -1,4 +1,4 @@
-"""Which topics Deck is subscribed to, and the rows and samples that come of it."""
+"""Which topics Deck is subscribed to, and the rows and samples that result."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Taps:
-    """All subscriptions of Deck's, kept in step with the graph and with what is wanted."""
+    """All subscriptions of Deck's, kept in step with the graph and with what the screens want."""
 
     def __init__(self, node: Node) -> None:
         self._node = node

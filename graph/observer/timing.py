@@ -1,4 +1,4 @@
-"""How evenly messages come, and how long they were on their way, over the last seconds."""
+"""Jitter and latency of messages over the last seconds."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KEPT = 10
 
 @dataclass(frozen=True)
 class Arrival:
-    """What the middleware tells of one message."""
+    """What the middleware reports about one message."""
 
     stamp_s: float
     """When it came in, unix time."""

@@ -21,7 +21,7 @@ MOST_PAIRS = 5
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """A trouble, or a remark where there is none, and what it is made of."""
+    """A trouble, or a remark if there is none, with its details."""
 
     trouble: Trouble | None = None
     detail: str = ""

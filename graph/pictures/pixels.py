@@ -46,7 +46,7 @@ BAYER = {
 
 
 class ImageError(ValueError):
-    """The message is no picture that can be shown; `words` says what is wrong with it."""
+    """The message is not a picture that can be shown; `words` says why."""
 
     def __init__(self, words: Words) -> None:
         """Say `words`."""
@@ -55,7 +55,7 @@ class ImageError(ValueError):
 
 
 class UnknownEncodingError(ImageError):
-    """The pixels may be sound, but nobody here can read them."""
+    """The pixels may be valid, but their encoding is not supported."""
 
     def __init__(self, encoding: str) -> None:
         """Name those that can be read."""

@@ -1,4 +1,4 @@
-"""Messages that are repeated only while somebody holds them: a dead-man's switch.
+"""A dead-man's switch: messages that are repeated only while somebody holds a key.
 
 Each word of whoever holds carries the moment until which it is good. When that moment has passed
 without another word, the message of rest goes out a few times, and then nothing. The moment is
@@ -39,7 +39,7 @@ LONGEST_S = 2.0
 
 
 class Holding(NamedTuple):
-    """One word of whoever holds."""
+    """The newest command of whoever holds the key."""
 
     value: Mapping[str, Value]
     """What is published again and again while it is good."""
@@ -51,7 +51,7 @@ class Holding(NamedTuple):
 
 
 class Grip:
-    """One topic: when what goes out. `send` publishes, and may raise anything."""
+    """One topic: what is sent when. `send` publishes, and may raise anything."""
 
     def __init__(self, send: Callable[[Mapping[str, Value]], object]) -> None:
         self._send = send
@@ -123,7 +123,7 @@ class _HeldTopic:
 
 
 class DeadManSwitch:
-    """All that is held; each topic has a publisher, made when first asked for and kept."""
+    """Every held message; each topic has a publisher, created on first use and kept."""
 
     def __init__(self, node: Node) -> None:
         self._node = node

@@ -99,7 +99,7 @@ class _PendingPublisher:
 
 
 class Outbox:
-    """Deck's publishers, one for each topic, type and latching; made once and kept."""
+    """Deck's publishers, one for each topic, type and durability; created once and kept."""
 
     def __init__(self, node: Node) -> None:
         self._node = node

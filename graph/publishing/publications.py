@@ -1,4 +1,4 @@
-"""Publishing again and again: each message at its rate, none of them drifting."""
+"""Periodic publishing: each message at its rate, without drift."""
 
 from __future__ import annotations
 

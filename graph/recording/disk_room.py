@@ -1,4 +1,4 @@
-"""The room that a recording has on its disk: how fast it goes, and when it is time to end."""
+"""The free disk space of a recording: how fast it shrinks, and when to stop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The MCAP of a recording: two times a message, and a checksum a chunk.
+"""The MCAP of a recording: two timestamps per message, and a checksum per chunk.
 
 The library's own writer knows one time, and no checksums: what a bad disk has changed in a chunk
 would be played as if it had been said.
@@ -29,7 +29,7 @@ CHUNK_BYTES = 2**20
 
 
 class McapFile(McapWriter):
-    """What `McapWriter` is, for messages that have been on their way for a while."""
+    """An `McapWriter` for messages that carry both the time of sending and that of arrival."""
 
     def __init__(self, folder: Path) -> None:
         """Make the file in `folder`. Raises OSError."""

@@ -48,7 +48,7 @@ class RecordedTopic:
 
 @dataclass(frozen=True)
 class RecordingStatus:
-    """How a recording stands."""
+    """The state of a recording."""
 
     folder: str
     since_s: float

@@ -1,4 +1,4 @@
-"""One subscription of a recording: its queue is emptied in turns, nothing is ever decoded."""
+"""One subscription of a recording: its queue is drained in turns, nothing is decoded."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Sequences:
 
 
 class RecordingTap:
-    """A subscription; make it, drain it, close it."""
+    """A subscription; create it, drain it, close it."""
 
     def __init__(self, node: Node, topic: BagTopic, qos: Qos) -> None:
         """Subscribe. Raises UnknownTypeError, and what rclpy raises."""

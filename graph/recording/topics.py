@@ -1,4 +1,4 @@
-"""Which topics a recording has: those there are, those that appear, those that cannot be had."""
+"""The topics of a recording: existing ones, new ones, and those that cannot be recorded."""
 
 from __future__ import annotations
 

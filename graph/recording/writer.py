@@ -1,4 +1,4 @@
-"""The thread that writes a recording, and the bounded memory before it."""
+"""The thread that writes a recording, and the bounded queue before it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A bag in place of a robot: the same answers as the observer's, with no ROS at hand.
+"""A bag in place of a robot: the same interface as the observer's, without ROS.
 
 From outside: `replay.Replay`, and how it stands, `state`.
 """

@@ -1,4 +1,4 @@
-"""The playhead of a replay: which messages have come by now, and where it jumps to."""
+"""The playhead of a replay: which messages are due by now, and where it jumps to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A bag played back as if it were a live graph, with no ROS at hand.
+"""A bag played back as if it were a live graph, without ROS.
 
 `Replay` fits the screen's port for a graph; what would change something it refuses. It has a
 thread of its own, which reads, counts and decodes; what the screen asks is done there, in order.

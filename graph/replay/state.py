@@ -1,4 +1,4 @@
-"""How a replay stands: plain data for whoever shows it."""
+"""The state of a replay: plain data for whoever shows it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ RATES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
 @dataclass(frozen=True)
 class ReplayState:
-    """Where a replay is, and how it goes on."""
+    """The position of a replay, and how it continues."""
 
     position_s: float = 0.0
     """Since the first message."""

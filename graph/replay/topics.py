@@ -31,14 +31,14 @@ RECORDED = {"recorded": ""}
 
 
 class Newest(NamedTuple):
-    """A message that was not decoded yet."""
+    """A message that has not been decoded yet."""
 
     stamp_ns: int
     raw: bytes
 
 
 class ReplayTopic:
-    """One topic: what has come of it up to the playhead."""
+    """One topic: its messages up to the playhead."""
 
     def __init__(self, kinds: Sequence[TopicInBag]) -> None:
         """`kinds`: the topic in the bag, once for each type that it has there."""

@@ -1,4 +1,4 @@
-"""Publishers and subscriptions with every policy that the middleware tells of them."""
+"""Publishers and subscriptions with every policy that the middleware reports."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LIVELINESS = frozenset({"automatic", "manual_by_topic"})
 
 @dataclass(frozen=True)
 class TopicEnds:
-    """One topic with its endpoints, Deck's own apart."""
+    """One topic with its endpoints, except Deck's own."""
 
     name: str
     type_names: tuple[str, ...]

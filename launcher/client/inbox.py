@@ -1,4 +1,4 @@
-"""What has come from the supervisor and has not been looked at yet: merged, hence bounded."""
+"""News from the supervisor that nobody has read yet: merged, and therefore bounded."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MAX_LINES = 10_000
 
 
 class Inbox:
-    """Filled as fast as news come, emptied as fast as somebody takes them."""
+    """Filled as news arrives, emptied when somebody reads it."""
 
     def __init__(self) -> None:
         self._nodes: dict[str, NodeStatus] = {}

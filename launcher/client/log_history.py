@@ -1,4 +1,4 @@
-"""Lines of before and lines as they come, joined: none is missing, none is there twice."""
+"""Past log lines and new ones, joined without gaps or duplicates."""
 
 from __future__ import annotations
 

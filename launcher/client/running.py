@@ -1,4 +1,4 @@
-"""Which of the sessions that run is meant by what somebody has typed."""
+"""Which running session a name means."""
 
 from __future__ import annotations
 

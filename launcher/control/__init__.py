@@ -1,4 +1,4 @@
-"""The control socket: what is said on it, and the supervisor's end.
+"""The control socket: its protocol, and the supervisor's end.
 
 From outside: `protocol` and `socket` for the client, `server` for the supervisor; `feed` is the
 server's.

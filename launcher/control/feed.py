@@ -1,4 +1,4 @@
-"""What one client has been told, and what it is to be told next.
+"""What one client knows already, and what it is sent next.
 
 A client is told what there is now, not all that has been: statuses replace each other, and of the
 lines since the last batch it gets the newest of each node, with a count of those left out. So a

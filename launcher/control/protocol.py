@@ -1,4 +1,4 @@
-"""The language on the control socket: one JSON object a line, both ways, versioned.
+"""The protocol of the control socket: one JSON object per line, both ways, versioned.
 
 The supervisor speaks first: `{"deck": VERSION, "session": ..., "nodes": [...], "strays": [...]}`.
 A client answers `{"deck": VERSION}`, then asks: `{"id": 1, "op": "start", "nodes": ["sonar"]}`,

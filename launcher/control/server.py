@@ -1,4 +1,4 @@
-"""The control socket: hears what clients ask, and tells them what happens."""
+"""The control socket: receives the clients' requests and sends them events."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Controlled(Protocol):
 
 
 class BadRequestError(Exception):
-    """What a client sent makes no sense; the text says why."""
+    """A client's request makes no sense; the text says why."""
 
 
 class ControlServer:

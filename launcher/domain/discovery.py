@@ -1,4 +1,4 @@
-"""Who hears a session's nodes: on `localhost` no network, and they find each other at once.
+"""Who hears a session's nodes: on `localhost` nobody outside, and they find each other at once.
 
 ROS's own range LOCALHOST only keeps nodes from looking for others: their sockets are open to every
 network, and whoever names the machine as his peer is let in. So Deck's settings of Fast DDS bind

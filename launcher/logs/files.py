@@ -1,4 +1,4 @@
-"""Log files: one a node and run, rotated, written by a thread so that no disk delays a node."""
+"""Log files: one per node and run, rotated, written by a thread so that no disk delays a node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The folder of one run's logs: made and marked, and in the end taken away by its mark.
+"""The folder of one run's logs: created and marked, and later removed by its mark.
 
 The mark tells which files Deck writes there. Nothing else is ever removed: neither a folder that
 has no mark, nor what a person has put beside the logs.

@@ -1,4 +1,4 @@
-"""Bytes of a pipe to lines: cut anywhere, of any length, with progress that rewrites its line."""
+"""Bytes of a pipe to lines: in any pieces, of any length, with progress bars that redraw."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bytes of a line to text that can be shown anywhere: nothing in it is ever obeyed.
+"""Bytes of a line to text that can be shown anywhere: no control sequence survives.
 
 Colours are dropped (they tell the severity of a line that tells it no other way), and so is
 "erase to the end of the line" of progress bars. Every other escape sequence stays, visible: its

@@ -1,4 +1,4 @@
-"""How long processes are given whose supervisor is gone, by whoever ends them in its place."""
+"""The time-outs for ending processes whose supervisor is gone."""
 
 KILLED_AFTER_S = 0.7
 """From SIGINT to SIGKILL: with the search around it less than the 2 s of the promise."""

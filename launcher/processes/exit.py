@@ -40,7 +40,7 @@ def signal_name(number: int) -> str:
 
 
 class Reaper:
-    """Collects every child that ends, the adopted orphans too, and tells who waits for one.
+    """Collects every child that ends, the adopted orphans too, and tells whoever waits for one.
 
     A child is its number and its start: the number alone may be another's by the time it is
     asked for.

@@ -45,7 +45,7 @@ _MOST = 40
 
 
 class BurntPorts:
-    """Participants that nobody else becomes as long as this process lives."""
+    """Participant ids that nobody else can take while this process lives."""
 
     def __init__(self, folder: Path = SHARED_MEMORY) -> None:
         self._descriptors: deque[int] = deque()

@@ -1,4 +1,4 @@
-"""What ties the life of one process to another's: prctl(2) and its kin.
+"""Ties the life of one process to another's: prctl(2) and similar calls.
 
 A supervisor adopts every descendant whose parent ends (`become_subreaper`), and a node dies with
 the supervisor (`die_with_parent`). What a fork has left of its parent's threads is not touched at

@@ -1,4 +1,4 @@
-"""Files of shared memory whose maker was killed while it made them.
+"""Shared memory files whose creator was killed while creating them.
 
 Each file of Fast DDS begins with a word by which boost.interprocess tells how far its making is.
 Whoever opens one that is being made waits until it is made, and for ever if its maker is dead: one
@@ -37,7 +37,7 @@ _CORRUPTED = STATES[4]
 
 @dataclass(frozen=True)
 class Discarded:
-    """What has become of the files that nobody will ever finish."""
+    """What was done with the incomplete files."""
 
     removed: tuple[str, ...]
     """Names of files."""

@@ -1,4 +1,4 @@
-"""A signal to one very process, and to no other that has been given its number since."""
+"""A signal to exactly one process, never to another that has reused its pid."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NO_PIDFD = (errno.ENOSYS, errno.EPERM)
 
 
 class Identified(Protocol):
-    """A process by what no other has: its number together with its start."""
+    """A process, identified by its pid and its start time."""
 
     @property
     def pid(self) -> int:

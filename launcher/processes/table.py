@@ -32,7 +32,7 @@ _EXEC_LOOK_EVERY_S = 0.0005
 
 @dataclass(frozen=True)
 class Process:
-    """One living process as of now."""
+    """One living process."""
 
     pid: int
     name: str

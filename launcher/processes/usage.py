@@ -24,7 +24,7 @@ class Usage:
 
 
 class UsageMeter:
-    """Measures again and again; remembers what the last measurement said."""
+    """Measures repeatedly; remembers the last measurement."""
 
     _MEMORY_EVERY = 3
     """Measurements between two of memory, for which the kernel walks all pages of a process."""

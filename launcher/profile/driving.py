@@ -1,4 +1,4 @@
-"""Which nodes give orders to the wheels: two sessions of them are never in one domain."""
+"""Which nodes command the wheels: two sessions with such nodes never share a domain."""
 
 from __future__ import annotations
 

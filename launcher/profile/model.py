@@ -176,7 +176,7 @@ _DEVICE: dict[str, Any] = {
 
 
 class Document(BaseModel):
-    """Common to all parts of a profile: nothing unknown, nothing converted behind one's back."""
+    """Common to all parts of a profile: nothing unknown, nothing converted silently."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 

@@ -1,4 +1,4 @@
-"""The names of panels that a profile may list: words of the file's format, known here first.
+"""The names of panels that a profile may list: part of the file format, defined here.
 
 What a panel is made of, and which topics it shows, `tui.panels.registry` knows for these names.
 """

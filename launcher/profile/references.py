@@ -22,7 +22,7 @@ REFERRING = ("params", "exec", "env")
 
 
 class Filler:
-    """Puts values in; a name in `${}` that is none of ours stays as it stands."""
+    """Puts values in; an unknown name in `${}` is left as it is."""
 
     def __init__(
         self, settings: Mapping[str, Scalar], places: Mapping[str, str], problems: Problems

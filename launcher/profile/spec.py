@@ -1,4 +1,4 @@
-"""What a profile comes to: plain data that can be started."""
+"""The result of loading a profile: plain data that can be started."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A profile as a tree that remembers where in which file everything stands.
+"""A profile as a tree that remembers the position of everything in its file.
 
 The tree is immutable and may share branches (YAML's aliases); `plain` turns it into dicts, lists
 and scalars for validation, `place_of` finds the place that a validation error speaks of.
@@ -72,7 +72,7 @@ Tree: TypeAlias = Scalar | Branch | Listing
 
 @dataclass
 class Problems:
-    """Collects what is wrong, so that all of it is told at once."""
+    """Collects the problems, so that all are reported at once."""
 
     found: list[ProfileProblem] = field(default_factory=list)
 

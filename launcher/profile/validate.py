@@ -1,4 +1,4 @@
-"""From a tree to validated documents; what pydantic finds becomes problems in plain words."""
+"""From a tree to validated documents; pydantic's findings become problems in plain words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""YAML to a tree with places, built from PyYAML's events so that nothing can blow up.
+"""YAML to a tree with positions, built from PyYAML's events, so memory stays bounded.
 
 Aliases share branches and are counted as if written out, depth is bounded, no tag constructs
 anything. What a word stands for is said in `text.yaml_scalars`.

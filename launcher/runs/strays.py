@@ -1,4 +1,4 @@
-"""Processes that an earlier run left behind: its supervisor is gone, and they are not.
+"""Processes that an earlier run left behind: their supervisor is gone, but they still run.
 
 It takes a supervisor and its spawn server killed together to leave any. They are told of, and
 ended only if somebody asks for it.

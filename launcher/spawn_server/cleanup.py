@@ -1,4 +1,4 @@
-"""What the spawn server does when the supervisor is gone: end all that is left of its run.
+"""What the spawn server does when the supervisor is gone: end everything that is left of its run.
 
 The nodes themselves died with the supervisor (PDEATHSIG); their children, and whatever has left
 the nodes' groups, did not.

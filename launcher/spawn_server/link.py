@@ -1,4 +1,4 @@
-"""The supervisor's end of one spawn server: messages go out in order, and nobody waits for that."""
+"""The supervisor's end of one spawn server: messages are sent in order, without blocking."""
 
 from __future__ import annotations
 

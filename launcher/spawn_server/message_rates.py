@@ -47,7 +47,7 @@ class _Counter:
 
 
 class MessageRates:
-    """Counts the messages of topics from the first time that is asked for."""
+    """Counts the messages of a topic from the first request on."""
 
     def __init__(self, node: Node) -> None:
         """`node`: listens."""

@@ -1,4 +1,4 @@
-"""What the spawn server imports before nodes are forked from it, so that they need not.
+"""What the spawn server imports before it forks nodes, so that they do not have to.
 
 No context, no node, no thread of ours: a fork copies only the thread that forks.
 """

@@ -1,4 +1,4 @@
-"""Who must be there before whom, and who must go before whom."""
+"""The order in which nodes start and stop."""
 
 from __future__ import annotations
 

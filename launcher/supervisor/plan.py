@@ -1,4 +1,4 @@
-"""What a supervisor is given to run: plain data, so that it need not read profiles itself.
+"""What a supervisor is given to run: plain data, so that it does not have to read profiles itself.
 
 The client has read and validated the profile; the supervisor starts while it does, and gets
 the plan as one line of JSON.

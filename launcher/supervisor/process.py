@@ -1,4 +1,4 @@
-"""A node's process with all that descends from it: started, found, signalled, let go of."""
+"""A node's process with all that descends from it: started, found, signalled, released."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _FRESH_S = 0.02
 
 
 class ProcessScan:
-    """The processes of all nodes, looked up no more often than makes sense."""
+    """The processes of all nodes, looked up only as often as useful."""
 
     def __init__(self, members: Members) -> None:
         self.members = members

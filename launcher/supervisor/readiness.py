@@ -44,7 +44,7 @@ class ReadyCondition:
 
 @dataclass(frozen=True)
 class Seen:
-    """What there is of a topic whose condition does not hold."""
+    """The state of a topic whose condition is not met."""
 
     types: tuple[str, ...]
     """Of its publishers."""
@@ -57,7 +57,7 @@ class UnwatchableError(Exception):
 
 
 class Readiness:
-    """Tells when conditions hold, all of them known from the start."""
+    """Reports when conditions are met; all of them are known from the start."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""One run of the supervisor, from its plan to its last word."""
+"""One run of the supervisor, from its plan to its end."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def _keep_last_words(folder: Path) -> None:
 
 
 class Supervisor:
-    """Fits `Controlled`: what clients ask for ends here."""
+    """Implements `Controlled`: handles the clients' requests."""
 
     def __init__(self, plan: Plan, run_folder: RunFolder, spawn_server: SpawnServerHandle) -> None:
         self.info = run_folder.record.session

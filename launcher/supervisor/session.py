@@ -29,7 +29,7 @@ USAGE_EVERY_S = 2.0
 
 
 class Session:
-    """Fits `Surroundings`: each node asks here for what it needs."""
+    """Implements `NodeContext`: gives each node what it needs."""
 
     def __init__(
         self,

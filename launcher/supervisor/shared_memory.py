@@ -1,4 +1,4 @@
-"""Nothing in shared memory holds up the nodes, and what was in their way is told of."""
+"""Clears shared memory of what would hang the nodes, and reports what was removed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LEAST_FREE_BYTES = 1 << 20
 
 
 class SharedMemory:
-    """To be cleared before nodes start and again and again: others are killed at any time."""
+    """Cleared before nodes start and periodically after: others may be killed at any time."""
 
     def __init__(
         self, tell: Callable[[Severity, Words], None], folder: Path = SHARED_MEMORY

@@ -1,4 +1,4 @@
-"""How a node's end, and what is waited for, are told in words."""
+"""Sentences about how a node ended, and what a node waits for."""
 
 from __future__ import annotations
 
