@@ -64,7 +64,7 @@ _AWAY_S = 0.5
 
 
 class ChassisNode(LessonNode):
-    """Sends at a pace of its own and at each command, publishes from the reader's thread."""
+    """Sends periodically and at each command, publishes from the reader's thread."""
 
     NAME = "chassis"
     SETTINGS = (

@@ -1,4 +1,4 @@
-"""The action of lesson 3: drives to a point in the odom frame, tells how far it is, can be stopped.
+"""The action of lesson 3: drives to a point in the odom frame, reports progress, can be cancelled.
 
 It reads /odom and publishes /drive `rate` times a second while it has a goal, and a stop when it
 has none any more. The way is found by `robot.motion.approach`: forward, in reverse for a point

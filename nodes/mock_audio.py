@@ -1,4 +1,4 @@
-"""A microphone and a loudspeaker that are not there.
+"""A simulated microphone and loudspeaker.
 
 Every `period` seconds somebody says a phrase into the microphone, as text in bytes where a real one
 would send sound; what comes for the loudspeaker is written to the log. The first phrase waits for

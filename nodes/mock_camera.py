@@ -1,4 +1,4 @@
-"""A camera that is not there: publishes a small film with a counting caption, 10 pictures a second.
+"""A simulated camera: publishes a small film with a counting caption, 10 pictures a second.
 
 With `scene` room it publishes what a camera on the simulated robot sees: it follows /mock/pose of
 mock_robot, and turns with /head_state.

@@ -1,4 +1,4 @@
-"""A robot that is not there: its serial devices, and the room that it drives in.
+"""A simulated robot: its serial devices, and the room that it drives in.
 
 In `folder` appear pico, tof_front, tof_rear and lsc16: pseudo-terminals that speak the bytes of
 the real devices. The drivers (chassis, tof_sonar, head_controller) take them for real ones. Behind
@@ -63,7 +63,7 @@ def _fault(device: str, about: str) -> Setting:
 
 
 class MockRobot(LessonNode):
-    """Lets the world go on, and carries bytes between it and the pseudo-terminals."""
+    """Steps the simulation, and carries bytes between it and the pseudo-terminals."""
 
     NAME = "mock_robot"
     SETTINGS = (

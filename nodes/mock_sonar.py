@@ -1,4 +1,4 @@
-"""A ToF sonar that is not there: publishes a distance in metres.
+"""A simulated ToF sonar: publishes a distance in metres.
 
 By REP-117 +inf says "nothing in range" (`value:=.inf` makes it constant) and nan says "no valid
 reading" (`dropout` makes some). Three patterns: random distances as in the course, a sweep to and

@@ -31,7 +31,7 @@ _NO_OPENCV = N_(
 
 
 class VlmAgentStub(LessonNode):
-    """Takes the newest picture at a modest pace."""
+    """Takes the newest picture at a low rate."""
 
     NAME = "vlm_agent"
     SETTINGS = (

@@ -1,4 +1,4 @@
-"""Text from outside made harmless: it may neither steer a terminal nor hide or lie in it.
+"""Text from outside made harmless: it can neither control a terminal nor hide in it.
 
 What cannot be seen, or changes how its neighbours are seen, is replaced by one visible character
 of one cell: control characters by their pictures (U+2400 and on), all else by U+FFFD. That is

@@ -1,4 +1,4 @@
-"""What was probably meant: the known word that comes near, and the number that was typed."""
+"""What was probably meant: the nearest known word, and the number that was typed."""
 
 from __future__ import annotations
 

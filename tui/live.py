@@ -44,7 +44,7 @@ SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 
 
 class RealTerminal:
-    """Has the app leave orderly whatever the terminal does, and remembers what was settled."""
+    """Has the app leave orderly whatever the terminal does, and stores the settings."""
 
     def __init__(self, stray: StrayOutput, settings: Settings) -> None:
         """`stray` takes what is printed past the screen."""

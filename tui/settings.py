@@ -18,12 +18,12 @@ from text.os_words import os_reason
 
 
 class SettingsError(Exception):
-    """The file cannot be used; the text names the place and the mend."""
+    """The file cannot be used; the text names the place and the fix."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Empty where nothing is settled."""
+    """What the user has set; empty where nothing is."""
 
     theme: str = ""
     language: str = ""

@@ -113,7 +113,7 @@ def cameras() -> list[str]:
 
 @dataclass(frozen=True)
 class SourceSetting(Text):
-    """A text that may as well be the number of a camera."""
+    """A text that may also be the number of a camera."""
 
     def accept(self, value: object) -> str:
         """A str; a number that was given without quotes becomes one."""

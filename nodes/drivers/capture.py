@@ -1,4 +1,4 @@
-"""A source of pictures that comes and goes: a thread of its own reads it, and opens it for ever.
+"""A source of pictures that comes and goes: a thread of its own reads it, and reopens it when lost.
 
 Every picture is taken as it comes, so that none waits in a queue; those that nobody wants are not
 even unpacked. The callback runs on the thread. A read may block for seconds inside of OpenCV: the
@@ -48,7 +48,7 @@ _NONE = N_("there is no camera at all (/dev/video*)")
 
 @dataclass
 class Pictures:
-    """What has come since the start of the node."""
+    """The pictures received since the node started."""
 
     came: int = 0
     taken: int = 0

@@ -1,4 +1,4 @@
-"""What the Pico tells, as ROS messages."""
+"""What the Pico reports, as ROS messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the chassis says, and how it tells its state."""
+"""The log messages of the chassis, and the sentences about its state."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def reasons(say: Speech, flags: Iterable[str]) -> str:
 
 
 class Standing:
-    """Tells in the log why the wheels stand: at once, and again for who looks later.
+    """Logs why the wheels stand still: at once, and again for those who look later.
 
     And what the Pico refuses, which makes them stand for a moment.
     """

@@ -1,4 +1,4 @@
-"""`~/frames`: what goes over a serial port, in words, for as long as somebody wants to know.
+"""`~/frames`: what goes over a serial port, in words, while somebody is subscribed.
 
 While nobody is subscribed, bytes are not even kept. See robot/frames/lines.py for the format.
 """

@@ -1,4 +1,4 @@
-"""A serial port that comes and goes: a thread of its own reads it, and opens it again for ever.
+"""A serial port that comes and goes: a thread of its own reads it, and reopens it when lost.
 
 Only one program at a time gets a port (an advisory lock, which pyserial and we respect). The
 callbacks run on the reader's thread. What goes over it is told on `~/frames` to whoever listens.
@@ -54,7 +54,7 @@ _SINCE = N_("connected to {port} for {seconds:.0f} s")
 
 @dataclass
 class Traffic:
-    """What went through since the start of the node."""
+    """The traffic since the node started."""
 
     octets_in: int = 0
     octets_out: int = 0

@@ -1,4 +1,4 @@
-"""The computer's side of the LSC-16: sends moves, and asks for the voltage to know that it lives.
+"""The computer's side of the LSC-16: sends moves, and asks for the voltage to see that it is there.
 
 The controller answers no move, so the answer to "how much voltage?" is all there is to tell it from
 another device, or from a wire that leads nowhere.

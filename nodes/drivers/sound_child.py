@@ -1,4 +1,4 @@
-"""The process that has PortAudio in it, as the node sees it."""
+"""The process that runs PortAudio, as seen by the node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A microphone or a loudspeaker that comes and goes: kept open by a thread of its own, for ever.
+"""A microphone or a loudspeaker that comes and goes: a thread of its own keeps it open.
 
 PortAudio runs in a process beside this one (`portaudio`), which is begun anew for each try. The
 callback `heard` runs on the thread.

@@ -1,4 +1,4 @@
-"""Sound that waits for the loudspeaker: a queue of bytes that forgets its oldest."""
+"""Sound that waits for the loudspeaker: a queue of bytes that drops the oldest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a microphone or a loudspeaker is, for /diagnostics."""
+"""The state of a microphone or a loudspeaker, for /diagnostics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the sound driver says, in both languages, by the way that the sound goes."""
+"""The messages of the sound driver, by the direction of the sound."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class GoalPose:
-    """Tells of one goal at a time; a pose without a frame says that there is none."""
+    """Publishes one goal at a time; a pose without a frame says that there is none."""
 
     def __init__(self, node: LessonNode) -> None:
         self._node = node

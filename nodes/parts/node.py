@@ -1,4 +1,4 @@
-"""What every lesson node is: a ROS node with described parameters and a voice."""
+"""The base of every lesson node: a ROS node with described parameters and translated logs."""
 
 from __future__ import annotations
 

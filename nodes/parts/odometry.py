@@ -21,7 +21,7 @@ _NO_NUMBER = N_("{topic} is not a number, not believed")
 
 
 class OdometryListener:
-    """Keeps the newest pose; one that is no number counts as none."""
+    """Keeps the newest pose; one with nan or infinity counts as none."""
 
     def __init__(self, node: LessonNode) -> None:
         self._say = node.say

@@ -1,4 +1,4 @@
-"""Parameters that say what they mean, and refuse values that mean nothing.
+"""Parameters that are described, and that refuse invalid values.
 
 A node lists its parameters as data. ROS gets descriptors with ranges from that list, and a value
 that does not fit is refused at the start and at run time, with a sentence that names the mend.
@@ -71,7 +71,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Number(Setting):
-    """A measure with a range; a whole number is taken as well as one with a point."""
+    """A quantity with a range; integers are accepted too."""
 
     low: float = 0.0
     high: float = 0.0

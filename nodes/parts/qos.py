@@ -1,4 +1,4 @@
-"""Qualities of service of the topics that nodes meet on."""
+"""The QoS of the topics that nodes share."""
 
 from __future__ import annotations
 

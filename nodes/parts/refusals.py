@@ -1,4 +1,4 @@
-"""What a node refuses of what it is asked, why, and how it says so.
+"""Which commands a node refuses, why, and how it reports that.
 
 A command with a number beyond the limits, or with a stamp that does not belong to this moment, is
 refused, and what is refused is a stop. That holds for the gate, the electronic differential and the

@@ -109,7 +109,7 @@ def _give_dds_time() -> None:
 
 
 class Ending:
-    """Turns the first SIGINT or SIGTERM into a wish to end, and sees to it that it is granted."""
+    """Turns the first SIGINT or SIGTERM into a request to end, and sees that the node ends."""
 
     def __init__(self) -> None:
         self.asked = False

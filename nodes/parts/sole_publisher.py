@@ -1,4 +1,4 @@
-"""Whether somebody else publishes what only this node should: he drives past it.
+"""Whether somebody else publishes what only this node should, and so bypasses it.
 
 ROS lets anybody publish anything; all that a node can do is to name who does. It does not refuse to
 go on: of a node that was killed the endpoint stays for up to 20 s, and its successor must drive.

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class GateSnapshot(NamedTuple):
-    """What the gate does just now."""
+    """The current state of the gate."""
 
     source: str = ""
     """Who drives, empty if nobody does."""

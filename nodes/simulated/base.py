@@ -1,4 +1,4 @@
-"""A base that is not there: obeys drive commands by the model of a bicycle, tells /odom and /tf.
+"""A simulated base: obeys drive commands by the bicycle model, publishes /odom and /tf.
 
 With `auto` it takes the place of a real one only if nobody publishes /odom for two seconds after
 the start, and steps back when somebody does: a robot with two odometries drives into a wall. Once

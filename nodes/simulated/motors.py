@@ -1,4 +1,4 @@
-"""/mock/motors: what the motors of the simulated robot truly do, whatever is told of them."""
+"""/mock/motors: what the motors of the simulated robot really do, whatever is reported."""
 
 from __future__ import annotations
 

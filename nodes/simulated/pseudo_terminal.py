@@ -1,4 +1,4 @@
-"""A serial device that is not there: a pseudo-terminal behind a name that stays."""
+"""A simulated serial device: a pseudo-terminal behind a permanent name."""
 
 from __future__ import annotations
 

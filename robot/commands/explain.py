@@ -1,4 +1,4 @@
-"""From pydantic's errors to problems that name one field, one place and the mend.
+"""From pydantic's errors to problems that name one field, one place and the fix.
 
 A command is one of several models; pydantic tells what is wrong with it as every one of them.
 Here the `action` decides which model was meant, and only that one is asked.

@@ -1,4 +1,4 @@
-"""Where the robot is on the floor, and where a command takes it: the model of a bicycle.
+"""Where the robot is on the floor, and where a command takes it: the bicycle model.
 
 The frame is the one that odometry counts in (x forward at the start, y to the left, metres); the
 robot's own point is the middle of its rear axle.

@@ -66,7 +66,7 @@ class SafetyZone:
 
 @dataclass(frozen=True)
 class Shares:
-    """How much of the asked speed is allowed, 0 to 1."""
+    """The share of the requested speed that is allowed, 0 to 1."""
 
     forward: float = 1.0
     backward: float = 1.0

@@ -1,4 +1,4 @@
-"""Which topics move a robot: what nobody publishes from a recording unless he asks for it."""
+"""Which topics move a robot: published from a recording only on request."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who drives: several sources of commands, ranked, and how old a command may grow.
+"""Who drives: several sources of commands, ranked, and how old a command may get.
 
 A source counts while its newest command is younger than `max_age_s`; the first in rank that
 counts drives, and the others are ignored. What an ignored source said is kept only for that

@@ -1,4 +1,4 @@
-"""Where an emergency stop is kept until somebody releases it: a file a domain, in one folder."""
+"""Where an emergency stop is kept until somebody releases it: one file per domain."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The checks that serial frames carry."""
+"""The checksums of serial frames."""
 
 from __future__ import annotations
 

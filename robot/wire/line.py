@@ -43,7 +43,7 @@ class LineCounts:
 
 
 class LineSplitter:
-    """Finds the bodies in a stream that comes in any cuts; keeps `LONGEST` bytes at most."""
+    """Finds the bodies in a stream that arrives in any pieces; keeps `LONGEST` bytes at most."""
 
     def __init__(self) -> None:
         self.counts = LineCounts()

@@ -134,7 +134,7 @@ def _battery(params: bytes) -> BatteryRequest | Battery | None:
 
 
 class ServoDecoder:
-    """Finds frames in a stream that comes in any cuts; keeps less than one frame."""
+    """Finds frames in a stream that arrives in any pieces; keeps less than one frame."""
 
     def __init__(self) -> None:
         self.octets = 0

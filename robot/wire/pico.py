@@ -55,7 +55,7 @@ class Hello:
 
 @dataclass(frozen=True)
 class Drive:
-    """Computer: what the wheels shall do; also the heartbeat."""
+    """Computer: the speeds and the steering; also the heartbeat."""
 
     seq: int
     left_rad_s: float
@@ -88,7 +88,7 @@ class Welcome:
 
 @dataclass(frozen=True)
 class Telemetry:
-    """Pico: how things are, 50 times a second."""
+    """Pico: its state, 50 times a second."""
 
     seq: int
     uptime_ms: int
@@ -130,7 +130,7 @@ def decode(line: bytes) -> Message | None:
 
 
 class PicoDecoder:
-    """Finds messages in a stream that comes in any cuts."""
+    """Finds messages in a stream that arrives in any pieces."""
 
     def __init__(self) -> None:
         self._lines = LineSplitter()

@@ -89,7 +89,7 @@ def decode(data: bytes) -> TofFrame | None:
 
 
 class TofDecoder:
-    """Finds readings in a stream that comes in any cuts; keeps less than two frames."""
+    """Finds readings in a stream that arrives in any pieces; keeps less than two frames."""
 
     def __init__(self) -> None:
         self.octets = 0

@@ -1,4 +1,4 @@
-"""A robot that is not there, in a room that is not there: the same orders give the same drive.
+"""A simulated robot in a simulated room: the same commands give the same drive.
 
 Time passes in steps of `STEP_S`. Each rear wheel follows what was asked of it with a lag, the
 steering turns at its own pace, the robot moves as a bicycle does, and stands where it touches

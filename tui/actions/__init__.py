@@ -1,4 +1,4 @@
-"""What a person can do, and all that derives from it.
+"""What a user can do, and everything derived from it.
 
 An action says what it needs of its target by a protocol beside it; it imports no screen.
 """

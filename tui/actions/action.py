@@ -1,4 +1,4 @@
-"""What a person can do: one class each, from which all else about it derives.
+"""What a user can do: one class each, from which everything else about it is derived.
 
 Key bindings, the footer, the palette, the help page and a user's keymap are made of these.
 """

@@ -53,7 +53,7 @@ class _SendAction(ComposerAction):
 
 
 class Send(_SendAction):
-    """The JSON on its way."""
+    """Send the JSON."""
 
     id = "composer.send"
     key = "ctrl+s"
@@ -69,7 +69,7 @@ class Send(_SendAction):
 
 
 class SendAnyway(_SendAction):
-    """Broken JSON on its way, to see it refused."""
+    """Send invalid JSON, to see it refused."""
 
     id = "composer.send_anyway"
     key = "ctrl+o"
@@ -89,7 +89,7 @@ class SendAnyway(_SendAction):
 
 
 class Templates(ComposerAction):
-    """A text to begin with."""
+    """Start from an example."""
 
     id = "composer.templates"
     key = "ctrl+t"
@@ -135,7 +135,7 @@ class NewerSent(ComposerAction):
 
 
 class NextProblem(ComposerAction):
-    """To where something is wrong."""
+    """Go to the next problem."""
 
     id = "composer.next_problem"
     key = "ctrl+n"

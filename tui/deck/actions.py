@@ -262,7 +262,7 @@ class HearAllNodes(DeckAction):
 
 
 class TurnPage(DeckAction):
-    """The panels that had no room."""
+    """Show the next page of panels."""
 
     id = "deck.page"
     key = "v,м"

@@ -89,7 +89,7 @@ class OneWay(DevicesAction):
 
 
 class OnlyBad(DevicesAction):
-    """What is no good frame, or everything."""
+    """Only bad frames and noise, or everything."""
 
     id = "devices.bad"
     key = "f,а"

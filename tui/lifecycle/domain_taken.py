@@ -67,7 +67,7 @@ class StartTogether(Action["DomainTakenScreen"]):
 
 
 class StartNot(Action["DomainTakenScreen"]):
-    """Not at all."""
+    """Do not start."""
 
     id = "domain_taken.not"
     key = "escape"

@@ -1,4 +1,4 @@
-"""What is left of a session that has ended by itself: nodes that run no more, topics gone silent.
+"""What is left of a session that has ended by itself: stopped nodes, silent topics.
 
 Nobody tells of either any more, so the last that was told must not stand there as if it were true.
 """

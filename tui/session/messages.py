@@ -1,4 +1,4 @@
-"""What happens outside, as messages to the screens: the only road by which data reaches widgets.
+"""What happens outside, as messages to the screens: the only way in which data reaches widgets.
 
 The app posts them to every screen that has been opened once. Handlers are named as Textual
 names them: `on_status_changed`, `on_log_arrived`, `on_graph_changed`.
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class StatusChanged(Message, bubble=False):
-    """Nodes of the session are not what they were."""
+    """The status of nodes has changed."""
 
     def __init__(self, nodes: Mapping[str, NodeStatus], changed: frozenset[str]) -> None:
         """Tell of all `nodes` in the profile's order, and of those that `changed`."""
@@ -58,4 +58,4 @@ class SessionChanged(Message, bubble=False):
 
 
 class LanguageChanged(Message, bubble=False):
-    """Every visible text is to be drawn anew."""
+    """Every visible text is to be redrawn."""

@@ -58,7 +58,7 @@ class DrivenByKeys(Protocol):
         """A key is down."""
 
     def close(self) -> None:
-        """Drive no more."""
+        """Stop driving."""
 
 
 class TeleopAction(Action["DrivenByKeys"]):

@@ -1,4 +1,4 @@
-"""The last look at what goes to the terminal: nothing in a widget's text is ever obeyed.
+"""The last look at what goes to the terminal: no control sequence of a widget's text gets through.
 
 Who shows text from outside makes it plain, so that it is seen and measured as it is shown. What
 somebody forgot, and what is typed or pasted into a field of Textual's own, is found here.

@@ -1,4 +1,4 @@
-"""Frames for the terminal with all left out that it shows already: SSH is a slow line.
+"""Frames for the terminal without what it shows already: SSH is a slow line.
 
 Textual redraws whole regions, and gives every piece of text its full style and a reset. Here the
 cells that the terminal shows are remembered, and only those that differ are sent, with only what

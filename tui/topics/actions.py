@@ -208,7 +208,7 @@ class NextPlotWindow(TopicsAction):
 
 
 class ClearPlot(TopicsAction):
-    """Nothing plotted any more."""
+    """Remove everything from the plot."""
 
     id = "topics.plot_clear"
     key = "D,В"
@@ -359,7 +359,7 @@ class ShowHousekeeping(TopicsAction):
 
 
 class OpenPublish(TopicsAction):
-    """A message of one's own."""
+    """Open the publishing dialog."""
 
     id = "topics.publish"
     key = "P,З"

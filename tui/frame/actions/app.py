@@ -257,7 +257,7 @@ class EndSession(SessionAction):
 
 
 class Redraw(AppAction):
-    """Everything anew."""
+    """Redraw everything."""
 
     id = "app.redraw"
     key = "ctrl+l"

@@ -36,7 +36,7 @@ class ReplayAction(Action["Host"]):
 
 
 class PlayPause(ReplayAction):
-    """Stand still, or go on."""
+    """Pause, or play."""
 
     id = "replay.toggle"
     key = "f7"
@@ -58,7 +58,7 @@ class PlayPause(ReplayAction):
 
 
 class Step(ReplayAction):
-    """One message on."""
+    """One message forward."""
 
     id = "replay.step"
     key = "full_stop,ю"

@@ -1,4 +1,4 @@
-"""What the map is drawn from, out of the messages: pose, goal and room. Whatever comes is borne."""
+"""What the map is drawn from, out of the messages: pose, goal and room. Any input is tolerated."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class PublishMessage(PublishAction):
 
 
 class PublishAtRate(PublishAction):
-    """The message, again and again."""
+    """Publish the message periodically."""
 
     id = "publish.rate"
     key = "ctrl+g"
@@ -76,7 +76,7 @@ class PublishAtRate(PublishAction):
 
 
 class StopPublication(PublishAction):
-    """No more of it."""
+    """Stop publishing it."""
 
     id = "publish.stop"
     key = "f12"

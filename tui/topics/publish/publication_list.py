@@ -1,4 +1,4 @@
-"""What Deck publishes again and again, with how many were sent."""
+"""What Deck publishes periodically, with the number of messages sent."""
 
 from __future__ import annotations
 
