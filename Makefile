@@ -31,7 +31,7 @@ help:
 	@echo 'make lint   style, types and who may import whom'
 	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
 	@echo 'make lock   ask for newer libraries and write down which, with their hashes'
-	@echo 'make architecture  draw the picture in ARCHITECTURE.md anew, from the code'
+	@echo 'make architecture  redraw the picture in ARCHITECTURE.md from the code'
 	@echo 'make clean  remove what the others made'
 
 setup: catalogues
