@@ -7,6 +7,8 @@
         '''Newest lines at the bottom, warnings marked by a word and a colour.'''
         assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=look.settle)
 
+`snap_compare` keeps an SVG, for the main state of a screen and for what is drawn; `dump_compare`
+(`tests.tui.text_dump`) is called in the same way and keeps text and styles, for all else.
 The recorded session and graph are those of `tests.tui.recorded`; the clock stands still
 (`frozen_clock` in conftest), nothing blinks, nothing is animated.
 """
@@ -83,3 +85,5 @@ def _looks(chosen: Sequence[tuple[tuple[int, int], str]]) -> pytest.MarkDecorato
 every_look = _looks([(size, language) for size in SIZES for language in LANGUAGES])
 both_languages = _looks(list(zip(SIZES[:2], LANGUAGES, strict=True)))
 """For a state of a screen of which `every_look` is shown already: narrow and in Russian."""
+one_look = _looks([(SIZES[0], LANGUAGES[0])])
+"""For a secondary state, as a dialog, an error or a filter: narrow and in English."""

@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 from launcher.status import NodeState
 from tests.tui.app_runs import opened
 from tests.tui.recorded import RecordedPad
-from tests.tui.snapshots import Look, SnapCompare, every_look
+from tests.tui.snapshots import Look, SnapCompare, one_look
 from text.i18n import N_
 from tui.actions import REGISTRY, Action, bindings
 from tui.app import DeckApp
@@ -35,15 +35,15 @@ def help_text(app: DeckApp) -> str:
     return " ".join(app.screen.query_one(Page).text.split())
 
 
-@every_look
-def test_help_looks(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_help_looks(look: Look, dump_compare: SnapCompare) -> None:
     """What the Deck shows, its keys, the keys of every screen; each with what it does."""
 
     async def ask(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)
         await pilot.press("f1")
 
-    assert snap_compare(look.app(), terminal_size=look.size, run_before=ask)
+    assert dump_compare(look.app(), terminal_size=look.size, run_before=ask)
 
 
 async def test_keys_keep_their_order_whatever_was_imported_first(

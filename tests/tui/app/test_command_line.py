@@ -124,7 +124,7 @@ async def test_of_hostile_text_what_is_seen_is_what_is_sent() -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_looks(language: str, snap_compare: SnapCompare) -> None:
+def test_looks(language: str, dump_compare: SnapCompare) -> None:
     """An empty line with its words, nobody listening, a known word, an unknown one in warning."""
     set_language(language)
     lines = [CommandLine() for _line in range(4)]
@@ -138,4 +138,4 @@ def test_looks(language: str, snap_compare: SnapCompare) -> None:
         lines[3].screen.set_focus(None)
 
     stage = Stage([(line, (56, 2)) for line in lines], fill=fill)
-    assert snap_compare(stage, terminal_size=(60, 18), run_before=stage.filled)
+    assert dump_compare(stage, terminal_size=(60, 18), run_before=stage.filled)

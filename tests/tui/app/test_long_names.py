@@ -12,7 +12,7 @@ from graph.data import NodeRow
 from launcher.status import NodeState, NodeStatus
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, RecordedGraph, RecordedPad, RecordedSession, lesson_update
-from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
+from tests.tui.snapshots import Look, SnapCompare, one_look, settle
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.graph.screen import GraphScreen
@@ -94,8 +94,8 @@ async def test_it_is_told_as_soon_as_the_window_is_too_narrow_for_it() -> None:
             assert bool(told_below(app)) == cut, size
 
 
-@both_languages
-def test_a_name_and_a_reason_that_are_cut(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_name_and_a_reason_that_are_cut(look: Look, dump_compare: SnapCompare) -> None:
     """The table, below it the chosen node's whole name and state, and the log as ever."""
 
     async def choose(pilot: Pilot[Any]) -> None:
@@ -106,4 +106,4 @@ def test_a_name_and_a_reason_that_are_cut(look: Look, snap_compare: SnapCompare)
 
     node = replace(NODES["camera"], name=LONG, state=NodeState.FAILED, detail=REASON, pid=None)
     app = look.app("deck", pad_with(node))
-    assert snap_compare(app, terminal_size=look.size, run_before=choose)
+    assert dump_compare(app, terminal_size=look.size, run_before=choose)

@@ -12,7 +12,7 @@ from graph.data import GraphUpdate, NodeRow, Sample
 from launcher.status import NodeState
 from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, NOW_S, RecordedPad, lesson_update, sample
-from tests.tui.snapshots import Look, SnapCompare, both_languages, settle
+from tests.tui.snapshots import Look, SnapCompare, one_look, settle
 from text.i18n import set_language
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
@@ -227,8 +227,8 @@ async def test_russian() -> None:
         assert told.startswith("my_node запущен не из Deck")
 
 
-@both_languages
-def test_a_node_started_by_hand(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_node_started_by_hand(look: Look, dump_compare: SnapCompare) -> None:
     """Below Deck's own, chosen: `outside` and dashes; its line in the log; no key to stop it."""
     pad = RecordedPad()
     app = look.app("deck", pad)
@@ -238,4 +238,4 @@ def test_a_node_started_by_hand(look: Look, snap_compare: SnapCompare) -> None:
         await show(pad, pilot, graph("/my_node", samples=(said("I am awake"),)))
         await pilot.press("end")
 
-    assert snap_compare(app, terminal_size=look.size, run_before=by_hand)
+    assert dump_compare(app, terminal_size=look.size, run_before=by_hand)

@@ -21,7 +21,7 @@ from tests.tui.recorded import (
     sample,
 )
 from tests.tui.recorded_lesson import topic
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, one_look, settle
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.frame import title
@@ -193,18 +193,18 @@ async def test_the_picker_s_first_row_looks_at_the_domain() -> None:
         assert app.feed.session.run_id == WATCH
 
 
-@every_look
-def test_a_robot_of_others(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_robot_of_others(look: Look, dump_compare: SnapCompare) -> None:
     """Who runs, the panels for what is there, and the log as /rosout tells it."""
     app = app_of(look, pad(robot()))
-    assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
-def test_nobody_there(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_nobody_there(look: Look, dump_compare: SnapCompare) -> None:
     """An empty domain: says so in words."""
     app = app_of(look, pad(NOTHING))
-    assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
 def test_a_node_s_name_is_harmless() -> None:

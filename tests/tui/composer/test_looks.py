@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 from tests.tui.composer.test_composer import PARSER
 from tests.tui.composer.test_outcome import drive, head, result, safety, wheels
 from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from tui import clock
 from tui.app import DeckApp
 from tui.composer.screen import ComposerScreen
@@ -83,15 +83,15 @@ def test_accepted(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_wrong(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_wrong(look: Look, dump_compare: SnapCompare) -> None:
     """Wrong values underlined, their lines marked, each problem listed with its place."""
     app = look.app("composer", pad())
-    assert snap_compare(app, terminal_size=look.size, run_before=written(BAD))
+    assert dump_compare(app, terminal_size=look.size, run_before=written(BAD))
 
 
-@both_languages
-def test_refused_and_held(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_refused_and_held(look: Look, dump_compare: SnapCompare) -> None:
     """Sent all the same: refused with its reasons; the safety node holds the wheels meanwhile."""
     problem = {
         "field": "commands[0].pan", "line": 4, "column": 36, "message": "must be a number",
@@ -102,28 +102,28 @@ def test_refused_and_held(look: Look, snap_compare: SnapCompare) -> None:
         (0.2, safety("obstacle at 0.38 m")),
     )
     before = written(BAD, "ctrl+o", came=came)
-    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_hostile_text(language: str, snap_compare: SnapCompare) -> None:
+def test_hostile_text(language: str, dump_compare: SnapCompare) -> None:
     """Escape sequences and markup in the editor, the problems and the answer: all harmless."""
     look = Look((80, 24), language)
     text = '{"thought": "\x1b]52;c;aGVsbG8=\x07 [red] \u202e", "\x1b[2J": "[/]"}'
     answer = result(event="accepted", commands=1, thought="[b]\x1b[31m\x00\u202e[/b]")
     before = written(text, "ctrl+o", came=((0.01, answer),))
-    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_templates(language: str, snap_compare: SnapCompare) -> None:
+def test_templates(language: str, dump_compare: SnapCompare) -> None:
     """A dialog over the composer lists the templates, right ones first."""
     look = Look((120, 40), language)
     before = written(None, "ctrl+t")
-    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
 
 
-def test_a_tiny_terminal(snap_compare: SnapCompare) -> None:
+def test_a_tiny_terminal(dump_compare: SnapCompare) -> None:
     """At 40x12 there is still an editor, a verdict and the beginning of what came."""
     app = Look((40, 12), "en").app("composer", pad())
-    assert snap_compare(app, terminal_size=(40, 12), run_before=written(None, "ctrl+s"))
+    assert dump_compare(app, terminal_size=(40, 12), run_before=written(None, "ctrl+s"))

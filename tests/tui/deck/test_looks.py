@@ -7,7 +7,7 @@ from typing import Any
 from textual.pilot import Pilot
 
 from tests.tui.deck_days import hello, llm, troubled
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look
 
 
 @every_look
@@ -16,30 +16,30 @@ def test_deck_looks(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app(), terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
-def test_deck_of_the_first_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_deck_of_the_first_lesson_looks(look: Look, dump_compare: SnapCompare) -> None:
     """One node above, its log below over the whole width, no panels and no empty frames."""
-    assert snap_compare(look.app(pad=hello()), terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(look.app(pad=hello()), terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
-def test_deck_of_the_llm_lesson_looks(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_deck_of_the_llm_lesson_looks(look: Look, dump_compare: SnapCompare) -> None:
     """Accepted, the drive, the head done: the trail of the newest JSON with its delays."""
-    assert snap_compare(look.app(pad=llm()), terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(look.app(pad=llm()), terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
-def test_deck_in_trouble_looks(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_deck_in_trouble_looks(look: Look, dump_compare: SnapCompare) -> None:
     """Failed, restarting and waiting nodes by sign and word; each empty panel says why."""
-    assert snap_compare(look.app(pad=troubled()), terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(look.app(pad=troubled()), terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
-def test_deck_stopped_looks(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_deck_stopped_looks(look: Look, dump_compare: SnapCompare) -> None:
     """The red line with the word and the key that releases stands under the title."""
 
     async def stop(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)
         await pilot.press("space")
 
-    assert snap_compare(look.app(), terminal_size=look.size, run_before=stop)
+    assert dump_compare(look.app(), terminal_size=look.size, run_before=stop)

@@ -13,7 +13,7 @@ from textual.widgets import Static
 from graph.data import Sample
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
 from tests.tui.recorded_devices import STATUSES, of_chassis, of_sonar, pad, update
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from tui.app import DeckApp
 from tui.devices import words as devices_words
 
@@ -54,23 +54,23 @@ def test_frames_of_the_chassis(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_frames_of_a_sonar(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_frames_of_a_sonar(look: Look, dump_compare: SnapCompare) -> None:
     """The second driver is chosen; the bytes are in a column of their own."""
     metres = (1.23, 1.24, 9.0, 0.1, 1.25)
     before = shown(of_sonar(*metres, language=look.language), keys=("down", "down"))
-    assert snap_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_an_unplugged_device(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_an_unplugged_device(look: Look, dump_compare: SnapCompare) -> None:
     """Why nothing comes from the last driver, with the mend."""
     before = shown(keys=("end",))
-    assert snap_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_lesson_without_drivers(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_lesson_without_drivers(look: Look, dump_compare: SnapCompare) -> None:
     """Says that there are none, and which profile has them."""
     nobody = RecordedPad(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
     app = look.app("devices", nobody)
@@ -83,4 +83,4 @@ def test_a_lesson_without_drivers(look: Look, snap_compare: SnapCompare) -> None
                 break
             await pilot.pause(0.01)
 
-    assert snap_compare(app, terminal_size=look.size, run_before=before)
+    assert dump_compare(app, terminal_size=look.size, run_before=before)

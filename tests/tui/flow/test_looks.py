@@ -10,7 +10,7 @@ from textual.pilot import Pilot
 from launcher.events import LogEvent
 from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, lesson_update
 from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from tui.app import DeckApp
 
 Before = Callable[[Pilot[Any]], Awaitable[None]]
@@ -50,32 +50,32 @@ def test_one_utterance(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("flow", pad()), terminal_size=look.size, run_before=spoken())
 
 
-@both_languages
-def test_nobody_has_spoken(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_nobody_has_spoken(look: Look, dump_compare: SnapCompare) -> None:
     """Why it is empty, and what to do: wait for the microphone, or type a word."""
     app = look.app("flow", pad())
-    assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
-def test_two_utterances(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_two_utterances(look: Look, dump_compare: SnapCompare) -> None:
     """The newest on top; the cursor is on the older one, at its third step."""
     before = spoken("n", "down", "down", "down", twice=True)
-    assert snap_compare(look.app("flow", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("flow", pad()), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_less_and_more(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_less_and_more(look: Look, dump_compare: SnapCompare) -> None:
     """Other logs shown, the microphone hidden, an even axis, the newest folded, and paused."""
     before = spoken("enter", "n", "down", "m", "l", "s", "p", twice=True)
-    assert snap_compare(look.app("flow", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("flow", pad()), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_nothing_to_speak_to(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_nothing_to_speak_to(look: Look, dump_compare: SnapCompare) -> None:
     """No topic that a voice or a command would come on: says so."""
     empty = RecordedPad(
         RecordedSession(lines=()), RecordedGraph(lesson_update(topics=(), samples={}))
     )
     app = look.app("flow", empty)
-    assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)

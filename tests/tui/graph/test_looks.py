@@ -13,7 +13,7 @@ from textual.widgets import Input
 from graph.data import CallResult, GoalStatus, GraphUpdate, ParametersResult, SeenGoal
 from tests.tui.recorded import RecordedGraph, RecordedPad
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, one_look, settle
 from tui.app import DeckApp
 from tui.graph.places import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
@@ -80,13 +80,13 @@ def test_a_node(look: Look, snap_compare: SnapCompare) -> None:
 
 
 @both_languages
-def test_parameters(look: Look, snap_compare: SnapCompare) -> None:
+def test_parameters(look: Look, dump_compare: SnapCompare) -> None:
     """Five parameters with type and limits; at 80x24 in place of the links, else below them."""
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE, "E", "down"))
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=at(NODE, "E", "down"))
 
 
-@both_languages
-def test_a_parameter_that_is_refused(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_parameter_that_is_refused(look: Look, dump_compare: SnapCompare) -> None:
     """A dialog with description, type, range, the typed value, and why the node refuses it."""
 
     def refuse(_screen: GraphScreen, graph: RecordedGraph) -> None:
@@ -97,29 +97,29 @@ def test_a_parameter_that_is_refused(look: Look, snap_compare: SnapCompare) -> N
         field.value = "99.0"
 
     before = at(NODE, "E", "down", refuse, "enter", type_it, "enter")
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_node_that_does_not_answer(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_node_that_does_not_answer(look: Look, dump_compare: SnapCompare) -> None:
     """In place of the parameters: they could not be read, and why."""
 
     def hang(_screen: GraphScreen, graph: RecordedGraph) -> None:
         graph.node_parameters[NODE.name] = ParametersResult(NODE.name, (), "no answer within 5 s")
 
     before = at(NODE, hang, "E")
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_service(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_service(look: Look, dump_compare: SnapCompare) -> None:
     """Type and nodes as links, a form that fits, sum 1 with its time; below the call itself."""
     before = at(SERVICE, "enter", "ctrl+s")
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_call_under_way_and_one_that_failed(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_call_under_way_and_one_that_failed(look: Look, dump_compare: SnapCompare) -> None:
     """The newest call waits, seconds are counted, F7 cancels; the one below failed by time-out."""
 
     def fail(_screen: GraphScreen, graph: RecordedGraph) -> None:
@@ -136,11 +136,11 @@ def test_a_call_under_way_and_one_that_failed(look: Look, snap_compare: SnapComp
         for _round in range(5):
             await pilot.pause()
 
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_an_action(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_an_action(look: Look, dump_compare: SnapCompare) -> None:
     """Goal form; two own goals, one succeeded, one at its twelfth feedback; one of another's."""
     before = at(ACTION, "enter", "ctrl+s", "ctrl+s", executing)
     theirs = SeenGoal(
@@ -148,23 +148,23 @@ def test_an_action(look: Look, snap_compare: SnapCompare) -> None:
         GoalStatus.CANCELING, 75.25, {"distance": 0.5}, 3,
     )  # fmt: skip
     update = graph_update(seen_goals=(theirs,))
-    assert snap_compare(app_of(look, update), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look, update), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_goal_of_another_client_is_to_be_cancelled(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_goal_of_another_client_is_to_be_cancelled(look: Look, dump_compare: SnapCompare) -> None:
     """A dialog asks: it names the action, the whole id, the state, and who waits for its end."""
     theirs = SeenGoal(ACTION.name, "", "8d00b7f4" * 4, GoalStatus.EXECUTING, 75.25)
     update = graph_update(seen_goals=(theirs,))
     before = at(ACTION, "enter", "f12")
-    assert snap_compare(app_of(look, update), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look, update), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_type(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_type(look: Look, dump_compare: SnapCompare) -> None:
     """JointState down to its fields, the header unfolded; below the topics that are of it."""
     before = at(TYPE, "enter", "right")
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
 @both_languages
@@ -174,8 +174,8 @@ def test_the_map(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_node_that_has_left(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_node_that_has_left(look: Look, dump_compare: SnapCompare) -> None:
     """The list marks it as gone; the detail says so, and what it last did."""
 
     def leave(_screen: GraphScreen, graph: RecordedGraph) -> None:
@@ -183,18 +183,18 @@ def test_a_node_that_has_left(look: Look, snap_compare: SnapCompare) -> None:
         graph.show(graph_update(nodes=rest))
 
     before = at(NODE, leave)
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=before)
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_an_empty_domain(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_an_empty_domain(look: Look, dump_compare: SnapCompare) -> None:
     """No node at all: it says why that may be."""
     app = app_of(look, GraphUpdate(0.0))
-    assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
 @pytest.mark.parametrize("drawn", [False, True], ids=["list", "map"])
-def test_hostile_names(drawn: bool, snap_compare: SnapCompare) -> None:
+def test_hostile_names(drawn: bool, dump_compare: SnapCompare) -> None:
     """Escape sequences, markup and endless names are shown as they are, and shortened."""
     look = Look((80, 24), "en")
     long = "/" + "endless/" * 40
@@ -206,10 +206,10 @@ def test_hostile_names(drawn: bool, snap_compare: SnapCompare) -> None:
     )
     app = app_of(look, graph_update(nodes=(evil, replace(NODE_ROWS[1], name=long))))
     before = at(GraphPlace(GraphKind.NODE, evil.name), *(("M",) if drawn else ()))
-    assert snap_compare(app, terminal_size=look.size, run_before=before)
+    assert dump_compare(app, terminal_size=look.size, run_before=before)
 
 
-def test_a_tiny_terminal(snap_compare: SnapCompare) -> None:
+def test_a_tiny_terminal(dump_compare: SnapCompare) -> None:
     """At 40x12 names are shortened; nothing breaks."""
     look = Look((40, 12), "en")
-    assert snap_compare(app_of(look), terminal_size=look.size, run_before=at(NODE))
+    assert dump_compare(app_of(look), terminal_size=look.size, run_before=at(NODE))

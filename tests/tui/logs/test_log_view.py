@@ -434,7 +434,7 @@ def sample_lines() -> list[LogLine]:
 
 
 def test_every_severity_and_a_gap(
-    snap_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch
+    dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Severities as words and colours, a colour for each node, escapes as pictures, a gap told."""
     monkeypatch.setenv("TZ", "UTC")
@@ -445,10 +445,10 @@ def test_every_severity_and_a_gap(
         view.log_filter = replace(view.log_filter, search="дистан")
         await pilot.press("up", "up", *["shift+up"] * 4)
 
-    assert snap_compare(LogApp(), terminal_size=(90, 20), run_before=prepare)
+    assert dump_compare(LogApp(), terminal_size=(90, 20), run_before=prepare)
 
 
-def test_a_narrow_log(snap_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_narrow_log(dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch) -> None:
     """Time, one letter and a short name are left; the text is folded between words."""
     monkeypatch.setenv("TZ", "UTC")
     time.tzset()
@@ -456,4 +456,4 @@ def test_a_narrow_log(snap_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch
     async def prepare(pilot: Pilot[None]) -> None:
         await shown(pilot, sample_lines())
 
-    assert snap_compare(LogApp(), terminal_size=(46, 16), run_before=prepare)
+    assert dump_compare(LogApp(), terminal_size=(46, 16), run_before=prepare)

@@ -191,7 +191,7 @@ def test_logs(look: Look, snap_compare: SnapCompare) -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_nodes_over_a_narrow_log(language: str, snap_compare: SnapCompare) -> None:
+def test_nodes_over_a_narrow_log(language: str, dump_compare: SnapCompare) -> None:
     """The list lies over the log; camera is mute, and the line below the log says so."""
     look = Look((80, 24), language)
 
@@ -202,11 +202,11 @@ def test_nodes_over_a_narrow_log(language: str, snap_compare: SnapCompare) -> No
         await pilot.pause()
         await pilot.press("down", "enter")
 
-    assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)
+    assert dump_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_a_search_and_chosen_lines(language: str, snap_compare: SnapCompare) -> None:
+def test_a_search_and_chosen_lines(language: str, dump_compare: SnapCompare) -> None:
     """The text found is marked, two lines are chosen, the log is paused, and all that is told."""
     look = Look((120, 40), language)
 
@@ -216,4 +216,4 @@ def test_a_search_and_chosen_lines(language: str, snap_compare: SnapCompare) -> 
         await pilot.pause()
         await pilot.press(*"way", "enter", "shift+up")
 
-    assert snap_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)
+    assert dump_compare(look.app("logs"), terminal_size=look.size, run_before=prepare)

@@ -22,7 +22,7 @@ from tests.tui.recorded_map import (
     room,
     stamped,
 )
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
+from tests.tui.snapshots import Look, SnapCompare, both_languages, one_look
 from tui.panels.map.panel import MapFeed
 from tui.panels.map.widget import RoomMap
 from tui.panels.panel import Panel
@@ -56,14 +56,14 @@ def pad(update: GraphUpdate) -> RecordedPad:
 # ---------------------------------------------------------------- how it looks
 
 
-@every_look
+@both_languages
 def test_deck_with_a_map_looks(look: Look, snap_compare: SnapCompare) -> None:
     """Walls and boxes, the path in curves, rays that end at walls, the goal, the truth beside."""
     app = look.app(pad=pad(map_update()))
     assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
+@one_look
 def test_deck_with_a_map_without_a_room_looks(look: Look, snap_compare: SnapCompare) -> None:
     """A grid of metres in place of a room; an open cone ahead, a broken mark behind."""
     update = map_update(

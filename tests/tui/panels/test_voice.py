@@ -107,7 +107,7 @@ async def test_silence_says_why() -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_looks(language: str, snap_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_looks(language: str, dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch) -> None:
     """Human and robot by name, sign and colour; text folded; sound as a line of levels."""
     import time
 
@@ -126,7 +126,7 @@ def test_looks(language: str, snap_compare: SnapCompare, monkeypatch: pytest.Mon
             panel.hear("human", tone(0.5, 0.01), NOW_S + 5.5)
 
     stage = Stage([(panels[0], (60, 10))], [(panels[1], (28, 10)), (panels[2], (28, 3))], fill=fill)
-    assert snap_compare(stage, terminal_size=(94, 18), run_before=stage.filled)
+    assert dump_compare(stage, terminal_size=(94, 18), run_before=stage.filled)
 
 
 @pytest.mark.parametrize(
@@ -189,7 +189,7 @@ async def test_the_microphone_is_told_by_its_level_or_by_its_absence() -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_levels_look(language: str, snap_compare: SnapCompare) -> None:
+def test_levels_look(language: str, dump_compare: SnapCompare) -> None:
     """Faint grey, speech green, loud yellow, cut off red; none in words; narrow ones a number."""
     set_language(language)
     states = (-58.0, -24.0, -9.0, -2.0, None)
@@ -204,4 +204,4 @@ def test_levels_look(language: str, snap_compare: SnapCompare) -> None:
     stage = Stage(
         [(panel, (44, 2)) for panel in wide], [(panel, (18, 2)) for panel in narrow], fill=fill
     )
-    assert snap_compare(stage, terminal_size=(70, 21), run_before=stage.filled)
+    assert dump_compare(stage, terminal_size=(70, 21), run_before=stage.filled)

@@ -16,7 +16,7 @@ from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
 from launcher.status import Who
 from tests.tui.app_runs import opened
 from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from text.sentences import say
 from tui.app import DeckApp
 from tui.lifecycle.domain_taken import DomainTakenScreen
@@ -56,13 +56,13 @@ def test_picker_looks(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("picker"), terminal_size=look.size, run_before=look.settle)
 
 
-@both_languages
+@one_look
 def test_picker_with_a_session_in_the_background_looks(
-    look: Look, snap_compare: SnapCompare
+    look: Look, dump_compare: SnapCompare
 ) -> None:
     """What runs in the background stands above the lessons, is chosen, and is told apart."""
     pad = RecordedPad(sessions=[RUNNING])
-    assert snap_compare(look.app("picker", pad), terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(look.app("picker", pad), terminal_size=look.size, run_before=look.settle)
 
 
 async def test_enter_starts_the_first_lesson_for_a_newcomer() -> None:
@@ -226,11 +226,11 @@ async def test_one_that_was_named_and_is_not_to_start_ends_with_words() -> None:
         assert "`--domain 43` is free" in app.sessions.parting_words
 
 
-@both_languages
-def test_domain_taken_looks(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_domain_taken_looks(look: Look, dump_compare: SnapCompare) -> None:
     """A dialog that names the session there and a free domain; three keys answer it."""
     pad = RecordedPad(refusal=taken(can_share=True))
-    assert snap_compare(look.app("deck", pad), terminal_size=look.size, run_before=look.settle)
+    assert dump_compare(look.app("deck", pad), terminal_size=look.size, run_before=look.settle)
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])

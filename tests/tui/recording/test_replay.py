@@ -12,7 +12,7 @@ from graph.bag.errors import unreadable
 from graph.bag.reading import Bag, TopicInBag
 from graph.replay.replay import Replay
 from tests.tui.replayed import BagPad, replayed
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look
 from tests.unit.bags import write_bag, write_robot_bag
 from text.i18n import set_language
 from tui.app import DeckApp
@@ -70,15 +70,15 @@ def test_replay_looks(look: Look, drive: Path, snap_compare: SnapCompare) -> Non
     assert snap_compare(app, terminal_size=look.size, run_before=there)
 
 
-@both_languages
-def test_replayed_topics_look(look: Look, tmp_path: Path, snap_compare: SnapCompare) -> None:
+@one_look
+def test_replayed_topics_look(look: Look, tmp_path: Path, dump_compare: SnapCompare) -> None:
     """Topics of the bag with rates as they were; the battery is of a package nobody has."""
     app = shown(look, write_bag(tmp_path / "walk"), "topics")
-    assert snap_compare(app, terminal_size=look.size, run_before=there)
+    assert dump_compare(app, terminal_size=look.size, run_before=there)
 
 
-@both_languages
-def test_a_cut_recording_looks(look: Look, tmp_path: Path, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_cut_recording_looks(look: Look, tmp_path: Path, dump_compare: SnapCompare) -> None:
     """The bar says that it is cut short, a toast says what is missing."""
     bag = write_bag(tmp_path / "walk", seconds=2000, hz=10)
     file = bag / "walk.mcap"
@@ -91,7 +91,7 @@ def test_a_cut_recording_looks(look: Look, tmp_path: Path, snap_compare: SnapCom
         await pilot.pause()
 
     app = shown(look, bag, "topics", 300.0)
-    assert snap_compare(app, terminal_size=look.size, run_before=ready)
+    assert dump_compare(app, terminal_size=look.size, run_before=ready)
 
 
 def state_is(replay: Replay, **wanted: object) -> bool:

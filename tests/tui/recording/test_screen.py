@@ -15,7 +15,7 @@ from graph.bag.errors import not_made
 from graph.recording import recorder as recording
 from graph.recording.recorder import RecordedTopic, RecordingStatus
 from tests.tui.app_runs import opened
-from tests.tui.snapshots import Look, SnapCompare, both_languages
+from tests.tui.snapshots import Look, SnapCompare, one_look
 from tui.app import DeckApp
 from tui.frame.title_bar import TitleBar
 
@@ -177,8 +177,8 @@ async def test_a_folder_that_cannot_be_made_is_said() -> None:
         assert not app.recording.active
 
 
-@both_languages
-def test_recording_looks(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_recording_looks(look: Look, dump_compare: SnapCompare) -> None:
     """The title tells for how long and how much; the lesson's name gives way to it."""
 
     async def record(pilot: Pilot[Any]) -> None:
@@ -191,4 +191,4 @@ def test_recording_looks(look: Look, snap_compare: SnapCompare) -> None:
         app.clear_notifications()
         await pilot.pause()
 
-    assert snap_compare(look.app(), terminal_size=look.size, run_before=record)
+    assert dump_compare(look.app(), terminal_size=look.size, run_before=record)

@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 
 from graph.data import EndpointInfo, GraphUpdate, Trouble
 from tests.tui.recorded import NOW_S, TOPICS, RecordedPad, lesson_update, sample
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from tests.tui.topics_room import CAMERA, depth_message, jpeg_message, with_camera
 from tui.app import DeckApp
 from tui.topics.detail import TopicDetail
@@ -56,29 +56,29 @@ def test_a_message(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_messages_that_fit_an_expression(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_messages_that_fit_an_expression(look: Look, dump_compare: SnapCompare) -> None:
     """Above the message stands the expression, and beside it that 1 of 1 messages fits."""
     before = shown("/drive", None, "f", *"m.drive.speed>0")
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_an_expression_that_is_wrong(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_an_expression_that_is_wrong(look: Look, dump_compare: SnapCompare) -> None:
     """In red beside the expression: the column, the part, and what is wrong with it."""
     before = shown("/drive", None, "f", *"speed>0")
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
+@one_look
 def test_a_picture(look: Look, snap_compare: SnapCompare) -> None:
     """The camera is chosen: colour bars over a grey ramp, with encoding, size and rate below."""
     before = shown("/camera/color/image_raw")
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_troubles(look: Look, dump_compare: SnapCompare) -> None:
     """Sorted by state, troubles first, each a mark and a word; the QoS mismatch is explained."""
     publisher = EndpointInfo("/lidar", "std_msgs/msg/Float32", "best_effort", "volatile")
     subscriber = EndpointInfo("/ai_brain", "std_msgs/msg/Float32", "reliable", "volatile")
@@ -100,11 +100,11 @@ def test_troubles(look: Look, snap_compare: SnapCompare) -> None:
     update = lesson_update(topics=rows, samples={})
     keys = ("greater_than_sign",) * (7 if look.size[0] >= 100 else 6)
     before = shown("/sensor/sonar_front", update, *keys)
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_endpoints(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_endpoints(look: Look, dump_compare: SnapCompare) -> None:
     """Two mended by words above, a type that differs, then every endpoint with its policies."""
     kind = "std_msgs/msg/Float32"
     lidar = EndpointInfo("/lidar", kind, "best_effort", "volatile", 5, "keep_last", 0.1, 0.5, 2.0,
@@ -121,10 +121,10 @@ def test_endpoints(look: Look, snap_compare: SnapCompare) -> None:
         replace(row, **ends) if row.name == "/sensor/sonar_front" else row for row in TOPICS
     )
     before = shown("/sensor/sonar_front", lesson_update(topics=rows), "e")
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
+@one_look
 def test_a_plot_of_two_fields(look: Look, snap_compare: SnapCompare) -> None:
     """A wave with a gap and a line that steps, each with its letter, its range and its marks."""
     before = shown("/drive", None, "enter", "down", "down", "down", "down", "V")
@@ -164,7 +164,7 @@ async def drawn(pilot: Pilot[Any]) -> None:
         pytest.param("sensor_msgs/msg/CompressedImage", jpeg_message(5000), id="broken"),
     ],
 )
-@both_languages
+@one_look
 def test_other_pictures(
     look: Look, snap_compare: SnapCompare, type_name: str, value: dict[str, Any]
 ) -> None:
@@ -185,8 +185,8 @@ def test_other_pictures(
     assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=decoded)
 
 
-@both_languages
-def test_an_unknown_type(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_an_unknown_type(look: Look, dump_compare: SnapCompare) -> None:
     """Rates stand in the head; in place of the message the package that would bring its type."""
     facts = {"type": "lidar_msgs/msg/Cloud", "package": "lidar_msgs", "reason": "not installed"}
     unknown: dict[str, Any] = {
@@ -197,7 +197,7 @@ def test_an_unknown_type(look: Look, snap_compare: SnapCompare) -> None:
         replace(row, **unknown) if row.name == "/sensor/sonar_front" else row for row in TOPICS
     )
     before = shown("/sensor/sonar_front", lesson_update(topics=rows, samples={}))
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
 def drive_and_sonar(at_s: float) -> GraphUpdate:
@@ -218,7 +218,7 @@ def drive_and_sonar(at_s: float) -> GraphUpdate:
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
-def test_hostile_text(language: str, snap_compare: SnapCompare) -> None:
+def test_hostile_text(language: str, dump_compare: SnapCompare) -> None:
     """A megabyte of escape sequences, markup and half characters: cut, and shown as it is."""
     look = Look((80, 24), language)
     rows = (
@@ -228,10 +228,10 @@ def test_hostile_text(language: str, snap_compare: SnapCompare) -> None:
     word = sample("/ai_command", "std_msgs/msg/String", {"data": HOSTILE})
     update = lesson_update(topics=rows, samples={"/ai_command": (word,)})
     before = shown("/ai_command", update, "tab", "enter")
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-def test_a_tiny_terminal(snap_compare: SnapCompare) -> None:
+def test_a_tiny_terminal(dump_compare: SnapCompare) -> None:
     """At 40x12 name and rate are left of the table, and a few lines of the message."""
     app = Look((40, 12), "en").app("topics", RecordedPad())
-    assert snap_compare(app, terminal_size=(40, 12), run_before=shown("/drive"))
+    assert dump_compare(app, terminal_size=(40, 12), run_before=shown("/drive"))

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from graph.data import Publication
 from tests.tui.recorded import lesson_update
-from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, settle
+from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from tui.app import DeckApp
 from tui.topics.publish.dialog import PublishDialog
 from tui.topics.screen import TopicsScreen
@@ -92,15 +92,15 @@ def test_a_form(look: Look, snap_compare: SnapCompare) -> None:
     assert snap_compare(app, terminal_size=look.size, run_before=filled(nothing))
 
 
-@both_languages
-def test_an_error(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_an_error(look: Look, dump_compare: SnapCompare) -> None:
     """A word for a number: line marked, value underlined, field named, nothing sent."""
     app = look.app("topics")
-    assert snap_compare(app, terminal_size=look.size, run_before=filled(wrong, "ctrl+s"))
+    assert dump_compare(app, terminal_size=look.size, run_before=filled(wrong, "ctrl+s"))
 
 
-@both_languages
-def test_running(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_running(look: Look, dump_compare: SnapCompare) -> None:
     """Three publications with rate, count and listeners; the third has ended and says why."""
 
     async def before(pilot: Pilot[Any]) -> None:
@@ -109,11 +109,11 @@ def test_running(look: Look, snap_compare: SnapCompare) -> None:
         assert isinstance(dialog, PublishDialog)
         await until(pilot, lambda: dialog.is_publishing)
 
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_a_new_topic(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_a_new_topic(look: Look, dump_compare: SnapCompare) -> None:
     """Half a type is typed: those that fit are listed below, the best one first."""
 
     async def before(pilot: Pilot[Any]) -> None:
@@ -123,11 +123,11 @@ def test_a_new_topic(look: Look, snap_compare: SnapCompare) -> None:
         kind = dialog.target.type
         await until(pilot, lambda: kind.is_listing and kind.value == "float")
 
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
 
-@both_languages
-def test_stopped(look: Look, snap_compare: SnapCompare) -> None:
+@one_look
+def test_stopped(look: Look, dump_compare: SnapCompare) -> None:
     """The title is red and says so while the emergency stop is engaged."""
 
     async def before(pilot: Pilot[Any]) -> None:
@@ -136,4 +136,4 @@ def test_stopped(look: Look, snap_compare: SnapCompare) -> None:
         assert isinstance(dialog, PublishDialog)
         await until(pilot, lambda: bool(dialog.query("TitleBar.-stop")))
 
-    assert snap_compare(look.app("topics"), terminal_size=look.size, run_before=before)
+    assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
