@@ -19,7 +19,7 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Float32
 
-from bench.until_stdin_ends import watch_stdin
+from bench.processes import watch_stdin
 
 MANY = tuple(f"/many/float_{number:02}" for number in range(100))
 MANY_HZ = 100.0

@@ -21,7 +21,7 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Image
 from std_msgs.msg import Float32
 
-from bench.until_stdin_ends import watch_stdin
+from bench.processes import watch_stdin
 
 FLOATS = tuple(f"/load/float_{number}" for number in range(10))
 IMAGE = "/load/image"

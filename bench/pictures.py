@@ -18,9 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.observer import program
-from bench.processes import cpu_s
+from bench.processes import cpu_s, watch_stdin
 from bench.screen import screen_processes
-from bench.until_stdin_ends import watch_stdin
 from tests.e2e.terminal import Terminal
 
 if TYPE_CHECKING:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+import sys
+import threading
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -50,3 +52,15 @@ def _pss_bytes(pid: int) -> int:
         return 0  # it has just ended
     match = re.search(r"^Pss:\s+(\d+) kB", text, re.MULTILINE)
     return int(match[1]) * 1024 if match else 0
+
+
+def watch_stdin() -> threading.Event:
+    """Return an event that is set once stdin has ended: whoever started this process is done."""
+    ended = threading.Event()
+
+    def read() -> None:
+        sys.stdin.read()
+        ended.set()
+
+    threading.Thread(target=read, daemon=True).start()
+    return ended
