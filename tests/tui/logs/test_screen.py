@@ -15,6 +15,7 @@ from launcher.events import LogEvent
 from launcher.status import Severity
 from tests.tui.recorded import LINES, RecordedPad, RecordedSession, line
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
+from tests.waiting import until
 from tui.frame.key_bar import KeyBar
 from tui.log_view.bar import LogBar
 from tui.logs.screen import LogsScreen
@@ -69,8 +70,8 @@ async def test_what_is_typed_without_a_pause_after_the_key_is_searched_for() -> 
         await settle(pilot)
         for key in ("slash", *"sonar"):
             pilot.app.post_message(Key(key, "/" if key == "slash" else key))
-        await pilot.pause()
-        assert screen_of(pilot).pane.view.log_filter.search == "sonar"
+        view = screen_of(pilot).pane.view
+        await until(lambda: view.log_filter.search == "sonar", "all that was typed")
         await pilot.press("slash", "x")
         assert screen_of(pilot).pane.view.log_filter.search == "sonar/x"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -11,6 +11,7 @@ from textual.pilot import Pilot
 from graph.bag.errors import unreadable
 from graph.bag.reading import Bag, TopicInBag
 from graph.replay.replay import Replay
+from tests import waiting
 from tests.tui.replayed import BagPad, replayed
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look
 from tests.unit.bags import write_bag, write_robot_bag
@@ -26,14 +27,10 @@ def drive(tmp_path: Path) -> Path:
     return write_robot_bag(tmp_path / "drive")
 
 
-async def until(pilot: Pilot[int], condition: object) -> None:
-    """Let the app work until the condition holds."""
-    assert callable(condition)
-    for _round in range(600):
-        if condition():
-            return
-        await pilot.pause(0.02)
-    pytest.fail("it has not come")
+async def until(pilot: Pilot[int], condition: Callable[[], object]) -> None:
+    """Let the app work until the condition holds, and handle what it has to then."""
+    await waiting.until(condition, "what is to come")
+    await pilot.pause()
 
 
 def text_of(app: DeckApp) -> str:
