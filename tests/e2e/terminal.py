@@ -149,7 +149,7 @@ class Terminal:
             screen = self.text()
             return screen if condition(screen) else None
 
-        return wait_until(shown, lambda: f"{what}; the screen:\n{self.text()}", within_s) or ""
+        return wait_until(shown, lambda: f"{what}; the screen:\n{self.text()}", within_s)
 
     def wait_exit(self, within_s: float = 30.0) -> int:
         """Wait until the program has ended; return its exit code."""
