@@ -1,5 +1,5 @@
-"""What a person sees: the app, its screens and widgets, built on Textual.
+"""The user interface: the app, its screens and its widgets, built on Textual.
 
-`live.run_screen` shows it on a terminal. Which folder may import which is a contract in
-`pyproject.toml`: screens know the app as `frame.host.Host` alone, and none imports it.
+`live.run_screen` runs it on a terminal. Which folder may import which is a contract in
+`pyproject.toml`: screens know the app only as `frame.host.Host`, and none of them imports it.
 """

@@ -6,12 +6,12 @@ import time
 
 
 def now() -> float:
-    """Return unix time in seconds."""
+    """Return Unix time in seconds."""
     return time.time()
 
 
 def time_of_day(time_s: float) -> str:
-    """Return the local time of a unix time, dashes for one that is in no year of a calendar."""
+    """Return the local time of a Unix time, or dashes if it is outside the calendar."""
     try:
         return time.strftime("%H:%M:%S", time.localtime(time_s))
     except (OverflowError, ValueError, OSError):
@@ -19,5 +19,5 @@ def time_of_day(time_s: float) -> str:
 
 
 def steady() -> float:
-    """Return the monotonic clock in seconds, the one that keys are stamped with."""
+    """Return the monotonic clock in seconds, the one used for key timestamps."""
     return time.monotonic()

@@ -1,8 +1,8 @@
-"""The places where Textual ends an app by an exception, led to `Faults` instead.
+"""The places where an exception would make Textual end the app, redirected to `Faults`.
 
-Textual 8 has no hook for them: whatever a message handler raises ends the widget's own loop, and
-the app, and a widget that cannot be drawn leaves the whole screen undrawn. Everything private of
-Textual that this takes is in this file and `tui.faults`; a test tells when it has gone.
+Textual 8 has no hook for them: an exception in a message handler ends the widget's own loop and the
+app, and a widget that cannot be drawn leaves the whole screen undrawn. All private parts of Textual
+that this needs are used in this file and `tui.faults`; a test fails when one of them disappears.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 _dispatch = MessagePump._dispatch_message  # noqa: SLF001 - see above
 _render_lines = Widget.render_lines
 _failed: WeakSet[Widget] = WeakSet()
-"""Widgets in whose place words stand."""
+"""Widgets that show an error message in their place."""
 
 
 @contextmanager
 def isolating() -> Iterator[None]:
-    """Let no exception of a widget get farther than that widget, in apps that have `Faults`."""
+    """Stop exceptions at the widget that raised them, in apps that have `Faults`."""
     MessagePump._dispatch_message = _guarded_dispatch  # type: ignore[method-assign]  # noqa: SLF001
     Widget.render_lines = _guarded_lines  # type: ignore[method-assign]
     try:
@@ -42,7 +42,7 @@ def isolating() -> Iterator[None]:
 
 
 async def _guarded_dispatch(self: MessagePump, message: Message) -> None:
-    """Handle a message; who fails at one handles the next."""
+    """Handle a message; a widget that fails on one message still gets the next."""
     try:
         await _dispatch(self, message)
     except Exception as error:
@@ -53,22 +53,22 @@ async def _guarded_dispatch(self: MessagePump, message: Message) -> None:
 
 
 def _guarded_lines(self: Widget, crop: Region) -> list[Strip]:
-    """Draw a widget; one that cannot be drawn says so in its own place."""
+    """Draw a widget; if that fails, show an error message in its place."""
     try:
         strips = _render_lines(self, crop)
-    except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+    except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
         words = bear(self, error)
         _failed.add(self)
         return _in_its_place(self, words, crop)
     if self in _failed:
         _failed.discard(self)
-        # Of the words there may be some left around what is drawn now.
+        # Remnants of the error message may surround what is drawn now.
         self.refresh()
     return strips
 
 
 def _in_its_place(widget: Widget, words: str, crop: Region) -> list[Strip]:
-    # The first frame does without.
+    # Not needed for the first frame.
     from tui.widgets.words import word_strips
 
     width, base = widget.outer_size.width, _style_of(widget)
@@ -80,7 +80,7 @@ def _in_its_place(widget: Widget, words: str, crop: Region) -> list[Strip]:
 
 
 def _style_of(widget: Widget) -> Style:
-    """The widget's own style, unless that is what has failed."""
+    """Return the widget's own style, unless that is what failed."""
     try:
         style: Style = widget.rich_style
     except Exception:  # noqa: BLE001 - words in any style are better than none

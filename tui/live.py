@@ -1,4 +1,4 @@
-"""The app on a real terminal: signals, hang-ups, stray output, and settings that last."""
+"""The app on a real terminal: signals, hang-ups, stray output, and saved settings."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 LOOK_S = 0.5
-"""How often the terminal is asked whether it is still there."""
+"""How often to check that the terminal is still there."""
 PATIENCE_S = 15.0
-"""How long a session may take to stop when there is nobody to look at it any more."""
+"""How long a session may take to stop once its terminal is gone."""
 GARBAGE_AFTER = 10_000
-"""New objects after which garbage is looked for; a screen makes and drops thousands a second."""
+"""New objects before a garbage collection; a screen creates and drops thousands a second."""
 SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 
 
 class RealTerminal:
-    """Has the app leave orderly whatever the terminal does, and stores the settings."""
+    """Makes the app exit cleanly whatever the terminal does, and saves the settings."""
 
     def __init__(self, stray: StrayOutput, settings: Settings) -> None:
-        """`stray` takes what is printed past the screen."""
+        """Pass `stray`, which catches output printed outside the screen."""
         self._stray = stray
         self._settings = settings
         self._stray_count = 0
@@ -56,7 +56,7 @@ class RealTerminal:
         self._app: DeckApp | None = None
 
     def arrive(self, app: DeckApp) -> None:
-        """Give the app its settings, and watch the terminal."""
+        """Apply the settings to the app, and watch the terminal."""
         self._app = app
         if self._settings.theme:
             app.theme = self._settings.theme
@@ -69,17 +69,17 @@ class RealTerminal:
 
     @property
     def app(self) -> DeckApp:
-        """The app that has arrived."""
+        """The running app."""
         assert self._app is not None
         return self._app
 
     @property
     def terminal_fd(self) -> int:
-        """Where the terminal is written to."""
+        """File descriptor that the terminal is written to."""
         return self._stray.terminal_fd
 
     def desert(self, code: int) -> None:
-        """Leave because nobody is there any more, or because the system says so."""
+        """Exit because the terminal is gone, or because a signal says so."""
         if self._deserted:
             self.app.sessions.stop_now()
             return
@@ -88,7 +88,7 @@ class RealTerminal:
         self.app.set_timer(PATIENCE_S, self.app.sessions.stop_now)
 
     def remember(self, **values: str) -> None:
-        """Keep this theme, language or lesson in the file of settings."""
+        """Save the current theme, language and lesson in the settings file."""
         changed: Any = replace(self._settings, **values)  # type: ignore[arg-type]
         if self._app is None or not self._app.is_running or changed == self._settings:
             return
@@ -99,7 +99,7 @@ class RealTerminal:
             self._app.notify(plain(str(error)), severity="warning", markup=False)
 
     def note_fault(self, words: str, trace: str) -> None:
-        """Keep what has failed in the file of stray output, and tell of it in the log."""
+        """Write a fault to the file of stray output, and report it in the log."""
         self._stray.write(trace)
         self._note([words], Severity.ERROR)
 
@@ -110,15 +110,15 @@ class RealTerminal:
         self._note(self._stray.new_lines(), Severity.INFO)
 
     def _note(self, texts: Sequence[str], severity: Severity) -> None:
-        """Add lines to the log, by the node `deck`."""
+        """Add lines to the log as the node `deck`."""
         first, self._stray_count = self._stray_count + 1, self._stray_count + len(texts)
         if texts:
             self.app.feed.note(_as_lines(texts, first, severity))
 
     def _settle(self) -> None:
-        """Once the first session is seen, look for garbage among what comes after that alone.
+        """Once the first session is shown, exclude all existing objects from garbage collection.
 
-        All there is by then, most of it code, would hold up a key for 0.1 s each time.
+        Most of them are code, and traversing them would delay a key by 0.1 s each time.
         """
         if not self._settled and self.app.feed.update is not None:
             self._settled = True
@@ -126,7 +126,7 @@ class RealTerminal:
 
 
 def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogLine]:
-    """Return what was printed past the screen as lines of the log, by the node `deck`."""
+    """Return stray output as log lines of the node `deck`."""
     now_s = clock.now()
     return [
         LogLine("deck", first + at, now_s, severity, plain(text), source="deck")
@@ -144,10 +144,10 @@ def run_screen(
     attach: str | None = None,
     bandwidth: int | None = None,
 ) -> int:
-    """Show the screen until it is left; return the exit code of the program.
+    """Show the screen until the user leaves it; return the exit code of the program.
 
-    With a `profile` that is started, with `attach` that session is shown, else one is picked.
-    `bandwidth` is as in `run_live`.
+    Starts `profile` if there is one, shows the session `attach` if that is given, and otherwise
+    opens the picker. `bandwidth` is as in `run_live`.
     """
     request = OpenRequest(profile, attach, hardware, tuple(overrides), domain)
     return run_live(request, lang, bandwidth)
@@ -156,7 +156,8 @@ def run_screen(
 def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = None) -> int:
     """Run the app on this terminal; return the exit code of the program.
 
-    `bandwidth` is for pictures, in bytes a second, 0 for any; by default as fits the terminal.
+    `bandwidth` limits pictures, in bytes a second, with 0 for no limit; the default depends on the
+    terminal.
     """
     gc.set_threshold(GARBAGE_AFTER)
     set_language(detect(lang))

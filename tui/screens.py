@@ -1,4 +1,4 @@
-"""The screens there are: made when first shown, taken away with the session they have shown."""
+"""All screens: created when first shown, removed together with the session that they showed."""
 
 from __future__ import annotations
 
@@ -33,44 +33,44 @@ DIALOGS = (
     "tui.lifecycle.stopping",
     "tui.lifecycle.strays",
 )
-"""With actions of their own, imported when first shown."""
+"""Modules that define actions of their own, imported when first shown."""
 
 
 class Screens:
-    """Those of one app."""
+    """The screens of one app."""
 
     def __init__(self, app: App[Any]) -> None:
         """Install them in `app`."""
         self._app = app
 
     async def show(self, name: str) -> None:
-        """Bring one of `SCREENS` to the front."""
+        """Bring the screen of this name (one of `SCREENS`) to the front."""
         await self._app.switch_screen(self.made(name))
 
     def made(self, name: str) -> Screen[Any]:
-        """Return the screen called `name`, made when first asked for."""
+        """Return the screen called `name`, creating it on first use."""
         if not self._app.is_screen_installed(name):
             module, made = SCREENS[name]
             self._app.install_screen(getattr(import_module(module), made)(), name)
         return self._app.get_screen(name)
 
     async def forget(self) -> None:
-        """Take away the screens of a session that is over."""
+        """Remove the screens of a session that is over."""
         for name in SCREENS:
             if name != "picker" and self._app.is_screen_installed(name):
                 old = self._app.get_screen(name)
                 self._app.uninstall_screen(old)
                 if old.is_running:
-                    # What they have drawn would be held, by a cache of Textual's own.
+                    # Textual's cache would keep alive what they have drawn.
                     for widget in (old, *old.walk_children(Widget)):
                         widget.refresh()
                     await old.remove()
-        # Who watches the theme, as each TextArea does, is held until it changes, gone or not.
+        # Watchers of the theme, as every TextArea is, are kept until it changes, even once removed.
         self._app.mutate_reactive(App.theme)
 
 
 def every_action() -> frozenset[str]:
-    """Return the binding id of every action there is; it takes every screen to know them."""
+    """Return the binding id of every action; this has to import every screen."""
     for module, _made in SCREENS.values():
         import_module(module)
     for dialog in DIALOGS:

@@ -1,4 +1,4 @@
-"""The themes that this project offers first; Textual's own are in the palette too."""
+"""The themes that Deck offers first; Textual's own are in the palette too."""
 
 from __future__ import annotations
 
@@ -32,19 +32,20 @@ HIGH_CONTRAST = Theme(
 _BRIGHT = {"success": "#55ff55", "warning": "#ffff55", "error": "#ff5555", "accent": "#55ffff"}
 _DARK = {"success": "#00aa00", "warning": "#aa5500", "error": "#aa0000", "accent": "#0000aa"}
 CYCLE = ("textual-dark", "textual-light", HIGH_CONTRAST.name)
-"""What the key for themes goes through."""
+"""The themes that the theme key switches between."""
 
 
 def after(theme: str) -> str:
-    """Return the theme that follows in the cycle."""
+    """Return the next theme in the cycle."""
     return CYCLE[(CYCLE.index(theme) + 1) % len(CYCLE)] if theme in CYCLE else CYCLE[0]
 
 
 def few_colours(*, dark: bool) -> dict[str, str]:
-    """Return the variables of a theme that mean something, for a terminal of 16 colours.
+    """Return the theme variables that carry meaning, for a terminal with 16 colours.
 
-    Each is one of these 16 (`rich.palette`), bright on dark and dark on light. Of other colours
-    the nearest is shown, and the pale green and red of a theme are both nearest to light grey.
+    Each is one of these 16 (`rich.palette`), bright on dark and dark on light. Any other colour is
+    shown as the nearest of them, and the pale green and red of a theme are both nearest to light
+    grey.
     """
     colours = _BRIGHT if dark else _DARK
     return {f"{prefix}{name}": value for name, value in colours.items() for prefix in ("", "text-")}

@@ -1,4 +1,4 @@
-"""What a user can do: one class each, from which everything else about it is derived.
+"""What a user can do: one class for each action, from which everything else about it is derived.
 
 Key bindings, the footer, the palette, the help page and a user's keymap are made of these.
 """
@@ -14,36 +14,37 @@ from textual.dom import DOMNode
 Target = TypeVar("Target")
 
 REGISTRY: dict[str, type[Action[Any]]] = {}
-"""Binding id to action, in the order in which the modules were imported."""
+"""Maps a binding id to its action, in the order in which the modules were imported."""
 
 
 class Action(Generic[Target]):
-    """Something a person can do to the app, or to a screen: `Target` is which."""
+    """Something a user can do to the app or to a screen, which is its `Target`."""
 
     id: ClassVar[str]
-    """Binding id, what a keymap names: `node.restart`."""
+    """Binding id, as used in a keymap: `node.restart`."""
     key: ClassVar[str]
-    """Keys as Textual writes them, comma-separated; the first is the one that is shown."""
+    """Keys in Textual's notation, comma-separated; the first is the one that is shown."""
     title: ClassVar[str]
     """Two or three words, marked by `N_`."""
     tooltip: ClassVar[str]
     """A sentence, marked by `N_`."""
     means: ClassVar[str] = ""
-    """What its keys are for on every screen, for actions that share them; empty: its title."""
+    """What its keys do on every screen, for actions that share them; if empty, the title."""
     footer: ClassVar[bool] = False
     """Whether the footer shows it."""
     priority: ClassVar[bool] = False
-    """Whether it comes before the focused widget; a text field keeps what it can type.
+    """Whether it comes before the focused widget; a text field keeps the keys it can type.
 
-    An action that goes to a text field needs it: else the keys that are typed at once after its
-    own are on their way to the widget that had the focus.
+    An action that focuses a text field needs it: otherwise keys typed right after it would still go
+    to the widget that had the focus.
     """
     palette: ClassVar[bool] = True
-    """Whether the palette offers it where it can be done."""
+    """Whether the palette offers it where it is possible."""
     from_elsewhere: ClassVar[bool] = False
-    """Whether the palette does it from another screen too, else it only goes there.
+    """Whether the palette runs it from another screen too, rather than only going there.
 
-    For what changes nothing but what is looked at: the rest would act on what nobody sees.
+    Only for actions that change the display and nothing else; others would act on something that
+    the user does not see.
     """
 
     def __init_subclass__(cls) -> None:
@@ -55,25 +56,25 @@ class Action(Generic[Target]):
 
     @classmethod
     def possible(cls, target: Target) -> bool | None:
-        """Return whether it can be done now; None shows it dimmed, False hides it."""
+        """Return whether the action is possible now; None shows it dimmed, False hides it."""
         del target
         return True
 
     @classmethod
     def shown(cls, target: Target) -> bool:
-        """Return whether the footer shows it now; a key that is not shown may say why not."""
+        """Return whether the footer shows it now; a hidden key may still say why it cannot act."""
         del target
         return True
 
     @classmethod
     def label(cls, target: Target) -> str:
-        """Return the title for the footer, which may depend on what it would do now."""
+        """Return the title for the footer, which may depend on what the action would do now."""
         del target
         return cls.title
 
     @classmethod
     async def run(cls, target: Target) -> None:
-        """Do it."""
+        """Run the action."""
         raise NotImplementedError
 
 
@@ -94,7 +95,7 @@ def bindings(*actions: type[Action[Any]]) -> list[BindingType]:
 
 
 def bound(target: DOMNode) -> Iterable[type[Action[Any]]]:
-    """Yield the actions that `target` binds, in their order."""
+    """Yield the actions that `target` binds, in order."""
     seen: set[str] = set()
     for _key, binding in target._bindings:  # noqa: SLF001 - the public view merges the screen's
         if binding.id in REGISTRY and binding.id not in seen:
@@ -103,17 +104,17 @@ def bound(target: DOMNode) -> Iterable[type[Action[Any]]]:
 
 
 class Acting(DOMNode):
-    """Mixed into the app and the screens, as the last base: runs the actions that they bind.
+    """Mixin of the app and the screens, used as the last base: runs the actions they bind.
 
-    Textual takes style sheets and component classes from the first base only.
+    Textual takes style sheets and component classes only from the first base.
     """
 
     async def action_act(self, action_id: str) -> None:
-        """Do what the action called `action_id` does."""
+        """Run the action called `action_id`."""
         await REGISTRY[action_id].run(self)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Ask the action itself whether it is possible now."""
+        """Ask the action whether it is possible now."""
         if action == "act":
             return REGISTRY[str(parameters[0])].possible(self)
         return super().check_action(action, parameters)

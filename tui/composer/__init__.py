@@ -1,5 +1,6 @@
-"""The tab in which the JSON of an LLM is written, checked and sent.
+"""The Composer tab, in which the JSON of an LLM is written, checked and sent.
 
-`screen` joins the editor and the `verdict` on what is written with what came of what was sent,
-which `tui.outcome` tells. From outside: `screen` for the app, `actions` for what names its keys.
+`screen` puts together the editor, the `verdict` on its text and the outcome of what was sent, which
+`tui.outcome` determines. Other rooms import only `screen` (for the app) and `actions` (for the
+names of its keys).
 """

@@ -1,4 +1,4 @@
-"""A text field for the JSON that an LLM would send, with its parts told apart by colour."""
+"""A text field for the JSON that an LLM would send, with syntax colours."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _WORDS = frozenset({"true", "false", "null"})
 
 
 def tokens(line: str) -> Iterator[Token]:
-    """Yield the tokens of a line in order; never fails, whatever the line is."""
+    """Yield the tokens of a line in order; accepts any text."""
     for match in _TOKEN.finditer(line):
         yield Token(match.start(), match.end(), _kind(match, line))
 
@@ -49,7 +49,7 @@ def _kind(match: re.Match[str], line: str) -> str:
 
 
 class JsonEditor(MarkedEditor):
-    """Edits JSON, no more of it than the robot takes."""
+    """Edits JSON, no longer than the robot accepts."""
 
     longest: ClassVar[int] = MAX_BYTES
 

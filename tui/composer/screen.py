@@ -1,4 +1,4 @@
-"""The JSON that an LLM would send: written, checked, sent, and what came of it."""
+"""The JSON that an LLM would send: written, checked, sent, and its outcome."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ SENT_WITHIN_S = 3.0
 
 
 class ComposerScreen(DeckScreen):
-    """Editor and verdict beside the outcome, or above it where there is little room."""
+    """Editor and verdict beside the outcome, or above it if the screen is narrow."""
 
     tab: ClassVar[str] = "composer"
     about: ClassVar[str] = N_(
@@ -96,42 +96,42 @@ class ComposerScreen(DeckScreen):
 
     @property
     def editor(self) -> JsonEditor:
-        """Where the JSON is written."""
+        """The editor with the JSON."""
         return self.query_one(JsonEditor)
 
     @property
     def verdict(self) -> JsonVerdict:
-        """What is wrong with it."""
+        """The problems in the JSON."""
         return self.query_one(JsonVerdict)
 
     @property
     def outcome(self) -> Outcome:
-        """What came of it."""
+        """The outcome of the last message."""
         return self.query_one(Outcome)
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """What is wrong with the JSON as it stands."""
+        """The problems in the current JSON."""
         return self.verdict.problems if self.is_mounted else ()
 
     def follow_topics(self) -> set[str]:
-        """Everything that may come of a message, while this screen is in front or one is new."""
+        """All topics that a message may affect, while this screen is in front or one is recent."""
         tracing = self._story is not None and not self._story.over(clock.now())
         return set(FOLLOWED) if tracing or self.is_current else set()
 
     def on_mount(self) -> None:
-        """Begin in the editor."""
+        """Focus the editor."""
         self.editor.focus()
         self.check()
         self._say()
 
     def on_screen_resume(self) -> None:
-        """Let the first message go out at once when its time comes."""
+        """Prepare the publisher, so that the first message goes out at once."""
         if self.feed.graph is not None:
             self.feed.graph.prepare_publisher(LLM_RAW_JSON, TYPE)
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Forget what belongs to another session."""
+        """Forget everything of the previous session."""
         del message
         self._story, self._listener = None, None
         self._newest.clear()
@@ -140,7 +140,7 @@ class ComposerScreen(DeckScreen):
         self._say()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Follow what comes of the message."""
+        """Follow the outcome of the message."""
         update = message.update
         self._listener = next((row for row in update.topics if row.name == LLM_RAW_JSON), None)
         if self._story is not None and not self._story.over(clock.now()):
@@ -150,7 +150,7 @@ class ComposerScreen(DeckScreen):
         self._say()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Say everything anew."""
+        """Redraw all texts."""
         del message
         self.verdict.relabel()
         self._say()
@@ -171,7 +171,7 @@ class ComposerScreen(DeckScreen):
         self.editor.go_to(message.place)
 
     def check(self) -> None:
-        """Check the JSON, and show what is wrong."""
+        """Check the JSON, and show the problems."""
         problems: tuple[Problem, ...] = ()
         try:
             self._response = parse_llm(self.editor.text)
@@ -184,7 +184,7 @@ class ComposerScreen(DeckScreen):
             self.refresh_bindings()
 
     def send(self, *, anyway: bool = False) -> None:
-        """Send the JSON; what is wrong only `anyway`."""
+        """Send the JSON; send invalid JSON only with `anyway`."""
         self.check()
         if self.problems and not anyway:
             self.go_to_next_problem()
@@ -203,7 +203,7 @@ class ComposerScreen(DeckScreen):
         self._story = Story(clock.now(), self._listeners(), self._response, self._newest)
         self.topics_changed()
         future = graph.publish(LLM_RAW_JSON, TYPE, {"data": text})
-        # Not awaited here: keys wait for the end of what a key does.
+        # Not awaited here: further keys wait until the action of a key has finished.
         self.run_worker(self._confirm(self._story, future), group="send")
         self._say()
 
@@ -215,12 +215,12 @@ class ComposerScreen(DeckScreen):
                 n=decimal(f"{SENT_WITHIN_S:g}")
             )
             self._say()
-        except Exception as error:  # noqa: BLE001 - whatever it was, it is told
+        except Exception as error:  # noqa: BLE001 - any failure is reported
             story.failure = reason_words(error)
             self._say()
 
     def choose_template(self) -> None:
-        """Ask which, and put it in place of what is there."""
+        """Ask for an example, and replace the text with it."""
 
         def take(text: str | None) -> None:
             if text is not None:
@@ -230,7 +230,7 @@ class ComposerScreen(DeckScreen):
         self.app.push_screen(TemplatesDialog(), take)
 
     def recall(self, *, older: bool) -> None:
-        """Put what was sent before, or after, in place of what is there."""
+        """Replace the text with the one sent before it, or after it."""
         text = self._sent.older(self.editor.text) if older else self._sent.newer()
         if text is None:
             self.app.bell()
@@ -238,7 +238,7 @@ class ComposerScreen(DeckScreen):
         self.editor.replace_all(text)
 
     def go_to_next_problem(self) -> None:
-        """Put the cursor to the first problem behind it, at the end to the first of all."""
+        """Move the cursor to the next problem, or from the last one to the first."""
         if not self.problems:
             return
         row, column = self.editor.cursor_location

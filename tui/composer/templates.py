@@ -1,4 +1,4 @@
-"""Examples to begin with, and the dialog that asks which."""
+"""Examples to start from, and the dialog that offers them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Template(NamedTuple):
-    """One text; title and thought are message ids."""
+    """One example; title and thought are message ids."""
 
     title: str
     thought: str
@@ -26,7 +26,7 @@ class Template(NamedTuple):
     """The whole text, with `{thought}` where the thought belongs."""
 
     def text(self) -> str:
-        """The JSON with its thought in the language spoken now."""
+        """The JSON with its thought in the current language."""
         return self.json.replace("{thought}", _(self.thought))
 
 
@@ -110,11 +110,11 @@ TEMPLATES = (
 """,
     ),
 )
-"""The first is what the composer opens with."""
+"""The composer starts with the first one."""
 
 
 class TemplatesDialog(Dialog[str | None]):
-    """Answers with the text of the template, None if none was chosen."""
+    """Returns the text of the chosen template, None if none was chosen."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False)]
     DEFAULT_CSS: ClassVar[str] = """
@@ -137,11 +137,11 @@ class TemplatesDialog(Dialog[str | None]):
             yield Static(id="dialog-text", markup=False)
 
     def on_mount(self) -> None:
-        """Begin in the list."""
+        """Focus the list."""
         self.query_one(OptionList).focus()
 
     def action_leave(self) -> None:
-        """Choose none."""
+        """Close without choosing one."""
         self.dismiss(None)
 
     @on(OptionList.OptionSelected)

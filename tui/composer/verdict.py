@@ -1,4 +1,4 @@
-"""Whether the JSON holds, and if not a list of what is wrong that leads to the places."""
+"""Whether the JSON is valid and, if not, a list of problems that leads to their places."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 class JsonVerdict(Vertical):
-    """One line with a mark and a word, and below it every problem; Enter goes to its place."""
+    """One line with a mark and a word, and below it the problems; Enter goes to where one is."""
 
     class ProblemWanted(Message):
-        """The place of a problem is to be shown."""
+        """The user wants to go to the place of a problem."""
 
         def __init__(self, place: TextPlace) -> None:
             super().__init__()
@@ -53,19 +53,19 @@ class JsonVerdict(Vertical):
         yield OptionList(markup=False, compact=True)
 
     def show(self, problems: tuple[Problem, ...], commands: int) -> None:
-        """Show what is wrong, or that nothing is and how many commands there are."""
+        """Show the problems or, if there are none, the number of commands."""
         if (problems, commands) != (self._problems, self._commands):
             self._problems, self._commands = problems, commands
             self._say()
 
     def relabel(self) -> None:
-        """Say it anew, after the language changed."""
+        """Redraw in the current language."""
         if self._commands is not None:
             self._say()
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """What is wrong."""
+        """The current problems."""
         return self._problems
 
     def _say(self) -> None:

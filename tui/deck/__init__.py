@@ -1,6 +1,6 @@
-"""The first tab: the lesson's nodes, its panels, the log.
+"""The Deck tab: the lesson's nodes, its panels and the log.
 
-`screen` puts them together: the table of nodes, `panels` (which of `tui.panels` are there), the
-log view, the dock of `tui.teleop`. From outside: `screen` for the app, and `actions` for what
-names its keys.
+`screen` puts together the table of nodes, `panels` (which decides which of `tui.panels` are
+present), the log view and the dock of `tui.teleop`. Other rooms import only `screen` (for the app)
+and `actions` (for the names of its keys).
 """

@@ -1,4 +1,4 @@
-"""The nodes of the session: state in a sign and a word, and what each costs."""
+"""The nodes of the session: their state as a sign and a word, and the resources each one uses."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ OUTSIDE = ("◇", N_("outside"))
 UNKNOWN = "—"
 
 FULL, TOLD = 42, 66
-"""Cells besides the names from which on there are columns for the process, and for a word more."""
+"""Cells besides the names from which on there are columns for the process, and for the detail."""
 
 
 class NodesTable(Rows):
-    """Shows the nodes in the profile's order, below them those that Deck has not started."""
+    """Shows the nodes in the profile's order, and below them those that Deck did not start."""
 
     class Cut(Message):
-        """What the chosen row has no room for is something else now; or it has room for all."""
+        """The text that does not fit into the chosen row has changed."""
 
         def __init__(self, node: str, facts: str) -> None:
-            """Carry all of it, empty if there is room."""
+            """Carry the full name and state, or empty texts if everything fits."""
             super().__init__()
             self.node = node
             self.facts = facts
@@ -39,12 +39,12 @@ class NodesTable(Rows):
         super().__init__(id=id, classes=classes)
         self._statuses: tuple[NodeStatus, ...] = ()
         self.outside: tuple[str, ...] = ()
-        """Names of those that Deck has not started."""
+        """Names of the nodes that Deck did not start."""
         self._muted: frozenset[str] = frozenset()
         self._full = self._told = False
         self._cut = ("", "")
         self._word = 0
-        """Cells of the sign and the longest word of a process that runs."""
+        """Width of the sign and the longest state of a running process."""
 
     def show_nodes(
         self,
@@ -52,13 +52,13 @@ class NodesTable(Rows):
         muted: Collection[str] = frozenset(),
         outside: Sequence[str] = (),
     ) -> None:
-        """Show these nodes; `muted` are those whose log is not shown, `outside` those of others."""
+        """Show these nodes; the log of `muted` ones is hidden, others started `outside` ones."""
         self._statuses, self.outside = tuple(nodes.values()), tuple(outside)
         self._muted = frozenset(muted)
         self._show()
 
     def on_resize(self) -> None:
-        """Show the columns that there is room for."""
+        """Show the columns that fit."""
         self._show()
 
     def _show(self) -> None:
@@ -84,7 +84,7 @@ class NodesTable(Rows):
         self._tell_what_is_cut()
 
     def on_rows_highlighted(self) -> None:
-        """Tell of the row that is chosen now."""
+        """Report the row that is chosen now."""
         self._tell_what_is_cut()
 
     def _tell_what_is_cut(self) -> None:
@@ -94,7 +94,7 @@ class NodesTable(Rows):
             self.post_message(self.Cut(*cut))
 
     def _whole(self) -> tuple[str, str]:
-        """Return the name of the chosen node, and its state with all that is told of it."""
+        """Return the name of the chosen node, and its full state."""
         node = next((node for node in self._statuses if node.name == self.chosen), None)
         if node is None:
             sign, word = OUTSIDE
@@ -106,7 +106,7 @@ class NodesTable(Rows):
         return plain(name) + (" ⊘" if name in self._muted else "")
 
     def _cells_of(self, name: str) -> tuple[Cell, ...]:
-        """Return the row of a node that Deck has not started, of which no more is known."""
+        """Return the row of a node that Deck did not start, of which only the name is known."""
         sign, word = OUTSIDE
         cells = [Cell(self._named(name)), Cell(f"{sign} {_(word)}", "dim")]
         cells += [Cell(UNKNOWN, "dim")] * (5 if self._full else 2)
@@ -118,7 +118,7 @@ class NodesTable(Rows):
         sign, word, meaning = state_words(node)
         state = f"{sign} {_(word)}"
         if not node.state.alive:
-            # One cell to the edge: a long word of a state would widen the column for all.
+            # One cell up to the edge: a long state would widen the column for all rows.
             told = f"{state:<{self._word}} {why(node)}"
             return (Cell(self._named(node.name)), Cell(told, meaning))
         cells = [Cell(self._named(node.name)), Cell(state, meaning)]

@@ -1,4 +1,4 @@
-"""The panels of the Deck: brought with the session, or as others begin to publish."""
+"""The panels of the Deck: created with the session, or when others start publishing."""
 
 from __future__ import annotations
 
@@ -20,71 +20,71 @@ if TYPE_CHECKING:
     from tui.panels.shelf import Shelf
 
 SMALL = (60, 18)
-"""Columns and rows of the terminal below which there is no room for panels."""
+"""Columns and rows of the terminal below which panels are hidden."""
 
 
 class DeckPanels:
-    """Puts panels onto the `#board` of a screen, with words for when there is no room or nobody.
+    """Puts panels onto the `#board` of a screen, or says why there are none.
 
-    The screen has the classes `-shelved` while there are panels, `-small` while they have no room.
+    The screen has the class `-shelved` while there are panels, and `-small` while they do not fit.
     """
 
     def __init__(self, screen: Screen[None]) -> None:
-        """Begin without any."""
+        """Start without panels."""
         self._screen = screen
         self._shelf: Shelf | None = None
         self._put: set[str] = set()
-        """Panels that were brought for topics that others publish."""
+        """Panels that were added for topics that others publish."""
 
     @property
     def all(self) -> Sequence[Panel]:
-        """All that are there, shown or not."""
+        """All panels, shown or not."""
         return () if self._shelf is None else self._shelf.panels
 
     @property
     def pages(self) -> int:
-        """How many pages of panels there are."""
+        """Number of pages of panels."""
         return 0 if self._shelf is None or self._screen.has_class("-small") else self._shelf.pages
 
     def turn_page(self) -> None:
-        """Show the panels that had no room."""
+        """Show the next page of panels."""
         if self._shelf is not None:
             self._shelf.turn()
 
     def watched(self) -> set[str]:
-        """Return the topics that they show."""
+        """Return the topics that the panels show."""
         return set().union(*(panel.watched() for panel in self.all))
 
     def kept(self) -> set[str]:
-        """Return the topics that have a history in a panel."""
+        """Return the topics whose history a panel shows."""
         return set().union(*(panel.kept() for panel in self.all))
 
     def followed(self) -> set[str]:
-        """Return the topics of which they must miss nothing."""
+        """Return the topics of which the panels need every message."""
         return set().union(*(panel.followed() for panel in self.all))
 
     def take(self, update: GraphUpdate, *, seen: bool) -> None:
-        """Feed them; what is not seen takes in only what must not be missing later."""
+        """Update the panels; hidden ones take in only what they will need later."""
         for panel in self.all:
             panel.take(update, seen=seen)
 
     def measure_room(self, columns: int, rows: int) -> None:
-        """Leave the panels out where there is no room for them."""
+        """Hide the panels if they do not fit."""
         self._screen.set_class(columns < SMALL[0] or rows < SMALL[1], "-small")
 
     async def put_up(self, names: Iterable[str]) -> None:
-        """Take away the panels of the session before and put up those of this one."""
+        """Replace the panels of the previous session with those of this one."""
         self._put.clear()
         await self._put_up(names)
 
     async def put_up_for(self, update: GraphUpdate, domain: int) -> bool:
-        """Say who runs, and bring the panels for which topics have come; none is taken away.
+        """Say which nodes run, and add panels for topics that have appeared; none is removed.
 
-        Return whether any came.
+        Return whether any was added.
         """
         words = watched_words(update, domain)
         watched = self._screen.query_one("#watched", Static)
-        # Each update of a Static lays the screen out anew, and this comes with every look.
+        # Updating a Static repeats the layout of the screen, and graph updates are frequent.
         if words != watched.content:
             watched.update(words)
         wanted = panels_for({row.name for row in update.topics if row.publishers})
@@ -95,7 +95,7 @@ class DeckPanels:
         return True
 
     def words_changed(self) -> None:
-        """Draw them anew in another language."""
+        """Redraw in the current language."""
         for panel in self.all:
             panel.words_changed()
         if self._shelf is not None:

@@ -1,4 +1,4 @@
-"""Who runs in a domain in which Deck has started nothing."""
+"""The nodes that run in a domain in which Deck has not started anything."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 MOST_NAMES = 12
 LONGEST_NAME = 60
-"""The list of the Graph screen has longer ones whole."""
+"""The list on the Graph screen shows longer names in full."""
 
 
 def watched_words(update: GraphUpdate, domain: int) -> str:
-    """The nodes that are there, and that they are not Deck's to start or stop."""
+    """Return which nodes are there, and that Deck neither starts nor stops them."""
     names = [_shown(name.lstrip("/")) for name in robot_nodes(update)]
     if not names:
         words = _(

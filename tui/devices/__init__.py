@@ -1,5 +1,5 @@
-"""The tab of devices: what each driver says of itself, and the frames on its wire.
+"""The Devices tab: what each driver reports about itself, and the frames on its serial line.
 
-The app makes its `screen.DevicesScreen`, the palette lists its `actions`; nothing else here is for
-others.
+The app creates `screen.DevicesScreen` and the palette lists `actions`; nothing else here is meant
+for use elsewhere.
 """

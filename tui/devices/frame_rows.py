@@ -1,4 +1,4 @@
-"""Frames of a serial port as lines of a log: the way is the node, bad ones are errors."""
+"""Frames of a serial port as log lines: the node is the direction, and bad frames are errors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 KEPT = 5000
-"""Frames of one port."""
+"""Frames kept for each port."""
 WAYS = {"in": N_("← in"), "out": N_("→ out")}
 _SEVERITIES = {
     FrameKind.FRAME: Severity.INFO,
@@ -25,29 +25,29 @@ _SEVERITIES = {
 }
 _MARKS = {FrameKind.NOISE: "~ ", FrameKind.BAD: "✗ ", FrameKind.MORE: "⋯ "}
 _READABLE = 4
-"""Fewer bytes are no text, even if each of them is a letter."""
+"""Fewer bytes are not treated as text, even if all of them are letters."""
 _WIDEST = 64
-"""Cells of the words up to which the bytes stand in a column."""
+"""Text up to this many cells is padded, so that the bytes after it form a column."""
 _WAY_CELLS = 6
 
 
 class FrameRows:
-    """Keeps the frames of a port, and makes lines of them in the language spoken now."""
+    """Keeps the frames of a port, and turns them into lines in the current language."""
 
     def __init__(self) -> None:
         self._kept: deque[FrameLine] = deque(maxlen=KEPT)
         self._numbers = dict.fromkeys(WAYS, 0)
         self._width = 0
         self.as_hex = False
-        """Whether bytes that are readable text are shown in hex all the same."""
+        """Whether to show bytes in hex even if they are readable text."""
 
     def clear(self) -> None:
-        """Forget every frame."""
+        """Discard every frame."""
         self._kept.clear()
         self._width = 0
 
     def add(self, frames: Sequence[FrameLine]) -> bool:
-        """Keep frames; whether all lines look different for it."""
+        """Add frames; return whether lines that are already shown look different as a result."""
         self._kept.extend(frames)
         width = max((len(_said(frame)) for frame in frames), default=0)
         width = min(_WIDEST, width)
@@ -55,7 +55,7 @@ class FrameRows:
         return wider
 
     def lines(self, frames: Sequence[FrameLine] | None = None) -> list[LogLine]:
-        """These frames, by default all that are kept, as lines."""
+        """Return these frames as lines, by default all that are kept."""
         return [self._line(frame) for frame in (self._kept if frames is None else frames)]
 
     def _line(self, frame: FrameLine) -> LogLine:
@@ -72,7 +72,7 @@ def _said(frame: FrameLine) -> str:
 
 
 def octets_text(octets: bytes, *, as_hex: bool = False) -> str:
-    """Bytes as text where they are a line of text, else in hex."""
+    """Return bytes as text if they are a line of text, otherwise in hex."""
     more = " …" if len(octets) >= MOST_OCTETS else ""
     line = octets.rstrip(b"\r\n")
     if not as_hex and len(line) >= _READABLE and all(0x20 <= octet < 0x7F for octet in line):
@@ -81,6 +81,6 @@ def octets_text(octets: bytes, *, as_hex: bool = False) -> str:
 
 
 def frame_columns(width: int, longest_node: int) -> LogColumns:
-    """Time, to a millisecond where there is room, and way; no severity: the text has its mark."""
+    """Columns for time, in milliseconds if they fit, and direction; the text marks the severity."""
     del longest_node
     return LogColumns(12 if width >= 60 else 8, 0, _WAY_CELLS)

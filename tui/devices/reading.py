@@ -1,6 +1,6 @@
-"""/diagnostics read into plain data: one `Device` for each driver that says how it is.
+"""/diagnostics read into plain data: one `Device` for each driver that reports its state.
 
-Several drivers publish on one topic, so every message of it is wanted, not only the newest.
+Several drivers publish on one topic, so every message is needed, not only the newest.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from graph.data import Sample, TopicRow
 
 STALE_S = 3.0
-"""A driver that says nothing for so long is no longer believed: each says so once a second."""
+"""A driver that has been silent for this long is stale: each reports once a second."""
 MOST = 200
-"""Drivers that are kept."""
+"""Maximum number of drivers kept."""
 _MOST_VALUES = 64
 _LONGEST = 400
 _STRING = "std_msgs/msg/String"
@@ -28,7 +28,7 @@ _ISO = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d")
 
 
 class DeviceLevel(IntEnum):
-    """As diagnostic_msgs/DiagnosticStatus has it."""
+    """The levels of diagnostic_msgs/DiagnosticStatus."""
 
     OK = 0
     WARN = 1
@@ -38,7 +38,7 @@ class DeviceLevel(IntEnum):
 
 @dataclass(frozen=True)
 class Device:
-    """What a driver said last."""
+    """The last report of a driver."""
 
     name: str
     level: DeviceLevel
@@ -50,42 +50,42 @@ class Device:
 
     @property
     def port(self) -> str:
-        """What it is connected to."""
+        """The port that it is connected to."""
         return self.values.get("port") or self.hardware
 
     @property
     def connected(self) -> bool | None:
-        """Whether its port is open, None if it does not tell."""
+        """Whether its port is open, None if it does not say."""
         said = self.values.get("connected", "").lower()
         return said == "true" if said in {"true", "false"} else None
 
     @property
     def since(self) -> str:
-        """Date and time of the connection, local; empty without one."""
+        """Local date and time of the connection; empty without one."""
         since = self.values.get("connected_since", "")
         return since[:19].replace("T", " ") if _ISO.match(since) else ""
 
     def number(self, key: str) -> float | None:
-        """A value that is a number, None if it is none."""
+        """The value as a number, None if it is not one."""
         try:
             return float(self.values[key])
         except (KeyError, ValueError):
             return None
 
     def age_s(self, now_s: float) -> float:
-        """Seconds since it said something."""
+        """Seconds since its last report."""
         return max(0.0, now_s - self.heard_s)
 
 
 class DeviceBook:
-    """Keeps the newest word of every driver."""
+    """Keeps the newest report of every driver."""
 
     def __init__(self) -> None:
         self._devices: dict[str, Device] = {}
 
     @property
     def devices(self) -> Sequence[Device]:
-        """By their names."""
+        """All drivers, sorted by name."""
         return sorted(self._devices.values(), key=lambda device: device.name)
 
     def get(self, name: str) -> Device | None:
@@ -93,16 +93,16 @@ class DeviceBook:
         return self._devices.get(name)
 
     def clear(self) -> None:
-        """Forget all."""
+        """Forget all drivers."""
         self._devices.clear()
 
     def excuse(self, now_s: float) -> None:
-        """Nobody has listened until now: what was said before is not stale for that."""
+        """Do not count the time before `now_s` as silence: nobody was listening."""
         for name, device in self._devices.items():
             self._devices[name] = replace(device, heard_s=max(device.heard_s, now_s))
 
     def take(self, samples: Iterable[Sample]) -> None:
-        """Read messages of diagnostic_msgs/DiagnosticArray; what is none of them is left out."""
+        """Read messages of diagnostic_msgs/DiagnosticArray; malformed ones are ignored."""
         for sample in samples:
             statuses: Any = sample.value.get("status")
             for status in statuses if isinstance(statuses, list) else ():
@@ -112,9 +112,9 @@ class DeviceBook:
 
 
 def frames_topic(device: Device, topics: Iterable[TopicRow]) -> str | None:
-    """The topic on which this driver tells of its frames, None if there is none.
+    """The topic on which this driver publishes its frames, None if there is none.
 
-    /diagnostics names a node without its namespace, so the shortest topic that fits is taken.
+    /diagnostics names a node without its namespace, so the shortest matching topic is taken.
     """
     name = device.name.strip("/")
     fitting = [

@@ -1,4 +1,4 @@
-"""Drivers in a table: how they are, what they are connected to, and how much goes over it."""
+"""Drivers in a table: their state, what they are connected to, and the traffic."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _STATES = {
     DeviceLevel.STALE: (N_("○ stale"), "dim"),
 }
 _HOME, _WIDE = 100, 160
-"""Widths from which there is a column for the message, and for more figures."""
+"""Widths from which on there is a column for the message, and for more figures."""
 NOTHING = Cell("–", "dim")
 
 
 class _Layout(NamedTuple):
-    """Cells of columns; 0 leaves one out."""
+    """Widths of the columns; 0 leaves one out."""
 
     name: int
     port: int
@@ -43,11 +43,11 @@ def _layout(width: int) -> _Layout:
 
 
 class DevicesTable(Rows):
-    """One row a driver."""
+    """One row for each driver."""
 
     def show_devices(self, devices: Sequence[Device], now_s: float) -> None:
-        """Show these; ages are counted up to `now_s` (Unix seconds)."""
-        # The table is as wide as the screen, and has no width of its own before it is first seen.
+        """Show these drivers; ages are as of `now_s` (Unix seconds)."""
+        # The table is as wide as the screen, but has no width of its own before it is first shown.
         layout = _layout(self.screen.size.width)
         self.show(_columns(layout), [_row(device, layout, now_s) for device in devices])
 
@@ -84,7 +84,7 @@ def _row(device: Device, layout: _Layout, now_s: float) -> Row:
 
 
 def state(device: Device, now_s: float) -> Cell:
-    """How it says that it is, as long as what it says is new enough."""
+    """The state that it reports, as long as the report is recent."""
     age_s = device.age_s(now_s)
     if age_s > STALE_S:
         return Cell(_("○ stale {seconds} s").format(seconds=round(min(age_s, 9999.0))), "dim")
@@ -93,7 +93,7 @@ def state(device: Device, now_s: float) -> Cell:
 
 
 def _port(device: Device, width: int) -> Cell:
-    """The port; of a long path its last name, and of that the end, which tells devices apart."""
+    """The port; of a long path the last part, and of that the end, which tells devices apart."""
     port = device.port
     if len(port) > width:
         port = port.rsplit("/", 1)[-1]
@@ -109,13 +109,13 @@ def _since(device: Device, width: int) -> Cell:
 
 
 def figure(device: Device, key: str) -> Cell:
-    """A number as it was said."""
+    """A number as it was reported."""
     value = device.number(key)
     return NOTHING if value is None else Cell(grouped(value))
 
 
 def errors(device: Device) -> Cell:
-    """How many in all, and how many a second now."""
+    """The total, and how many a second now."""
     total, rate = device.number("errors"), device.number("errors_per_s")
     if total is None:
         return NOTHING
@@ -125,5 +125,5 @@ def errors(device: Device) -> Cell:
 
 
 def grouped(value: float) -> str:
-    """A whole number with blanks between thousands; what is none is shown as it is."""
+    """A whole number with blanks between thousands; anything else unchanged."""
     return f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")

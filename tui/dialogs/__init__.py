@@ -1,4 +1,4 @@
-"""Dialogs and pages that belong to no screen: a new dialog inherits `dialog.Dialog`.
+"""Dialogs and pages that belong to no particular screen: a new dialog inherits `dialog.Dialog`.
 
-Those that ask on the way into a session or out of it are in `tui.lifecycle`.
+Dialogs about opening and closing sessions are in `tui.lifecycle`.
 """

@@ -1,4 +1,4 @@
-"""The frame of every dialog: a titled box over the screen, its keys at the bottom."""
+"""The frame of every dialog: a box with a title over the screen, its keys at the bottom."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Answer = TypeVar("Answer")
 
 
 class ExplainDialog(Action["Dialog[Any]"]):
-    """The help page: the app's own key does not get past a dialog."""
+    """Opens the help page from a dialog, which the app's own key cannot reach."""
 
     id = "help.dialog"
     key = "f1"
@@ -38,7 +38,7 @@ class ExplainDialog(Action["Dialog[Any]"]):
 
     @classmethod
     def possible(cls, target: Dialog[Any]) -> bool | None:
-        """Not where the dialog may have to go at any moment."""
+        """Not where the dialog may have to close at any moment."""
         return target.can_be_covered
 
     @classmethod
@@ -48,11 +48,11 @@ class ExplainDialog(Action["Dialog[Any]"]):
 
 
 class Dialog(ModalScreen[Answer], Acting, Working):
-    """A title and a text; a subclass says which, and binds what can be answered."""
+    """A title and a text; a subclass supplies them, and binds the possible answers."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(ExplainDialog)
     can_be_covered: ClassVar[bool] = True
-    """Whether another screen may be opened above it."""
+    """Whether another screen may be opened on top of it."""
     DEFAULT_CSS: ClassVar[str] = """
     Dialog {
         align: center middle;
@@ -78,7 +78,7 @@ class Dialog(ModalScreen[Answer], Acting, Working):
 
     @abstractmethod
     def words(self) -> Content:
-        """Return the text, as things are now."""
+        """Return the text for the current state."""
 
     def compose(self) -> ComposeResult:
         """Put the frame around the text."""
@@ -92,11 +92,11 @@ class Dialog(ModalScreen[Answer], Acting, Working):
         self.redraw()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Draw anew."""
+        """Redraw in the current language."""
         del message
         self.redraw()
 
     def redraw(self) -> None:
-        """Show the text as it is now, in the language spoken now."""
+        """Show the text for the current state, in the current language."""
         self.query_one("#dialog").border_title = Content(plain(self.title_words()))
         self.query_one("#dialog-text", Static).update(self.words())

@@ -1,4 +1,4 @@
-"""What stands on the terminal until there is something to see."""
+"""What the terminal shows until there is something to see."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ class Line(Widget):
         self._words = words
 
     def render(self) -> Content:
-        """Draw it."""
+        """Return the line."""
         return Content(self._words)
 
 
 class OpeningScreen(Screen[None]):
-    """The title and a word: imported in no time, drawn in no time."""
+    """The title and a few words: quick to import and to draw."""
 
     def __init__(self, words: str) -> None:
-        """Show these."""
+        """Show these words."""
         super().__init__()
         self._words = words
 
     def compose(self) -> ComposeResult:
-        """The title above the word."""
+        """The title above the words."""
         yield TitleBar()
         yield Line(self._words)

@@ -1,4 +1,4 @@
-"""What is shown in place of a screen that cannot be drawn: what runs, and how to stop it."""
+"""Shown in place of a screen that cannot be drawn: what is running, and how to stop it."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ if TYPE_CHECKING:
 
 
 LOOK_S = 0.5
-"""How often what it says is looked at again."""
+"""How often the text is updated."""
 
 
 class Plainly(Widget):
-    """A few lines of text, and nothing that hangs on what others send."""
+    """A few lines of text that do not depend on anything received from others."""
 
     DEFAULT_CSS = "Plainly { width: 1fr; height: 1fr; padding: 1 2; }"
 
     def on_mount(self) -> None:
-        """Stay true."""
+        """Keep the text up to date."""
         self.set_interval(LOOK_S, self.refresh)
 
     def render(self) -> Content:
-        """Draw them."""
+        """Return the lines."""
         deck = host_of(self)
         return Content("\n".join(plain(line, 400) for line in safe_lines(deck)))
 
 
 class SafeScreen(Screen[None]):
-    """The keys of the app work here: stop, release, leave, and every other screen."""
+    """Keeps the keys of the app working: stop, release, leave, and every other screen."""
 
     def compose(self) -> ComposeResult:
-        """The lines alone."""
+        """Only the lines."""
         yield Plainly()
 
 
 def safe_lines(deck: Host) -> list[str]:
-    """Return what is to be known: that a screen failed, what runs, and the keys."""
+    """Return the lines: that a screen failed, what is running, and the keys."""
     session = deck.feed.session
     runs = "" if session is None else session.name
     states = title.states(deck)

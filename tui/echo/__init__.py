@@ -1,4 +1,4 @@
-"""A message as a folding tree of its fields: `tree.EchoTree` among the widgets of a screen.
+"""A message as a folding tree of its fields: `tree.EchoTree`, a widget for any screen.
 
-Whoever shows a message or an answer uses the tree alone; `lines` and `values` are its inside.
+Code that shows a message or an answer uses only the tree; `lines` and `values` are internal.
 """

@@ -1,4 +1,4 @@
-"""A message as the lines of a folding tree: what is folded, what is cut, how much is missing."""
+"""A message as the lines of a folding tree: what is folded, what is cut, how much is left out."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Path: TypeAlias = "tuple[str | int, ...]"
 IsOpen: TypeAlias = "Callable[[Path, bool], bool]"
-"""Whether the branch at this path is open, given whether it would be by itself."""
+"""Whether the branch at this path is open, given whether it is open by default."""
 
 MAX_LINES = 2000
 OPENED_ITEMS = 200
@@ -28,7 +28,7 @@ CHUNK = 64
 HEX_CHUNK = 16
 DEEPEST_OPEN = 5
 HEADER = "header"
-"""Folded by itself: stamp and frame are seldom what one looks for, and take four lines."""
+"""Folded by default: stamp and frame are seldom of interest, and take four lines."""
 WIDEST_KEY = 24
 
 
@@ -38,21 +38,21 @@ class EchoLine:
 
     path: Path
     label: str
-    """Field name or index with its colon, padded to its neighbours; empty for a continuation."""
+    """Field name or index with its colon, padded to its neighbours; empty in a continuation."""
     text: str
     kind: str
-    """`branch`, `number`, `text`, `bytes` or `note`: how it is drawn."""
+    """How it is drawn: `branch`, `number`, `text`, `bytes` or `note`."""
     open: bool | None = None
-    """None where there is nothing to fold."""
+    """None if it cannot be folded."""
 
     @property
     def depth(self) -> int:
-        """How far it is indented."""
+        """The level of indentation."""
         return len(self.path) - 1
 
 
 def echo_lines(message: Mapping[str, Value], is_open: IsOpen) -> list[EchoLine]:
-    """The lines of a message, `MAX_LINES` of them at most."""
+    """Return the lines of a message, at most `MAX_LINES` of them."""
     if not message:
         return [EchoLine(("",), "", _("(a message without fields)"), "note")]
     lines = list(islice(_children((), message, is_open), MAX_LINES + 1))
@@ -102,7 +102,7 @@ def _branch(path: Path, label: str, value: Value, is_open: IsOpen) -> Iterator[E
 
 
 def _contents(path: Path, value: Value, is_open: IsOpen) -> Iterator[EchoLine]:
-    """What lies under a leaf that can be opened; nothing if its own line shows all of it."""
+    """Return the contents of a leaf that can be opened; nothing if its own line shows all of it."""
     if isinstance(value, str):
         if len(value) > CHUNK:
             yield from _chunks(path, value)

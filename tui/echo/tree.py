@@ -1,6 +1,6 @@
-"""The newest message of a topic as a folding tree that stays still while its values change.
+"""The newest message of a topic as a folding tree that keeps its layout while values change.
 
-A line is drawn from the first character that has changed.
+A line is redrawn from the first character that has changed.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ INDENT = 2
 class EchoTree(OneStyle, ScrollView, can_focus=True):
     """Shows a message as a tree, or words where there is none.
 
-    What is folded belongs to the topic and outlives its messages. While it is paused it keeps
-    what it shows.
+    The folding belongs to the topic and outlives single messages. While the tree is paused it keeps
+    showing the same message.
     """
 
     class PauseChanged(Message):
-        """The tree was paused, or goes on."""
+        """The tree was paused or resumed."""
 
         def __init__(self, paused: bool) -> None:
             super().__init__()
@@ -87,18 +87,18 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         self._topic = ""
         self._message: Mapping[str, Value] | None = None
         self._waiting: Mapping[str, Value] | None = None
-        """What came while it was paused."""
+        """The newest message that came while it was paused."""
         self._paused = False
         self._folds: dict[str, dict[Path, bool]] = {}
         self._lines: list[EchoLine] = []
         self._cursor = 0
         self._marks: Mapping[Path, str] = {}
-        """Letters behind the keys of lines, by their paths."""
+        """Letters after the keys of lines, by path."""
         self._words = ("", "")
         """Why there is no message."""
 
     def show(self, topic: str, message: Mapping[str, Value]) -> None:
-        """Show a message of a topic; another topic ends a pause."""
+        """Show a message of a topic; a different topic ends a pause."""
         if topic != self._topic:
             self._begin(topic)
         if self._paused and self._message is not None:
@@ -126,16 +126,16 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
 
     @property
     def lines(self) -> Sequence[EchoLine]:
-        """The lines of the tree as they are now."""
+        """The current lines of the tree."""
         return self._lines
 
     @property
     def paused(self) -> bool:
-        """Whether newer messages wait."""
+        """Whether newer messages are held back."""
         return self._paused
 
     def pause(self, paused: bool) -> None:
-        """Keep what is shown, or go on with the newest message."""
+        """Pause, or resume with the newest message."""
         if paused == self._paused:
             return
         self._paused = paused
@@ -151,13 +151,13 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         return None if line is None else line.path
 
     def mark(self, marks: Mapping[Path, str]) -> None:
-        """Write these letters behind the lines at these paths."""
+        """Show these letters after the keys of the lines at these paths."""
         if marks != self._marks:
             self._marks = dict(marks)
             self.refresh()
 
     def relabel(self) -> None:
-        """Draw again, after the language changed."""
+        """Redraw in the current language."""
         self._flatten()
         self.refresh()
 
@@ -176,7 +176,7 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
             self._set_open(line.path, not line.open)
 
     def action_unfold(self) -> None:
-        """Unfold the branch at the cursor, or go into it."""
+        """Unfold the branch at the cursor, or enter it."""
         line = self._line_at(self._cursor)
         if line is not None and line.open is False:
             self._set_open(line.path, True)
@@ -184,7 +184,7 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
             self.action_move(1)
 
     def action_fold(self) -> None:
-        """Fold the branch at the cursor, or go out to the one it lies in."""
+        """Fold the branch at the cursor, or go to its parent."""
         line = self._line_at(self._cursor)
         if line is None:
             return
@@ -196,7 +196,7 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
             self._move_to(parents[0])
 
     def on_click(self, event: Click) -> None:
-        """Take the line that was clicked, and fold or unfold it."""
+        """Move the cursor to the clicked line, and fold or unfold it."""
         index = event.y + self.scroll_offset.y
         if self._line_at(index) is not None:
             self._move_to(index)
@@ -249,7 +249,7 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
     # Drawing
 
     def render_line(self, y: int) -> Strip:
-        """One line of the tree, or of the words."""
+        """One line of the tree, or of the words in its place."""
         width = self.scrollable_size.width
         if not self._lines:
             strips = word_strips(self._words, width, self.rich_style, self.app.console)
@@ -265,15 +265,15 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         return cut(segments, width, self.rich_style)
 
     def on_resize(self) -> None:
-        """Draw again at the new width."""
+        """Redraw at the new width."""
         self.refresh()
 
     def on_focus(self) -> None:
-        """Draw the cursor as that of the focused widget."""
+        """Draw the cursor as focused."""
         self.refresh_line(self._cursor)
 
     def on_blur(self) -> None:
-        """Draw the cursor as that of a widget in the background."""
+        """Draw the cursor as unfocused."""
         self.refresh_line(self._cursor)
 
     def _refresh_difference(self, index: int, before: EchoLine, after: EchoLine) -> None:
@@ -302,7 +302,7 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
 
 
 def _same_cells(before: str, after: str) -> int:
-    """Cells at the beginning that two lines have in common."""
+    """Number of cells that are equal at the start of two lines."""
     for index, (old, new) in enumerate(zip(before, after, strict=False)):
         if old != new:
             return cell_len(after[:index])

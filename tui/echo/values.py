@@ -1,4 +1,4 @@
-"""One value of a message as one short line, however long or hostile it is."""
+"""One value of a message as one short line, however long or malformed it is."""
 
 from __future__ import annotations
 
@@ -18,31 +18,31 @@ SHOWN_CHARACTERS = 400
 SHOWN_ITEMS = 48
 SHOWN_BYTES = 24
 FEW_PLACES, MANY_PLACES = 4, 10
-"""Columns left of the decimal point: steps, so that a tree does not sway with its numbers."""
+"""Columns left of the decimal point: two steps, so that numbers do not shift the tree."""
 DECIMALS = 6
 TINY, HUGE = 1e-4, 1e9
 FIRST_PRINTABLE, LAST_PRINTABLE = 0x20, 0x7E
 
 
 def is_branch(value: Value) -> bool:
-    """Whether the value is a message, or a list of messages or lists, and not a leaf."""
+    """Whether the value is a message, or a list of messages or lists, rather than a leaf."""
     if isinstance(value, Mapping):
         return True
     return is_list(value) and bool(value) and isinstance(value[0], (Mapping, list, tuple))
 
 
 def is_list(value: Value) -> TypeGuard[Sequence[Value]]:
-    """Whether the value is an array of something that is no number."""
+    """Whether the value is an array of something other than numbers."""
     return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
 
 
 def is_number(value: Value | np.generic) -> TypeGuard[float | bool | np.generic]:
-    """Whether the value is a number or a truth value."""
+    """Whether the value is a number or a boolean."""
     return isinstance(value, (bool, int, float, np.generic))
 
 
 def number(value: float | bool | np.generic) -> str:
-    """A number, short: at most six decimals, an exponent where those would hide it."""
+    """Format a number briefly: at most six decimals, or an exponent if those would hide it."""
     plain_value = value.item() if isinstance(value, np.generic) else value
     if isinstance(plain_value, bool):
         return "true" if plain_value else "false"
@@ -57,27 +57,27 @@ def number(value: float | bool | np.generic) -> str:
 
 
 def places(values: Iterable[Value | np.generic]) -> int:
-    """Columns to keep left of the decimal point, for these numbers to stand under each other."""
+    """Number of columns left of the decimal point that aligns these numbers."""
     widest = max((len(number(v).partition(".")[0]) for v in values if is_number(v)), default=0)
     return FEW_PLACES if widest <= FEW_PLACES else MANY_PLACES
 
 
 def aligned(value: float | bool | np.generic, columns: int) -> str:
-    """A number with its decimal point after so many columns."""
+    """Format a number with this many columns before its decimal point."""
     text = number(value)
     whole, dot, fraction = text.partition(".")
     return f"{whole:>{columns}}{dot}{fraction}"
 
 
 def quoted(value: str) -> str:
-    """A text in quotes; of a long one its beginning, and before it how long it is."""
+    """A text in quotes; of a long one its length, then its beginning."""
     if len(value) <= SHOWN_CHARACTERS:
         return f'"{plain(value)}"'
     return f'({characters(len(value))}) "{plain(value, SHOWN_CHARACTERS)}…'
 
 
 def hexadecimal(value: bytes) -> str:
-    """Bytes by their number, the first of them in hex and as text."""
+    """Bytes by their number, and the first of them in hex and as text."""
     head = value[:SHOWN_BYTES]
     more = " …" if len(value) > len(head) else ""
     preview = f"  {head.hex(' ')}{more}  {printable(head)}" if head else ""
@@ -85,12 +85,12 @@ def hexadecimal(value: bytes) -> str:
 
 
 def printable(value: bytes) -> str:
-    """Bytes as the ASCII text they hold, with a dot for whatever is not printable."""
+    """Bytes as ASCII text, with a dot for each one that is not printable."""
     return "".join(chr(b) if FIRST_PRINTABLE <= b <= LAST_PRINTABLE else "·" for b in value)
 
 
 def array(values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.generic]]) -> str:
-    """An array by its length and its first items."""
+    """An array as its length and its first items."""
     head = values[:SHOWN_ITEMS]
     shown = " ".join(scalar(item) for item in head)
     more = " …" if len(values) > len(head) else ""
@@ -98,7 +98,7 @@ def array(values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.gene
 
 
 def scalar(value: Value | np.generic) -> str:
-    """One value that is no branch."""
+    """One value that is not a branch."""
     if isinstance(value, str):
         return quoted(value)
     if isinstance(value, bytes):
@@ -113,15 +113,15 @@ def scalar(value: Value | np.generic) -> str:
 
 
 def items(count: int) -> str:
-    """So many items, in words."""
+    """A number of items, in words."""
     return ngettext("{n} item", "{n} items", count).format(n=count)
 
 
 def characters(count: int) -> str:
-    """So many characters, in words."""
+    """A number of characters, in words."""
     return ngettext("{n} character", "{n} characters", count).format(n=count)
 
 
 def byte_count(count: int) -> str:
-    """So many bytes, in words."""
+    """A number of bytes, in words."""
     return ngettext("{n} byte", "{n} bytes", count).format(n=count)

@@ -1,5 +1,5 @@
-"""The emergency stop on the screen: its state, who obeys it, what is done about it.
+"""The emergency stop on the screen: its state, which nodes obey it, and how it is carried out.
 
-`control.EmergencyControl` engages and releases; `state.Emergency` is plain data that others may
-read, and `messages.EmergencyChanged` tells screens of it. No widget is in here.
+`control.EmergencyControl` engages and releases it; `state.Emergency` is plain data that others may
+read, and `messages.EmergencyChanged` reports changes to screens. There are no widgets here.
 """

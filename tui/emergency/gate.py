@@ -1,4 +1,4 @@
-"""What the gate says of itself on /safety_state, and the same in the language of the screen."""
+"""What the gate reports about itself on /safety_state, and the same in the current language."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HELD = {
     "starting": N_("the gate is starting"),
 }
 EXPLAINED = {"blocked_forward", "blocked_backward", "blocked"}
-"""Held by what the sonars show."""
+"""Explained by the readings of the sonars."""
 PLACES = {
     "front": {
         "free": N_("{metres} m ahead"),
@@ -42,7 +42,7 @@ PLACES = {
     },
 }
 NOTHING_NEAR = {"front": N_("nothing ahead"), "rear": N_("nothing behind")}
-"""Nothing in the range of the sensor."""
+"""Nothing within the range of the sensor."""
 TOO_CLOSE = {
     "front": N_("obstacle ahead too close to measure"),
     "rear": N_("obstacle behind too close to measure"),
@@ -54,46 +54,46 @@ REFUSED = {
 BEYOND = re.compile(r"(?P<value>\S+) (?P<unit>\S+), limit (?P<limit>\S+) (?P=unit)")
 STAMP = re.compile(r"stamp (?P<age>\S+) s old")
 SOURCES = {DRIVE_TELEOP: N_("the keys")}
-"""Those that are known by a better name than their topic."""
+"""Sources with a better name than that of their topic."""
 
 
 @dataclass(frozen=True)
 class Gate:
-    """The gate's own words, as they came."""
+    """The gate's report, as received."""
 
     verdict: str = ""
     """`free`, or one of `HELD`."""
     sights: Mapping[str, str] = field(default_factory=dict)
-    """`front` and `rear` to `free`, `close`, `invalid` or `silent`; only the sensors it has."""
+    """`front` and `rear` to `free`, `close`, `invalid` or `silent`; only for existing sensors."""
     metres: Mapping[str, float] = field(default_factory=dict)
-    """`front` and `rear` to the newest distance, where there is one."""
+    """`front` and `rear` to the newest distance, if there is one."""
     source: str = ""
-    """The topic that is obeyed now, empty if none is."""
+    """The topic that it obeys now, empty if there is none."""
     ignored: str = ""
-    """A topic that is not, because it ranks lower."""
+    """A topic that it ignores because its priority is lower."""
     share: float = 1.0
-    """How much of the asked speed it allows, 0 to 1."""
+    """The share of the requested speed that it allows, 0 to 1."""
     message: str = ""
     refused: str = ""
-    """What was asked for in the last moments and refused: `0.8 m/s, limit 0.5 m/s`."""
+    """What was recently requested and refused: `0.8 m/s, limit 0.5 m/s`."""
     critical_m: float | None = None
-    """Nearer than this is danger; None if it does not tell."""
+    """The distance below which it stops; None if it does not say."""
     slow_m: float | None = None
-    """Nearer than this it slows; not above `critical_m`: it never does."""
+    """The distance below which it slows down; it never does if that is at most `critical_m`."""
 
     @property
     def is_held(self) -> bool:
-        """Whether it keeps the robot from going one way or the other."""
+        """Whether it keeps the robot from driving in one direction or the other."""
         return self.verdict in HELD
 
     @property
     def is_slowed(self) -> bool:
-        """Whether it lets through only a part of the speed."""
+        """Whether it allows only a part of the speed."""
         return 0.0 < self.share < 1.0
 
 
 def gate_in(sample: Sample) -> Gate | None:
-    """Read a diagnostic_msgs/DiagnosticArray; None if the gate does not speak in it."""
+    """Read a diagnostic_msgs/DiagnosticArray; None if it is not from the gate."""
     statuses: Any = sample.value.get("status", ())
     for status in statuses if isinstance(statuses, (list, tuple)) else ():
         if isinstance(status, Mapping) and status.get("name") == NODE:
@@ -123,7 +123,7 @@ def _read(status: Mapping[str, Any]) -> Gate:
 
 
 def held_words(gate: Gate) -> str:
-    """Say what is held and why; empty if nothing is."""
+    """Say what is held and why; empty if nothing is held."""
     if not gate.is_held:
         return ""
     why = ""
@@ -146,7 +146,7 @@ def refused_words(gate: Gate) -> str:
 
 
 def gate_words(gate: Gate) -> str:
-    """Say what is held or slowed and why, else how far it is, and who is obeyed or not."""
+    """Say what is held or slowed and why, otherwise the distances, and which sources are obeyed."""
     parts = [held_words(gate), refused_words(gate)]
     sights = (_sight(gate, place, sight) for place, sight in gate.sights.items())
     far = ", ".join(filter(None, sights))

@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 
 class EmergencyChanged(Message, bubble=False):
-    """The emergency stop was engaged, released, or has more to say."""
+    """The emergency stop was engaged or released, or its details have changed."""
 
     def __init__(self, emergency: Emergency) -> None:
-        """Carry the state from now on."""
+        """Carry the new state."""
         super().__init__()
         self.emergency = emergency

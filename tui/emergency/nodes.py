@@ -1,4 +1,4 @@
-"""What each node says of the emergency stop that it obeys: /emergency_stop_state, read."""
+"""What each node that obeys the emergency stop reports about it: /emergency_stop_state, read."""
 
 from __future__ import annotations
 
@@ -13,35 +13,35 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
 
 GONE_S = 3.5
-"""A node says it once a second; who has been silent for longer and is not in the graph is gone."""
+"""Nodes report once a second; one that is silent for longer and is not in the graph is gone."""
 MOST = 64
-"""Nodes that are listened to: anybody may publish anything."""
+"""Maximum number of nodes that are tracked: anybody may publish anything."""
 PICO = "pico"
 DECKS = "/_deck_"
-"""How the names of Deck's own nodes begin."""
+"""Prefix of the names of Deck's own nodes."""
 
 
 @dataclass(frozen=True)
 class NodeStop:
-    """The newest word of one node."""
+    """The newest report of one node."""
 
     engaged: bool
     heard_s: float
-    """When it came, unix time."""
+    """When it was received, Unix time."""
     since_s: float = 0.0
-    """Since when it holds or was released, unix time by its clock; 0: it has held nothing yet."""
+    """Since when it holds or is released, Unix time by its clock; 0: it has held nothing yet."""
     held_s: float = -math.inf
-    """When it last said that it holds."""
+    """When it last reported that it holds."""
     by: str = ""
-    """What has engaged it: `topic`, `pico`, empty where that is not known."""
+    """What engaged it: `topic`, `pico`, empty if unknown."""
     publishers: tuple[str, ...] = ()
-    """Full names of the nodes that may have said it on the topic."""
+    """Full names of the nodes that may have published it on the topic."""
     before: bool = False
-    """Whether it held already when it was first heard of, or started."""
+    """Whether it already held when it started, or when it was first heard."""
 
 
 def told(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[str, NodeStop]:
-    """Return `nodes` with what they have said since."""
+    """Return `nodes` updated with their new reports."""
     known = dict(nodes)
     for sample in update.samples.get(EMERGENCY_STATE, ()):
         for name, values in _statuses(sample):
@@ -51,7 +51,7 @@ def told(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[str, NodeSt
 
 
 def present(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[str, NodeStop]:
-    """Return those that are there still."""
+    """Return the nodes that are still present."""
     names = {node.name for node in update.nodes}
     return {
         name: node

@@ -1,9 +1,9 @@
 """The state of the emergency stop as this screen knows it: plain data and its transitions.
 
-It is latched: only a release clears it. Where nodes tell what they obey, that is what counts, and
-the topic's word only until one of them has taken it. Where none does, as with a learner's own
-nodes, the topic's word counts, ours or somebody else's; and of one whose publisher has gone, the
-gate's word alone, which clears it as well.
+It is latched: only a release clears it. Where nodes report what they obey, those reports count, and
+the topic counts only until one of them has received the message. Where none reports, as with a
+learner's own nodes, the topic counts, whether the message is ours or somebody else's; if its
+publisher has gone, only the report of the gate counts, and can also clear the stop.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 TOPIC_TYPE = "std_msgs/msg/Bool"
 FOLLOWED = frozenset({EMERGENCY_STOP, EMERGENCY_STATE, SAFETY_STATE})
 SETTLED_S = 2.0
-"""So long after a word on the topic the gate may still be saying what was true before it."""
+"""For this long after a message on the topic, the gate may still report the state before it."""
 
 NO_LISTENER = N_("nobody listens to /emergency_stop: all nodes are being stopped")
 NOT_OURS = N_("it may have reached nobody, and Deck has started no node that it could stop")
@@ -33,40 +33,40 @@ NO_GRAPH = N_("ROS cannot be reached: all nodes are being stopped")
 
 @dataclass(frozen=True)
 class Emergency:
-    """What is known of the emergency stop."""
+    """What is known about the emergency stop."""
 
     asked: bool = False
-    """Whether a stop has been said that nobody is known to have released."""
+    """Whether a stop was published that nobody is known to have released."""
     ours: bool = True
-    """False if somebody else was seen to engage it, or to release it."""
+    """False if somebody else was seen to engage or to release it."""
     by_gate: bool = False
-    """Whether nothing but the word of the gate, or of nodes that have gone, tells of it."""
+    """Whether it is known only from the gate, or from nodes that are gone."""
     since_s: float = 0.0
-    """Unix time of this screen's own last word on it; older samples do not contradict it."""
+    """Unix time of this screen's last message; older samples do not override it."""
     heard_s: float = 0.0
-    """Unix time of the last word of anybody on the topic."""
+    """Unix time at which the last message on the topic was received."""
     said_s: float = 0.0
-    """When that was said, which of a latched word may be long before it was heard."""
+    """When it was published; for a latched message that may be long before it was received."""
     fallback: str = ""
-    """Why the nodes are stopped in its place (a message id), empty if it reached somebody."""
+    """Why the nodes are stopped instead (a message id), empty if the stop reached somebody."""
     ended: tuple[str, ...] = ()
-    """The nodes that were stopped in its place."""
+    """The nodes that were stopped instead."""
     nodes: Mapping[str, NodeStop] = field(default_factory=dict)
-    """Full name of each node that tells what it obeys, and that."""
+    """Reports of the nodes that say what they obey, by full name."""
     changed_s: float = 0.0
-    """Unix time at which one of them has begun or ceased to hold."""
+    """Unix time at which one of them last started or stopped holding."""
     time_s: float = 0.0
-    """Unix time of the newest that is known."""
+    """Unix time of the newest report."""
     awaited: Mapping[str, float] = field(default_factory=dict)
-    """Those that have yet to confirm our release, and since when they hold."""
+    """Nodes that have yet to confirm our release, and since when each one holds."""
     blocked: str = ""
     """Why the safety node holds the wheels, in its own words; empty if it does not."""
     gate: Gate | None = None
-    """The same to be told in the language of the screen, None where that is not known."""
+    """The gate's report, to be shown in the current language; None if there is none."""
 
     @property
     def engaged(self) -> bool:
-        """Whether a node holds, or has been asked to and has not said that it was released."""
+        """Whether a node holds, or was asked to and has not reported its release."""
         return self.asked or any(node.engaged for node in self.nodes.values())
 
     @property
@@ -76,7 +76,7 @@ class Emergency:
 
     @property
     def free(self) -> tuple[str, ...]:
-        """The nodes that do not, though they have had the time to hear of it as others have."""
+        """The nodes that do not hold, though they have had as much time as the others to do so."""
         known_s = max(self.changed_s, self.heard_s, self.since_s) + SETTLED_S
         return tuple(
             sorted(
@@ -88,7 +88,7 @@ class Emergency:
 
     @property
     def overdue(self) -> tuple[str, ...]:
-        """The nodes that hold though they have had the time to hear of our release."""
+        """The nodes that hold, though they have had enough time to receive our release."""
         settled = self.time_s > self.since_s + SETTLED_S
         return tuple(sorted(self.awaited)) if settled else ()
 
@@ -97,13 +97,13 @@ class Emergency:
         return replace(self.said(True, now_s, now_s), ours=True, since_s=now_s, awaited={})
 
     def released(self, now_s: float) -> Emergency:
-        """Release it from here, which every node that holds has yet to confirm."""
+        """Release it from here; every node that holds has yet to confirm that."""
         awaited = {name: self.nodes[name].since_s for name in self.holders}
         state = self.said(False, now_s, now_s)
         return replace(state, ours=True, since_s=now_s, awaited=awaited)
 
     def said(self, engaged: bool, heard_s: float, said_s: float) -> Emergency:
-        """Take it that somebody has said so on the topic."""
+        """Record a message that somebody published on the topic."""
         return replace(
             self,
             asked=engaged,
@@ -115,13 +115,13 @@ class Emergency:
         )
 
     def fallen_back(self, reason: str, ended: tuple[str, ...] = ()) -> Emergency:
-        """Remember why nodes are stopped in its place, and which."""
+        """Remember which nodes are stopped instead, and why."""
         return replace(self, fallback=reason, ended=tuple(dict.fromkeys((*self.ended, *ended))))
 
     def seen(self, update: GraphUpdate) -> Emergency:
-        """Take in what others said on the topics."""
+        """Take in what others published on the topics."""
         state = self
-        # Of a word and its opposite that have come together the later one counts.
+        # If a stop and a release arrive together, the later one counts.
         for sample in update.samples.get(EMERGENCY_STOP, ())[-1:]:
             said_s = min(sample.received_s, sample.sent_s or sample.received_s)
             state = state.heard(bool(sample.value.get("data")), sample.received_s, said_s)
@@ -136,22 +136,22 @@ class Emergency:
         return state
 
     def heard(self, engaged: bool, at_s: float, said_s: float) -> Emergency:
-        """Take in a word on the topic, of others or our own come back."""
+        """Take in a message on the topic, from others or our own."""
         if at_s <= self.since_s:
             return self
         if engaged != self.asked or self.by_gate:
             state = self.said(engaged, at_s, said_s)
-            # Where nodes hold, it is their word that it is another's.
+            # Where nodes hold, their reports say whether it is somebody else's.
             same = self.engaged == engaged and bool(self.holders)
             return replace(state, ours=self.ours and same, awaited={})
         return replace(self, heard_s=at_s)
 
     def obeyed(self, nodes: Mapping[str, NodeStop], update: GraphUpdate) -> Emergency:
-        """Take in what the nodes say that they obey; who has left the graph says nothing more."""
+        """Take in what the nodes report; nodes that have left the graph report nothing any more."""
         held = self.holders
         state = replace(self, nodes=present(nodes, update), time_s=update.time_s)
         if held and not state.nodes:
-            # They hold still when they come back.
+            # They still hold when they come back.
             return replace(state, asked=True, by_gate=not state.asked, awaited={})
         if state.by_gate and nodes:
             state = replace(state, asked=False, by_gate=False)
@@ -168,7 +168,7 @@ class Emergency:
         return replace(state, awaited=still_awaited(state))
 
     def told_by_gate(self, gate: Gate) -> Emergency:
-        """Take in what the gate obeys: it has heard of a stop that was said before we listened."""
+        """Take in what the gate obeys: it received stops that were published before we listened."""
         if not self.asked and gate.verdict == STOPPED:
             return replace(self, asked=True, ours=True, by_gate=True, fallback="")
         if self.by_gate and gate.verdict != STOPPED:
@@ -177,7 +177,7 @@ class Emergency:
 
 
 def was_released(node: NodeStop, said_s: float) -> bool:
-    """Tell whether a node that is free has obeyed a stop of that time, before it was released."""
+    """Return whether a node that is free now obeyed a stop of that time before it was released."""
     return max(node.since_s, node.held_s) >= said_s
 
 
@@ -191,19 +191,19 @@ def still_awaited(state: Emergency) -> Mapping[str, float]:
 
 
 def held_reason(state: Emergency) -> str:
-    """Return why the wheels are held, in the screen's language where it is known."""
+    """Return why the wheels are held, in the current language if possible."""
     own = "" if state.gate is None else held_words(state.gate) or refused_words(state.gate)
     return own or plain(state.blocked, 400)
 
 
 def listeners(update: GraphUpdate | None) -> int:
-    """Return how many subscriptions to the stop there are, Deck's own not counted."""
+    """Return the number of subscriptions to the stop, not counting Deck's own."""
     rows = () if update is None else update.topics
     return next((row.subscribers for row in rows if row.name == EMERGENCY_STOP), 0)
 
 
 def blocked_reason(sample: Sample) -> str:
-    """Return the words of the gravest status of a diagnostic_msgs/DiagnosticArray, OK is ''."""
+    """Return the text of the most severe status of a diagnostic_msgs/DiagnosticArray, '' for OK."""
     statuses: Any = sample.value.get("status", ())
     worst, words = 0, ""
     for status in statuses if isinstance(statuses, (list, tuple)) else ():

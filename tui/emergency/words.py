@@ -1,4 +1,4 @@
-"""What the banner says of the emergency stop: who has given it, when, and where nodes differ."""
+"""The text of the banner of the emergency stop: who engaged it, when, and where nodes differ."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:
-    """Return what is said while it is engaged, from long to short."""
+    """Return the texts to show while it is engaged, from long to short."""
     release = _("{key} starts them again") if state.ended else _("{key} releases")
     release = release.format(key=release_key)
     head, since, differing = _head(state), _since(state), differing_words(state)
@@ -33,13 +33,13 @@ def stop_words(state: Emergency, release_key: str) -> tuple[str, ...]:
 
 
 def shown_of(state: Emergency) -> tuple[object, ...]:
-    """Return all of it that is on the screen: nodes repeat their words all the time."""
+    """Return all that is shown on the screen, since nodes repeat their reports all the time."""
     words = stop_words(state, "") if state.engaged else ()
     return state.engaged, words, state.blocked, state.gate
 
 
 def differing_words(state: Emergency) -> str:
-    """Say which nodes do not do as the others do, or as they were told; empty if all do."""
+    """Say which nodes deviate from the others, or from what was asked; empty if none does."""
     held, free = state.holders, state.free
     if state.overdue:
         return _("released here, still held by {nodes}").format(nodes=_names(state.overdue))
@@ -52,7 +52,7 @@ def differing_words(state: Emergency) -> str:
 
 
 def _head(state: Emergency) -> str:
-    """Say who has given it, as far as that is known."""
+    """Say who engaged it, as far as that is known."""
     if state.ours:
         return _("■ EMERGENCY STOP")
     held = [state.nodes[name] for name in state.holders]
@@ -67,7 +67,7 @@ def _head(state: Emergency) -> str:
 
 
 def _is_own(node: str) -> bool:
-    """Whether it is the node of this screen, which has said nothing."""
+    """Return whether it is this screen's own node, which did not send the stop."""
     return node.startswith(DECKS) and node.endswith(f"_{os.getpid()}")
 
 

@@ -1,6 +1,6 @@
-"""The tab of the flow: what followed from a word, across nodes.
+"""The Flow tab: what followed from an utterance, across nodes.
 
-Messages and log lines become steps in `reading`, steps chains in `book` and `chains`, chains lines
-in `lines`, which `view` shows. All but `view` and `screen` is plain data. From outside: `screen`
-for the app, nothing else.
+Messages and log lines become steps in `reading`, steps become chains in `book` and `chains`, and
+chains become lines in `lines`, which `view` shows. Everything except `view` and `screen` is plain
+data. Only `screen` is used elsewhere, by the app.
 """

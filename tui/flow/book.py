@@ -1,4 +1,4 @@
-"""Steps in whatever order they come in, put into the chains they belong to."""
+"""Sorts steps, in whatever order they arrive, into the chains that they belong to."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 MOST_CHAINS = 50
 MOST_LOOSE = 400
-"""Steps that belong to nothing yet: a log line may come in before the message that caused it."""
+"""Steps without a chain yet: a log line may arrive before the message that caused it."""
 
 
 class FlowBook:
@@ -29,7 +29,7 @@ class FlowBook:
 
     @property
     def chains(self) -> Sequence[Chain]:
-        """Oldest first."""
+        """The chains, oldest first."""
         return self._chains
 
     def clear(self) -> None:
@@ -38,7 +38,7 @@ class FlowBook:
         self._loose.clear()
 
     def add(self, steps: Iterable[FlowStep]) -> bool:
-        """Take steps in; whether any chain is not what it was."""
+        """Add steps; return whether any chain has changed."""
         changed = False
         for step in sorted(steps):
             changed = self._place(step) or changed
@@ -61,7 +61,7 @@ class FlowBook:
         return next(begun, None)
 
     def _begin(self, first: FlowStep) -> None:
-        # Chains are told apart by their beginnings.
+        # Chains are identified by their start times.
         while any(chain.start_s == first.time_s for chain in self._chains):
             first = replace(first, time_s=math.nextafter(first.time_s, math.inf))
         chain = Chain(first)

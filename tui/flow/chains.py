@@ -1,14 +1,14 @@
-"""What happened when somebody spoke: steps across nodes, gathered into chains. Plain data.
+"""What happened after an utterance: steps across nodes, grouped into chains. Plain data.
 
-A step is a message or a log line. The time of a message is the middleware's: when its publisher
-handed it over, by the publisher's clock; where that is not told, or is by the clock of another
-machine, when it arrived at Deck's own reader. A log line has the stamp that the node itself wrote
-into it. On one machine all are of one clock, so delays and their order are good to a few tenths of
-a millisecond; a log line is written a moment before or after what it tells. By arrivals they are
-good to a millisecond on an idle machine and to some ten on a busy one. A log line without a stamp
-of its own has the time at which it was read, which may be tens of milliseconds late. Service calls
-are not visible to anybody but the two who talk: of the head's service the log and /head_state are
-shown.
+A step is a message or a log line. The time of a message is the middleware's source timestamp: when
+its publisher sent it, by the publisher's clock. Where that is unknown, or comes from the clock of
+another machine, it is the time of arrival at Deck's own reader. A log line has the time stamp that
+the node itself wrote. On one machine all of these use one clock, so delays and their order are
+accurate to a few tenths of a millisecond; a log line is written a moment before or after the event
+it describes. Arrival times are accurate to a millisecond on an idle machine and to about ten on a
+busy one. A log line without a time stamp of its own has the time at which it was read, which may be
+tens of milliseconds late. Service calls are visible only to the client and the server: for the
+head's service, the log and /head_state are shown.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 MOST_STEPS = 80
-"""Of one chain; what comes after is counted only."""
+"""Steps of one chain; later ones are only counted."""
 UTTERANCE_S = 1.0
 """A longer silence of the microphone ends what is being said."""
 BURST_S = 0.5
-"""The same source again within this time does not begin anew."""
+"""Further messages from the same source within this time do not start a new chain."""
 THINKS_S = 20.0
 """How long a brain may think before its first command."""
 FOLLOWS_S = 5.0
-"""What comes within this time after the beginning belongs to it."""
+"""Anything within this time after the beginning belongs to the chain."""
 PAUSE_S = 2.0
-"""So does what comes later without a longer pause than this,"""
+"""So does anything later without a gap longer than this,"""
 LONGEST_S = 30.0
-"""up to here."""
+"""up to this time."""
 EARLY_S = 0.02
-"""How much before its cause something may seem to have happened."""
+"""How much earlier than its cause an effect may appear to be."""
 
 
 class Lane(str, Enum):
-    """Who takes part."""
+    """The lanes: who takes part."""
 
     MIC = "mic"
     BRAIN = "brain"
@@ -46,11 +46,11 @@ class Lane(str, Enum):
     WHEELS = "wheels"
     SPEAKER = "speaker"
     LOG = "log"
-    """What other nodes write into their logs."""
+    """Log lines of other nodes."""
 
 
 class StepKind(str, Enum):
-    """What a step's content is."""
+    """How the content of a step is to be read."""
 
     TEXT = "text"
     DRIVE = "drive"
@@ -64,7 +64,7 @@ class StepKind(str, Enum):
 
 @dataclass(frozen=True, order=True)
 class FlowStep:
-    """One thing that happened."""
+    """One event."""
 
     time_s: float
     """Unix time."""
@@ -72,26 +72,26 @@ class FlowStep:
     source: str = field(compare=False)
     """The topic, or the node that wrote the line."""
     said_by: str = field(compare=False, default="")
-    """The node that published it; several, comma-separated, where that cannot be told apart."""
+    """The node that published it; several, comma-separated, if it is not known which."""
     kind: StepKind = field(compare=False, default=StepKind.TEXT)
     text: str = field(compare=False, default="")
     figures: tuple[float, ...] = field(compare=False, default=())
     times: int = field(compare=False, default=1)
-    """How many times in a row the same was said."""
+    """How many times in a row the same content came."""
     begins: bool = field(compare=False, default=False)
-    """Whether it may be the first of a chain."""
+    """Whether it may start a chain."""
 
     def repeats(self, other: FlowStep) -> bool:
-        """Whether this says the same again."""
+        """Whether the content is the same."""
         return self._content() == other._content()
 
     def _content(self) -> tuple[object, ...]:
-        # By their names: nan is not nan.
+        # Compared as text, because nan is not equal to nan.
         return self.source, self.kind, self.text, repr(self.figures)
 
 
 class Chain:
-    """One beginning, and what followed."""
+    """The first step of a chain, and what followed."""
 
     def __init__(self, first: FlowStep) -> None:
         self.first = first
@@ -108,11 +108,11 @@ class Chain:
         return self.first.time_s
 
     def delay_s(self, step: FlowStep) -> float:
-        """Seconds since the beginning; what seems to have come a hair before it counts as 0."""
+        """Seconds since the beginning; 0 for what appears to have come slightly before it."""
         return max(0.0, step.time_s - self.start_s)
 
     def takes(self, step: FlowStep) -> bool:
-        """Whether a step belongs to this chain and not to a new one."""
+        """Whether a step belongs to this chain rather than to a new one."""
         age_s = step.time_s - self.start_s
         if step.begins:
             return self._takes_beginning(step, age_s)
@@ -133,7 +133,7 @@ class Chain:
         return later and age_s <= THINKS_S
 
     def add(self, step: FlowStep) -> None:
-        """Take a step in; the same again is counted, not repeated."""
+        """Add a step; a repetition is only counted."""
         self._heard_s[step.source] = max(step.time_s, self._heard_s.get(step.source, step.time_s))
         if step.lane is not Lane.LOG:
             self._active_s = max(self._active_s, step.time_s)

@@ -1,4 +1,4 @@
-"""A chain as lines of a table: delay, who, where on the axis of time, and what was said."""
+"""A chain as lines of a table: delay, who, where on the time axis, and what was said."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 DELAY = 10
 NARROW, WIDE = 100, 150
-"""Columns of the view from which on there are more columns."""
+"""Widths of the view from which on more columns are shown."""
 SHORTEST_S = 0.001
 LINEAR_UP_TO_S = 0.02
 """An axis no longer than this needs no logarithm."""
 
 
 class FlowColumns(NamedTuple):
-    """Widths in cells; the content takes the rest."""
+    """Widths in cells; the content takes the remaining ones."""
 
     source: int
     said_by: int
@@ -35,15 +35,15 @@ class FlowColumns(NamedTuple):
 
 @dataclass(frozen=True)
 class FlowLine:
-    """One row of the view: its pieces of text, each with the name of its style."""
+    """One row of the view: pieces of text, each with the name of its style."""
 
     key: tuple[float, int]
-    """Start of the chain, and the number of the step; -1 is the headline, -2 no row to choose."""
+    """Start of the chain and number of the step; -1 is the headline, -2 cannot be chosen."""
     pieces: tuple[tuple[str, str], ...]
 
 
 def columns(width: int) -> FlowColumns:
-    """Share out a width."""
+    """Divide a width among the columns."""
     if width < NARROW:
         source, said_by, bar = 16, 0, max(8, width // 5)
     elif width < WIDE:
@@ -59,7 +59,7 @@ def columns(width: int) -> FlowColumns:
 def lines(
     chain: Chain, at: str, shown: Sequence[FlowStep], width: int, *, logarithmic: bool, folded: bool
 ) -> list[FlowLine]:
-    """Lay a chain out; `at` is the time of day of its beginning, `shown` are its steps to show."""
+    """Lay out a chain; `at` is the time of day of its start, `shown` the steps to show."""
     mark = "▸" if folded else "▾"
     head = f"{mark} {at}  {words.headline(chain, shown)}"
     found = [FlowLine((chain.start_s, -1), ((fit(head, width), "title"),))]
@@ -101,14 +101,14 @@ def _ruler(chain: Chain, axis: TimeAxis, room: FlowColumns) -> FlowLine:
 
 
 class TimeAxis:
-    """Time across so many cells, from 0 to the end of the chain."""
+    """A time axis of a given number of cells, from 0 to the end of the chain."""
 
     def __init__(self, span_s: float, width: int, logarithmic: bool) -> None:
         self._span_s, self._width = span_s, width
         self._logarithmic = logarithmic and span_s > LINEAR_UP_TO_S
 
     def cell(self, delay_s: float) -> int:
-        """The cell of a moment, from 0."""
+        """The cell of a time, counted from 0."""
         if self._logarithmic:
             share = math.log1p(delay_s / SHORTEST_S) / math.log1p(self._span_s / SHORTEST_S)
         else:
@@ -116,7 +116,7 @@ class TimeAxis:
         return min(self._width - 1, max(0, round(share * (self._width - 1))))
 
     def bar(self, before_s: float, after_s: float) -> str:
-        """A line from the step before to this one, which is a dot."""
+        """A line from the previous step to this one, which is a dot."""
         begin, end = self.cell(before_s), self.cell(after_s)
         return "·" * begin + "━" * (end - begin) + "●" + " " * (self._width - end - 1)
 
@@ -141,7 +141,7 @@ class TimeAxis:
 
 
 def fit(text: str, width: int) -> str:
-    """Exactly so many cells; what is cut off ends in an ellipsis."""
+    """The text in exactly `width` cells, with an ellipsis if it was cut."""
     if cell_len(text) <= width:
         return set_cell_size(text, width)
     return set_cell_size(text, max(0, width - 1)) + "…"

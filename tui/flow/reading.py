@@ -1,4 +1,4 @@
-"""Messages and log lines read as steps; what is repeated all the time only when it changes."""
+"""Messages and log lines read as steps; values that repeat are recorded only when they change."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ TOPICS = (
     HEAD_STATE,
     SPEAKER,
 )
-"""Causes before what follows from them, which decides among messages of one moment."""
+"""Causes before effects, which decides the order of messages with the same time."""
 
 SPOKEN_LEVEL = 3
-"""Of the eight columns of loudness: a quieter sound is no voice (about -38 dB)."""
+"""Of the eight levels of loudness: a quieter sound is not a voice (about -38 dB)."""
 PASSED_ON_S = 0.05
-"""What repeats itself passes on a command that it has been given within this time."""
+"""A node that republishes continuously passes on a new command within this time."""
 SAME_CLOCK_S = 1.0
-"""A message that was longer on its way than this was stamped by another clock."""
+"""A message with a longer transit time than this was stamped by another clock."""
 STILL_RAD = math.radians(0.2)
 LONGEST = 300
 
@@ -56,11 +56,11 @@ LANES = {
     "llm_parser": Lane.BRAIN,
     "head_controller": Lane.HEAD,
 }
-"""The program of a node, or its name where the program is not known, to where its log belongs."""
+"""The lane of a node's log, by its program, or by its name if the program is unknown."""
 
 
 class FlowReader:
-    """Remembers of each topic what is needed to tell news from repetition."""
+    """Remembers what is needed of each topic to tell news from repetition."""
 
     def __init__(self) -> None:
         self._before: dict[str, str] = {}
@@ -98,9 +98,9 @@ class FlowReader:
     ) -> Iterator[FlowStep]:
         wheels = topic == WHEEL_COMMANDS
         figures = _wheels(value) if wheels else outcome_words.setpoint(value)
-        # Thirty-two bits of a message and a repetition of them may differ by a hair.
+        # Values in 32 bits and their repetitions may differ slightly.
         figures = tuple(round(figure, 4) for figure in figures)
-        # By its name: nan is not nan.
+        # Compared as text, because nan is not equal to nan.
         changed = repr(figures) != self._before.get(topic)
         self._before[topic] = repr(figures)
         if topic != DRIVE and not changed and not self._passes_on(topic, time_s):
@@ -110,7 +110,7 @@ class FlowReader:
         yield FlowStep(time_s, lane, topic, said_by, kind, figures=figures)
 
     def _passes_on(self, topic: str, time_s: float) -> bool:
-        """Whether it has just been given a command, and has not said so yet."""
+        """Whether it was just given a command that it has not passed on yet."""
         givers = (DRIVE,) if topic == DRIVE_SAFE else (DRIVE, DRIVE_SAFE)
         given_s = max(self._told_s.get(giver, -math.inf) for giver in givers)
         told_s = self._told_s.get(topic, -math.inf)
@@ -119,7 +119,7 @@ class FlowReader:
     def _read_head(
         self, value: Mapping[str, Value], time_s: float, said_by: str
     ) -> Iterator[FlowStep]:
-        """Two steps of a movement: where it begins, and where it has come to rest."""
+        """Two steps for one movement: where it begins, and where it has come to rest."""
         looks = outcome_words.joint(value, HEAD_PAN), outcome_words.joint(value, HEAD_TILT)
         before, self._looked = self._looked, looks
         if before is None:
@@ -130,17 +130,17 @@ class FlowReader:
         if still == self._head_moves:
             self._head_moves = not still
             kind = StepKind.HEAD_THERE if still else StepKind.HEAD_MOVES
-            # It has been there since the last message that was news.
+            # It has been there since the last message with a new value.
             yield FlowStep(self._head_s, Lane.HEAD, HEAD_STATE, said_by, kind, figures=looks)
 
 
 def _is_still(now_rad: float, before_rad: float) -> bool:
-    """Whether a joint is where it was; one of which nobody knows that is, too."""
+    """Whether a joint has not moved; unknown positions count as unmoved."""
     return abs(now_rad - before_rad) < STILL_RAD or (math.isnan(now_rad) and math.isnan(before_rad))
 
 
 def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[FlowStep]:
-    """Read log lines of nodes; `programs` has what each node of the session runs."""
+    """Read log lines of nodes; `programs` maps the nodes of the session to their programs."""
     return [
         FlowStep(
             line.time_s,
@@ -155,7 +155,7 @@ def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[Flo
 
 
 def _sent_s(sample: Sample) -> float:
-    """When it was sent, unless that is by a clock which is not this machine's."""
+    """When it was sent; when it arrived, if the sender's clock is not this machine's."""
     arrived_s = sample.received_s - sample.age_s
     if sample.sent_s is not None and 0 <= arrived_s - sample.sent_s <= SAME_CLOCK_S:
         return sample.sent_s
@@ -163,13 +163,13 @@ def _sent_s(sample: Sample) -> float:
 
 
 def _sound(value: Mapping[str, Value]) -> str | None:
-    """What was said in words, None if nothing was: a stream has silence in it."""
+    """What was said as text, None if nothing was: a stream contains silence."""
     data = value.get("data", b"")
     sound = heard(data if isinstance(data, bytes) else b"")
     loudest = max((LEVELS.index(level) for level in sound.levels), default=SPOKEN_LEVEL)
     if loudest < SPOKEN_LEVEL:
         return None
-    # Pieces of one sound are alike: they are counted.
+    # Pieces of one sound get the same text, so that they are counted as repetitions.
     return "♪" if sound.is_sound else sound.words[:LONGEST]
 
 

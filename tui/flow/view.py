@@ -1,4 +1,4 @@
-"""Chains below each other, the newest first; a cursor walks their steps."""
+"""Chains below each other, the newest first; the cursor moves over their steps."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ Key = tuple[float, int]
 
 
 class FlowView(OneStyle, ScrollView, can_focus=True):
-    """Shows lines that `lay` makes for a width; those with a key can be chosen."""
+    """Shows lines that `lay` makes for a given width; those with a key can be chosen."""
 
     class StepHighlighted(Message):
-        """Another line is the chosen one."""
+        """Another line was chosen."""
 
     class StepOpened(Message):
-        """Enter on a line, or a second click."""
+        """Enter was pressed on a line, or it was clicked a second time."""
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -74,11 +74,11 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
         return self._chosen
 
     def keys(self) -> Sequence[Key]:
-        """Every line that can be chosen, from the top."""
+        """The keys of all lines that can be chosen, from the top."""
         return [line.key for line in self._lines if line.key[1] > -2]
 
     def show(self) -> None:
-        """Lay everything out anew; who stands at the top sees what is new, others stay."""
+        """Repeat the layout; at the top, follow what is new, otherwise stay at the chosen line."""
         at_top = self.scroll_offset.y == 0 and (
             self._chosen is None or self._chosen == next(iter(self.keys()), None)
         )
@@ -95,25 +95,24 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
         self.refresh()
 
     def choose(self, key: Key | None) -> None:
-        """Put the cursor there."""
+        """Move the cursor to this line."""
         if key != self._chosen:
             self._chosen = key
             self.post_message(self.StepHighlighted())
             self.refresh()
         row = self._row_of(key)
         if row is not None:
-            # The headline's ruler belongs to it.
             self.scroll_to_region(Region(0, row, 1, 1), animate=False, force=True)
 
     def action_move(self, rows: int) -> None:
-        """Go so many lines on."""
+        """Move the cursor by this many lines."""
         keys = list(self.keys())
         if keys:
             at = keys.index(self._chosen) if self._chosen in keys else 0
             self.choose(keys[max(0, min(len(keys) - 1, at + rows))])
 
     def action_edge(self, at: int) -> None:
-        """Go to the first or the last line."""
+        """Move the cursor to the first or the last line."""
         keys = self.keys()
         if keys:
             self.choose(keys[at])
@@ -123,7 +122,7 @@ class FlowView(OneStyle, ScrollView, can_focus=True):
         self.post_message(self.StepOpened())
 
     def on_click(self, event: Click) -> None:
-        """Choose the line; twice opens it."""
+        """Choose the line; a second click opens it."""
         row = event.y + self.scroll_offset.y
         if row < len(self._lines) and self._lines[row].key[1] > -2:
             self.choose(self._lines[row].key)

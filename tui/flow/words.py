@@ -1,4 +1,4 @@
-"""Steps of a chain in words, and the mark and name of who takes part."""
+"""The steps of a chain in words, and the mark and name of each lane."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SECOND_MS = 1000
 
 
 def content(step: FlowStep) -> str:
-    """What a step says."""
+    """Return the content of a step as text."""
     words = _once(step)
     return words if step.times == 1 else f"{words} ×{step.times}"
 
@@ -51,8 +51,8 @@ def _once(step: FlowStep) -> str:
 
 
 def said_by(step: FlowStep, chain: Chain) -> str:
-    """The node that said it; a command that nothing led to is a person's."""
-    # By what tells it apart: what seems to have come a hair earlier stands before it.
+    """Return the node that published it; a command that nothing led to comes from a person."""
+    # Found by its identity: a step that seems to have come slightly earlier stands before it.
     is_first = (step.source, step.time_s) == (chain.first.source, chain.start_s)
     if is_first and step.lane is not Lane.MIC:
         return _("a person")
@@ -60,13 +60,13 @@ def said_by(step: FlowStep, chain: Chain) -> str:
 
 
 def delay(delay_s: float) -> str:
-    """A delay in milliseconds, with tenths where it is short."""
+    """Return a delay in milliseconds, with tenths if it is short."""
     milliseconds = delay_s * SECOND_MS
     return _("{n} ms").format(n=figure(milliseconds, 1 if abs(milliseconds) < 100 else 0))
 
 
 def headline(chain: Chain, shown: Sequence[FlowStep]) -> str:
-    """What began it, how many of its steps are shown, and how long they took."""
+    """Return what began the chain, how many of its steps are shown, and how long they took."""
     steps = len(shown) + chain.more
     count = ngettext("{n} step", "{n} steps", steps).format(n=steps)
     took = delay(max(map(chain.delay_s, shown), default=0.0))
@@ -76,9 +76,9 @@ def headline(chain: Chain, shown: Sequence[FlowStep]) -> str:
 
 
 def nothing_yet(topics: Collection[str], command_key: str, *, recorded: bool) -> list[str]:
-    """What is missing, and what to do about it with the `topics` that are there.
+    """Say what is missing, and what can be done with the `topics` that exist.
 
-    `recorded`: whether it is a recording that is shown, to which nobody can say anything.
+    `recorded`: whether a recording is shown, to which nobody can say anything.
     """
     if recorded:
         return [_("Nobody has spoken so far in this recording: play it on, or jump.")]

@@ -1,4 +1,4 @@
-"""What every screen of a session has around its body: title, bar of a replay, keys.
+"""What surrounds the body of every session screen: title, replay bar, keys.
 
-A new screen inherits `screen.DeckScreen`; what it needs of the app it finds in `host.Host`.
+A new screen inherits `screen.DeckScreen`; `host.Host` is what it may use of the app.
 """

@@ -1,4 +1,4 @@
-"""The keys of the moment in one line; each can be clicked."""
+"""The keys that can be used now in one line; each can be clicked."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ if TYPE_CHECKING:
 
 
 SPARED = "app.palette"
-"""What gives way on a very narrow terminal."""
+"""Left out on a very narrow terminal."""
 
 
 class Key(NamedTuple):
-    """One thing that can be done now."""
+    """One action that can be run now."""
 
     key: str
     title: str
     id: str
     enabled: bool
     everywhere: bool
-    """Whether it is the app's own."""
+    """Whether it is an action of the app."""
 
 
 class KeyBar(Widget):
-    """A footer that speaks the language of the moment; one widget, drawn only when keys change."""
+    """A footer in the current language; one widget, drawn only when keys change."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"key-bar--key", "key-bar--title", "key-bar--off"}
     DEFAULT_CSS = """
@@ -59,7 +59,7 @@ class KeyBar(Widget):
     """
 
     def on_mount(self) -> None:
-        """Draw again whenever the focus, or what is possible, changes."""
+        """Redraw whenever the focus, or what is possible, changes."""
         self.screen.bindings_updated_signal.subscribe(self, self._bindings_updated)
 
     def _bindings_updated(self, screen: Screen[object]) -> None:
@@ -67,7 +67,7 @@ class KeyBar(Widget):
             self.refresh()
 
     def keys(self) -> list[Key]:
-        """Return what can be done now, what the focused widget offers first."""
+        """Return the actions that can be run now, those of the focused widget first."""
         found: dict[str, list[ActiveBinding]] = {}
         for active in self.screen.active_bindings.values():
             name = active.binding.id or ""
@@ -78,7 +78,7 @@ class KeyBar(Widget):
         return [self._key(REGISTRY[name], found[name]) for name in names]
 
     def _key(self, action: type[Action[Any]], keys: list[ActiveBinding]) -> Key:
-        """Return the action with the first of its keys that the focused widget leaves to it."""
+        """Return the action with the first of its keys that the focused widget does not take."""
         wanted = action.key.split(",")
         first = min(keys, key=lambda one: (*wanted, one.binding.key).index(one.binding.key))
         key = self.app.get_key_display(first.binding)
@@ -91,19 +91,19 @@ class KeyBar(Widget):
         self.tooltip = _(REGISTRY[name].tooltip) if name in REGISTRY else None
 
     async def action_press(self, name: str) -> None:
-        """Do what was clicked, as its key would."""
+        """Run the clicked action."""
         for active in self.screen.active_bindings.values():
             if active.binding.id == name:
                 await self.app.run_action(active.binding.action, active.node)
                 return
 
     def render(self) -> Content:
-        """Draw the keys of every screen at the right, before them as many others as fit."""
+        """Draw the keys of the app on the right, and before them as many others as fit."""
         keys = self.keys()
         always = [entry for entry in keys if entry.everywhere]
         room = self.size.width - sum(map(_cells, always))
         if room < 0:
-            # The page of help names all keys, those of the palette too.
+            # The help page has all keys, including that of the palette.
             always = [entry for entry in always if entry.id != SPARED]
         shown: list[Key] = []
         for entry in keys:
@@ -123,9 +123,9 @@ class KeyBar(Widget):
 
 
 def _places(names: Iterable[str]) -> dict[str, tuple[int, int]]:
-    """Order these actions by module, the one that is met first before others, and within it.
+    """Order these actions by module, in the order in which they appear, then within it.
 
-    Which module was imported first, and so stands first in the registry, is chance.
+    The registry has the modules in the order of import, which is accidental.
     """
     met: dict[str, int] = {}
     for name in names:

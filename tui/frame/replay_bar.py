@@ -1,4 +1,4 @@
-"""Where a recording is: one line above the keys, of which every part can be clicked."""
+"""The position in a recording: one line above the keys, of which every part can be clicked."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from graph.replay.state import ReplayState
 
 LOOK_S = 0.25
-"""How often the bar looks where the recording is."""
+"""How often the bar checks the position in the recording."""
 LEAST_TRACK = 10
 TRACK = 24
-"""Cells that the track keeps before keys are shown."""
+"""Minimum width of the track before keys are shown."""
 
 
 class ReplayBar(Widget):
@@ -62,10 +62,10 @@ class ReplayBar(Widget):
         self._replay: Replay | None = None
         self._state: ReplayState | None = None
         self.track = (0, 0)
-        """Column where it begins, and its width."""
+        """The column where it begins, and its width."""
 
     def on_mount(self) -> None:
-        """Look where the recording is, now and then."""
+        """Check the position in the recording regularly."""
         self._timer = self.set_interval(LOOK_S, self.look, pause=True)
 
     def show(self, replay: Replay | None) -> None:
@@ -79,7 +79,7 @@ class ReplayBar(Widget):
             self.look()
 
     def look(self) -> None:
-        """Draw anew if anything has changed."""
+        """Redraw if anything has changed."""
         if self._replay is None or not self.screen.is_current:
             return
         state = self._replay.state
@@ -93,7 +93,7 @@ class ReplayBar(Widget):
                 self.screen.refresh_bindings()
 
     def on_click(self, event: Click) -> None:
-        """Jump to the place that was clicked."""
+        """Jump to the position that was clicked."""
         begin, width = self.track
         state = self._state
         if self._replay is not None and state is not None and begin <= event.x < begin + width:
@@ -102,7 +102,7 @@ class ReplayBar(Widget):
             self.look()
 
     def on_mouse_move(self, event: MouseMove) -> None:
-        """Tell the time under the pointer."""
+        """Show the time under the pointer."""
         begin, width = self.track
         state = self._state
         self.tooltip = None
@@ -111,7 +111,7 @@ class ReplayBar(Widget):
             self.tooltip = length_words(share * state.length_s)
 
     def render(self) -> Content:
-        """Draw sign, position, track, length, rate; keys as far as there is room."""
+        """Draw sign, position, track, length and rate; keys as far as there is room."""
         state = self._state
         if state is None:
             return Content("")
@@ -162,7 +162,7 @@ class ReplayBar(Widget):
         return Content.assemble(("━" * at + "●", done), ("─" * (width - 1 - at), rest))
 
     def _keys(self) -> Iterator[Content]:
-        """Yield what can be done besides what the footer shows, most wanted first."""
+        """Yield the keys that the footer does not show, the most useful first."""
         app = host_of(self)
         words = self.get_visual_style("replay-bar--words")
         bold = self.get_visual_style("replay-bar--key")
@@ -175,5 +175,5 @@ class ReplayBar(Widget):
 
 
 def _clock(seconds: float, length_s: float) -> str:
-    """Return a time with tenths, as wide as the length of the recording needs."""
+    """Return a time with tenths, padded to the width of the length of the recording."""
     return decimal(f"{seconds:.1f}") if length_s < 60 else length_words(seconds)

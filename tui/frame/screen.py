@@ -1,4 +1,4 @@
-"""What every screen of a session has: title, emergency banner, keys, and the data it asks for."""
+"""What every session screen has: title, emergency banner, keys, and the data it asks for."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class DeckScreen(Screen[None], Acting, Working):
     """Base of the screens that show a session.
 
     A subclass yields its widgets in `compose_body`, names its topics in `watch_topics` and
-    `follow_topics`, and handles what it wants of `tui.session.messages`. When the topics it wants
-    have changed it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P, Ctrl+Q, q, F1
-    to F5 and 1 to 7 belong to the app.
+    `follow_topics`, and handles the messages of `tui.session.messages` that it needs. When the
+    topics it wants have changed, it calls `topics_changed`. The keys space, Ctrl+X, Ctrl+R, Ctrl+P,
+    Ctrl+Q, q, F1 to F5 and 1 to 7 belong to the app.
     """
 
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
@@ -48,7 +48,7 @@ class DeckScreen(Screen[None], Acting, Working):
     """
 
     tab: ClassVar[str] = ""
-    """Which tab of the title bar is in front while this screen is."""
+    """The tab of the title bar that is highlighted while this screen is in front."""
     about: ClassVar[str] = ""
     """What the screen shows, in a few sentences for the help page, marked by `N_`."""
     period_s: float = 0.25
@@ -68,38 +68,38 @@ class DeckScreen(Screen[None], Acting, Working):
         return self.deck.feed
 
     def compose(self) -> ComposeResult:
-        """Put the frame around the body."""
+        """Surround the body with the frame."""
         yield TitleBar()
         yield from self.compose_body()
         yield ReplayBar()
         yield KeyBar()
 
     def compose_body(self) -> ComposeResult:
-        """Yield what stands between the title and the keys."""
+        """Yield the widgets between the title and the keys."""
         yield from ()
 
     def watch_topics(self) -> set[str]:
-        """Return the topics whose newest message is wanted while this screen is in front."""
+        """Return the topics whose newest message is needed while this screen is in front."""
         return set()
 
     def follow_topics(self) -> set[str]:
-        """Return the topics of which every message is wanted, also while another is in front."""
+        """Return the topics of which every message is needed, even while another is in front."""
         return set()
 
     def keep_topics(self) -> set[str]:
-        """Return those of the watched topics that are wanted also while another is in front."""
+        """Return the watched topics that are needed even while another is in front."""
         return set()
 
     def watch_goals(self) -> set[str]:
-        """Return the actions whose goals of others are wanted while this screen is in front."""
+        """Return the actions whose goals from others are needed while this screen is in front."""
         return set()
 
     def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
-        """Yield headings and actions of parts of the screen that have keys of their own."""
+        """Yield headings and actions of the parts of the screen that have keys of their own."""
         yield from ()
 
     def on_compose(self) -> None:
-        """Take the classes of this size before the children come, so that each is styled once."""
+        """Set the classes for this size before the children exist, so that each is styled once."""
         across, down = self.app.size
         sizes = self._get_breakpoint_classes(across, BREAKPOINTS)
         sizes |= self._get_breakpoint_classes(down, HEIGHTS)
@@ -108,48 +108,48 @@ class DeckScreen(Screen[None], Acting, Working):
         self._styled_for = self._surroundings()
 
     def topics_changed(self) -> None:
-        """Tell the app that what this screen wants of the graph is something else now."""
+        """Tell the app that the topics this screen needs have changed."""
         if self.is_current:
             self.feed.ask_for_topics()
 
     def on_mount(self) -> None:
-        """Show the frame as things stand, and ask for what came before."""
+        """Show the frame, and ask for what happened before this screen was opened."""
         self.show_frame()
         self.feed.catch_up(self)
 
     def on_unmount(self) -> None:
-        """Hear no more."""
+        """Stop receiving updates."""
         self.feed.forget(self)
 
     def on_screen_resume(self) -> None:
-        """Ask for this screen's topics."""
+        """Request the topics of this screen."""
         self.show_frame()
         self.topics_changed()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Keep the title true."""
+        """Update the title."""
         del message
         self.show_frame()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Keep the title true."""
+        """Update the title."""
         del message
         self.show_frame()
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """Say so in the title."""
+        """Update the title."""
         del message
         self.show_frame()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Draw every widget anew; one that keeps its words must be told by its screen."""
+        """Redraw every widget; the screen itself must update widgets that store their texts."""
         del message
         self.show_frame()
         for widget in self.query("*"):
             widget.refresh(layout=True)
 
     def show_frame(self) -> None:
-        """Show title, session and emergency stop as they are."""
+        """Show title, session and emergency stop in their current state."""
         for bar in self.query(TitleBar):
             title.show(bar, self.deck, self.tab)
         for place in self.query(ReplayBar):
@@ -157,11 +157,11 @@ class DeckScreen(Screen[None], Acting, Working):
 
     @on(ScreenResume)
     def _keep_styles(self, event: ScreenResume) -> None:
-        """A hundred widgets are styled anew only if something outside has changed."""
+        """Restyle the hundred or so widgets only if something outside has changed."""
         around = self._surroundings()
         event.refresh_styles = around != self._styled_for
         self._styled_for = around
 
     def _surroundings(self) -> tuple[str, frozenset[str], frozenset[str]]:
-        """All outside this screen that its styles hang on."""
+        """Everything outside this screen that its styles depend on."""
         return self.app.theme, self.app.pseudo_classes, self.app.classes

@@ -1,4 +1,4 @@
-"""What the top line says: the screens there are, and what runs, is held or is stopped."""
+"""The content of the top line: the screens, and what is running, held or stopped."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ COMING = frozenset({"waiting", "starting", "backoff"})
 
 
 def show(bar: TitleBar, app: Host, front: str) -> None:
-    """Show all of it on a bar; `front`: the screen there that is in front."""
+    """Show everything on a bar; `front` is the screen in front."""
     bar.show(tabs(app, front), states(app), look(app), aside(app))
 
 
 def tabs(app: Host, front: str) -> Sequence[tuple[str, str, bool]]:
-    """Return (text, action, in front) of every screen of the session."""
+    """Return (text, action, in front) for every screen of the session."""
     return [
         (f"{app.keys_of(tab)[0]} {_(tab.title)}", f"app.act({tab.id!r})", tab.screen == front)
         for tab in TABS
@@ -46,9 +46,10 @@ def tabs(app: Host, front: str) -> Sequence[tuple[str, str, bool]]:
 
 
 def look(app: Host) -> str:
-    """Return how the title looks.
+    """Return the style of the title.
 
-    `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while that holds.
+    `stop` while stopped, `danger` while somebody drives past the gate, `alarm` while the gate
+    holds.
     """
     if app.feed.link is None:
         return "state"
@@ -60,12 +61,12 @@ def look(app: Host) -> str:
 
 
 def starting(app: Host) -> bool:
-    """Tell whether a node is still to come: it waits, starts, or will be started again."""
+    """Return whether a node is not running yet: it waits, is starting, or will be restarted."""
     return any(node.state.value in COMING for node in app.feed.nodes.values())
 
 
 def states(app: Host) -> Sequence[str]:
-    """Return what is to be said, from long to short; the first that fits is shown."""
+    """Return the texts of the state, from long to short; the first that fits is shown."""
     session = app.feed.session
     if session is None:
         if app.feed.ended:
@@ -82,29 +83,29 @@ def states(app: Host) -> Sequence[str]:
 
 
 def aside(app: Host) -> str:
-    """Return what is to be said beside an alarm, if it costs no tab its name: what is recorded."""
-    # No more than its size: with longer words it would be told only on wide terminals.
+    """Return what to show beside an alarm if no tab loses its name for it: the recording."""
+    # Only its size: a longer text would appear only on wide terminals.
     return "".join(app.recording.words[-1:]) if look(app) != "state" else ""
 
 
 def _where(session: SessionInfo, alarm: Sequence[str]) -> Sequence[str]:
-    """Return the words of an alarm, after them the domain if there is room for all of it."""
+    """Return the texts of an alarm, and the first one also with the domain if there is room."""
     return (f"{alarm[0]} · {domain_words(session)}", *alarm)
 
 
 def domain_words(session: SessionInfo) -> str:
-    """Return the ROS domain, which stands in the title at every size."""
+    """Return the ROS domain, which is in the title at every size."""
     return _("domain {domain}").format(domain=session.domain)
 
 
 def _held(state: Emergency) -> Sequence[str]:
-    """Return why the gate holds the wheels, or what it refuses though it would let them turn."""
+    """Return why the gate holds the wheels, or what it refused although it does not hold them."""
     reason = held_reason(state)
     return (f"⚠ {reason[:1].upper()}{reason[1:]}",)
 
 
 def _watched(app: Host, session: SessionInfo) -> Sequence[str]:
-    """Return the domain, and how many nodes others have started in it."""
+    """Return the domain, and the number of nodes that others have started in it."""
     update = app.feed.update
     count = 0 if update is None else len(robot_nodes(update))
     found = ngettext("{n} node", "{n} nodes", count).format(n=count)
@@ -119,7 +120,7 @@ def _replayed(session: SessionInfo) -> Sequence[str]:
 
 
 def _recorded(app: Host, session: SessionInfo) -> Sequence[str]:
-    """Return what runs, after what is recorded of it."""
+    """Return what is being recorded, then what is running."""
     recorded = app.recording.words
     if not recorded:
         return _running(app, session)

@@ -1,4 +1,4 @@
-"""The top line: the screens there are, which one is in front, and what runs or is stopped."""
+"""The top line: the screens, which one is in front, and what is running or stopped."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from textual.widget import Widget
 NAME = " Deck "
 URGENT = ("danger", "stop")
 ENOUGH = 16
-"""Cells of an alarm that are worth it: told whole it would take the words of the tabs away."""
+"""Cells of an alarm that are enough; its full text would hide the names of the tabs."""
 SHORT = 3
-"""Letters of a tab's word where there is little room."""
+"""Letters of a tab's name if there is little room."""
 NAMED = 3
-"""So many of the shapes of the tabs show a part of each name."""
+"""This many of the levels show a part of each name."""
 
 
 class _Level(NamedTuple):
-    """Tabs of (text, action, in front), so much shortened."""
+    """Tabs of (text, action, in front), shortened to a certain degree."""
 
     tabs: Sequence[tuple[str, str, bool]]
     gap: int
-    """Blanks between two texts."""
+    """Blanks between two tabs."""
 
     @property
     def width(self) -> int:
-        """Cells of all tabs, a blank before the first included."""
+        """Cells of all tabs, including a blank before the first."""
         return sum(cell_len(text) + self.gap for text, *_more in self.tabs) + (self.gap == 1)
 
 
 class TitleBar(Widget):
-    """Screens as tabs on the left, each can be clicked; on the right the state in words."""
+    """Screens as tabs on the left, which can be clicked; on the right the state in words."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "title-bar--name",
@@ -85,13 +85,13 @@ class TitleBar(Widget):
         look: str = "state",
         aside: str = "",
     ) -> None:
-        """Show tabs of (text, action, in front), and of `states` the first that fits, right.
+        """Show tabs of (text, action, in front), and on the right the first of `states` that fits.
 
-        `look`: `state`, `alarm`, `danger` or `stop`; with the last the whole line is red. Where
-        the words of the last two do not fit beside the tabs these give way. Tabs that are not in
-        front are shortened, to a few letters, moved together, and then to their keys, before the
-        state is. `aside` follows the state where a few letters of each tab, or all that the state
-        leaves of them, have room beside it.
+        `look` is `state`, `alarm`, `danger` or `stop`; with the last the whole line is red. The
+        texts of the last two take precedence over the tabs. Otherwise, tabs that are not in front
+        are shortened before the state is: to a few letters, then moved together, then to their
+        keys. `aside` follows the state if there is room for it beside tabs with a few letters each,
+        or beside all tabs that the state leaves.
         """
         shown = (tuple(tabs), tuple(states), look, aside)
         if shown != (self._tabs, self._states, self._look, self._aside):
@@ -101,11 +101,11 @@ class TitleBar(Widget):
 
     @property
     def text(self) -> str:
-        """What is shown."""
+        """The text of the line."""
         return self.render().plain
 
     def render(self) -> Content:
-        """Draw the tabs, then what fits of the state."""
+        """Draw the tabs, then as much of the state as fits."""
         level, state = self._with_aside(*self._fitting())
         left = self._left(level)
         gap = " " * max(0, self.size.width - left.cell_length - cell_len(state) - 2)
@@ -113,11 +113,12 @@ class TitleBar(Widget):
         return left.append(gap).append(Content.styled(f" {state} ", style))
 
     def _fitting(self) -> tuple[_Level, str]:
-        """Return the tabs that are shown, and the state as long as there is room for it.
+        """Return the tabs to show, and the longest state that fits beside them.
 
-        The shortest state says too little to spare the tabs for it: they are shortened first.
-        While it is urgent the words come first, and all tabs may give way. The words of an alarm
-        come from a node and may be of any length: they are cut before the tabs lose theirs.
+        The shortest state is too brief to justify keeping the tabs long: they are shortened first.
+        If the state is urgent, its text comes first, and all tabs may disappear. The text of an
+        alarm comes from a node and may be of any length: it is cut before the tabs lose their
+        names.
         """
         alone, levels = self._room(), self._levels()
         named = levels[NAMED - 1]
@@ -137,7 +138,7 @@ class TitleBar(Widget):
         return levels[-1], _cut(states[-1], alone - levels[-1].width)
 
     def _with_aside(self, level: _Level, state: str) -> tuple[_Level, str]:
-        """Return both with what stands aside, if no tab loses its name, or its place, for that."""
+        """Return both, with `aside` appended if no tab loses its name or disappears for that."""
         if not self._aside:
             return level, state
         told, named = f"{state} · {self._aside}", self._levels()[:NAMED]
@@ -151,7 +152,7 @@ class TitleBar(Widget):
         return self.size.width - cell_len(NAME) - 3
 
     def _levels(self) -> list[_Level]:
-        """Return all tabs, ever shorter; the first NAMED show a part of each name."""
+        """Return all tabs, shorter and shorter; the first NAMED levels show a part of each name."""
         shapes = ((None, 2), (SHORT, 2), (SHORT, 1), (0, 2))
         levels = [_Level(_shortened(self._tabs, letters), gap) for letters, gap in shapes]
         return [*levels, _Level(_keys(self._tabs), 2)]
@@ -169,7 +170,7 @@ class TitleBar(Widget):
 def _shortened(
     tabs: Sequence[tuple[str, str, bool]], letters: int | None
 ) -> Sequence[tuple[str, str, bool]]:
-    """Cut the words of all tabs but the one in front; their keys stay. None cuts nothing."""
+    """Shorten all tabs but the one in front; their keys stay. With None nothing is shortened."""
     if letters is None:
         return tabs
     return [

@@ -1,4 +1,4 @@
-"""Asking something of the graph: a form to be filled in, and what came of it."""
+"""Sending requests to the graph: a form, and the answers."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ if TYPE_CHECKING:
     from tui.widgets.rows import Column, Row
 
 SETTLED_S = 0.12
-"""How long a choice must stand before its form is made: that imports its package."""
+"""How long a choice must stand before its form is created: that imports its package."""
 TICK_S = 0.5
 
 
 class AskPane(GraphPane):
-    """Form beside the answers, or above them where there is little room.
+    """Form beside the answers, or above them on a narrow screen.
 
-    A subclass tells who is asked (`links`), what was asked before (`asked`), and what came of the
-    chosen one (`answer`).
+    A subclass supplies the nodes involved (`links`), the earlier requests (`asked`), and the
+    outcome of the chosen one (`answer`).
     """
 
     submit_title: ClassVar[str] = ""
@@ -54,13 +54,13 @@ class AskPane(GraphPane):
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._texts: dict[str, str] = {}
-        """Name to what stood in its form."""
+        """Maps a name to the text that was in its form."""
         self._could_cancel = False
         self._form_for = ""
         self._settling: Timer | None = None
 
     def compose(self) -> ComposeResult:
-        """Head, who is asked, form; answer, and what was asked before."""
+        """Head, nodes, form; answer, and the earlier requests."""
         yield NameHead()
         with Container(classes="ask-body"):
             with Vertical(classes="ask-left"):
@@ -73,31 +73,31 @@ class AskPane(GraphPane):
                 yield Rows(header=False, classes="asked")
 
     def compose_more(self) -> ComposeResult:
-        """Yield what is to be chosen besides, below the form."""
+        """Yield further widgets below the form."""
         yield from ()
 
     def on_mount(self) -> None:
-        """Keep the seconds of waiting true."""
+        """Keep the waiting time up to date."""
         self.set_interval(TICK_S, self.tick)
 
     @property
     def form(self) -> YamlForm:
-        """What is filled in."""
+        """The form."""
         return self.query_one(YamlForm)
 
     @property
     def echo(self) -> EchoTree:
-        """The answer."""
+        """The answer as a tree."""
         return self.query_one(EchoTree)
 
     @property
     def asked_rows(self) -> Rows:
-        """What was asked."""
+        """The requests sent so far."""
         return self.query_one(".asked", Rows)
 
     @property
     def submit_key(self) -> str:
-        """How the key that asks is written."""
+        """The key that sends the request."""
         return self.deck.keys_of(SubmitForm)[0]
 
     def type_names(self) -> tuple[str, ...]:
@@ -105,55 +105,55 @@ class AskPane(GraphPane):
         raise NotImplementedError
 
     def links(self) -> Sequence[Row]:
-        """Return the rows that lead to its type and to its nodes."""
+        """Return rows that link to its type and its nodes."""
         raise NotImplementedError
 
     def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
-        """Return what was asked, the newest first."""
+        """Return the requests, the newest first."""
         raise NotImplementedError
 
     def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
-        """Return a title, what the tree belongs to, and the tree or words in its place."""
+        """Return a title, what the tree belongs to, and the tree or the words in its place."""
         raise NotImplementedError
 
     def ask(self, value: Mapping[str, Any]) -> None:
-        """Ask what was filled in."""
+        """Send the request."""
         raise NotImplementedError
 
     @property
     def can_cancel(self) -> bool:
-        """Whether something is under way."""
+        """Whether a request is in progress."""
         raise NotImplementedError
 
     def cancel(self) -> None:
-        """End the chosen one that is under way."""
+        """Cancel the request in progress, the chosen one if possible."""
         raise NotImplementedError
 
     @property
     def can_forget(self) -> bool:
-        """Whether the chosen one can be taken off the list."""
+        """Whether the chosen request can be removed from the list."""
         return False
 
     def forget(self) -> None:
-        """Take the chosen one off the list."""
+        """Remove the chosen request from the list."""
 
     @property
     def is_waiting(self) -> bool:
-        """Whether seconds are to be counted."""
+        """Whether a waiting time is to be updated."""
         return self.can_cancel
 
     def tick(self) -> None:
-        """Count the seconds while something is under way."""
+        """Update the waiting time while a request is in progress."""
         if self.is_waiting:
             self.redraw()
 
     @property
     def is_settling(self) -> bool:
-        """Whether its form is to be loaded."""
+        """Whether its form is still to be loaded."""
         return self._settling is not None
 
     def show_name(self, name: str) -> None:
-        """Show another one; its form when the choice stands."""
+        """Show another name, and load its form once the choice stands."""
         if name != self.name_shown:
             if self._settling is not None:
                 self._settling.stop()
@@ -161,7 +161,7 @@ class AskPane(GraphPane):
         super().show_name(name)
 
     def load_form(self) -> None:
-        """Put the form of what is shown in place of the one before."""
+        """Replace the previous form with that of the current name."""
         self._settling = None
         if self._form_for:
             self._texts[self._form_for] = self.form.text
@@ -171,7 +171,7 @@ class AskPane(GraphPane):
             self.form.load(types[0], self._texts.get(self.name_shown))
 
     def redraw(self) -> None:
-        """Show who is asked, and what came of it."""
+        """Show who is asked, and the answer."""
         if not self.name_shown or not self.is_mounted:
             return
         types = self.type_names()
@@ -189,7 +189,7 @@ class AskPane(GraphPane):
             self.screen.refresh_bindings()
 
     def relabel(self) -> None:
-        """Say everything anew."""
+        """Redraw in the current language."""
         self.form.relabel()
         self.redraw()
 
@@ -198,14 +198,14 @@ class AskPane(GraphPane):
         return self.form.editor
 
     def on_rows_highlighted(self, event: Rows.Highlighted) -> None:
-        """Show what came of another one."""
+        """Show the outcome of another request."""
         if event.rows is self.asked_rows:
             event.stop()
             self._show_answer()
             self.screen.refresh_bindings()
 
     def on_yaml_form_submitted(self, event: YamlForm.Submitted) -> None:
-        """Ask."""
+        """Send the request."""
         event.stop()
         if self.deck.feed.graph is None:
             self.warn(_("no lesson is running"))
@@ -227,5 +227,5 @@ class AskPane(GraphPane):
 
 
 def now_s() -> float:
-    """Return the time by which waiting is counted, in seconds."""
+    """Return the clock for waiting times, in seconds."""
     return clock.now()

@@ -1,4 +1,4 @@
-"""The detail beside the list: a pane for each kind of thing, or words where nothing is chosen."""
+"""The detail beside the list: a pane for each kind of thing, or words if nothing is chosen."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ WORDS = "graph-words"
 
 
 class GraphDetail(ContentSwitcher):
-    """Shows one place at a time; its panes keep what was filled into them."""
+    """Shows one place at a time; its panes keep what was entered in them."""
 
     def __init__(self) -> None:
         self._panes = {kind: pane(id=f"graph-{kind.value}") for kind, pane in PANES.items()}
@@ -36,7 +36,7 @@ class GraphDetail(ContentSwitcher):
         )
 
     def pane_of(self, place: GraphPlace | None) -> GraphPane | None:
-        """Return the pane that shows places of this kind, None while there is none."""
+        """Return the pane for places of this kind, None if it does not exist yet."""
         pane = None if place is None else self._panes.get(place.kind)
         return pane if pane is not None and pane.is_mounted else None
 
@@ -46,13 +46,13 @@ class GraphDetail(ContentSwitcher):
         self.query_one(f"#{WORDS}", EmptyNotice).show(headline, way_out)
 
     def show_place(self, pane: GraphPane, name: str, *, everything: bool) -> None:
-        """Show what has this full name in its pane, with ROS's own things if `everything`."""
+        """Show the thing with this full name in its pane, with ROS's own things if `everything`."""
         self._bring(pane.id)
         pane.everything = everything
         pane.show_name(name)
 
     def relabel(self) -> None:
-        """Say everything anew."""
+        """Redraw in the current language."""
         for pane in self._panes.values():
             pane.relabel()
 

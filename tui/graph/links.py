@@ -1,4 +1,4 @@
-"""Rows that lead somewhere: Enter on one goes to the place that it names."""
+"""Rows with links: Enter on one goes to the place that it names."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 LONGEST = 300
-"""Characters of a name that are looked at."""
+"""Characters of a name that are considered."""
 ROOM_FOR_NAMES = 0.55
 
 
 class GraphLinks(Rows):
-    """Names, and beside each what is to be said of it."""
+    """Names, each with a remark beside it."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(header=False, id=id, classes="graph-links")
         self._shown: tuple[Row, ...] = ()
 
     def show_links(self, rows: Sequence[Row]) -> None:
-        """Show these rows; names get the room that they need, up to a bit more than half."""
+        """Show these rows; names get the room that they need, up to a little over half."""
         self._shown = tuple(rows)
         self._lay()
 
     def on_resize(self) -> None:
-        """Share out the room anew."""
+        """Divide the width among the columns again."""
         self._lay()
 
     def _lay(self) -> None:
@@ -43,18 +43,18 @@ class GraphLinks(Rows):
 
 
 def heading(words: str) -> Row:
-    """Return a row that only says what comes below."""
+    """Return a row that is only a heading."""
     return Row("", (Cell(words, "dim"),))
 
 
 def link(place: GraphPlace, section: str, told: str = "", meaning: str = "dim") -> Row:
-    """Return a row that leads to a place, with a word about it."""
+    """Return a row that links to a place, with a remark."""
     cells = (Cell(plain(place.name, LONGEST)), Cell(plain(told, LONGEST), meaning))
     return Row(place.key(section), cells if told else cells[:1])
 
 
 def node_links(names: Iterable[str], section: str, told: str = "") -> list[Row]:
-    """Return rows that lead to these nodes."""
+    """Return rows that link to these nodes."""
     return [link(GraphPlace(GraphKind.NODE, name), section, told) for name in names]
 
 

@@ -1,4 +1,4 @@
-"""The names of one kind; a chosen one that has left the graph stays until another is chosen."""
+"""The names of one kind; a chosen name that has left the graph stays until another is chosen."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ LONGEST = 300
 
 
 class GraphList(Rows):
-    """Shows names; where they do not fit it is their beginning that is left out."""
+    """Shows names; one that does not fit loses its beginning."""
 
     def __init__(self) -> None:
         super().__init__(header=False)
         self._named: tuple[tuple[str, bool], ...] = ()
-        """Name, and whether it is still there."""
+        """Name, and whether it still exists."""
         self._kind = GraphKind.NODE
 
     @property
@@ -34,10 +34,10 @@ class GraphList(Rows):
     def show_entries(
         self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str
     ) -> None:
-        """Show these; `chosen` is the one that was chosen last, `words` what they were found by."""
+        """Show these entries; `chosen` was chosen last, and `words` are the filter."""
         names = [(entry.name, True) for entry in shown]
         if chosen and not words and chosen not in {entry.name for entry in shown}:
-            # A type is not gone because nobody uses it.
+            # A type does not disappear when nobody uses it.
             names.append((chosen, kind is GraphKind.TYPE))
         self._kind, self._named = kind, tuple(names)
         self._lay()
@@ -45,7 +45,7 @@ class GraphList(Rows):
             self.choose(f"{kind.value}|{chosen}")
 
     def on_resize(self) -> None:
-        """Shorten the names anew."""
+        """Shorten the names for the new width."""
         self._lay()
 
     def _lay(self) -> None:
@@ -63,7 +63,7 @@ class GraphList(Rows):
 
 
 def ended(words: str, room: int) -> str:
-    """Return the words with their middle left out if they do not fit: both ends tell most."""
+    """Return the words, without their middle if they do not fit: both ends are informative."""
     if len(words) <= room:
         return words
     tail = (room - 1) * 2 // 3

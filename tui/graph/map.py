@@ -1,4 +1,4 @@
-"""The graph drawn, one node at a time: the arrow keys walk from it to those that it talks to."""
+"""The graph as a map of one node at a time: arrow keys move from it to its neighbours."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class GraphMap(ScrollView, can_focus=True):
-    """Draws a node in the middle, what it hears on the left, what it says on the right."""
+    """Draws a node in the middle, its inputs on the left and its outputs on the right."""
 
     class PlaceWanted(Message):
         """Enter was pressed on a place."""
@@ -74,12 +74,12 @@ class GraphMap(ScrollView, can_focus=True):
 
     @property
     def here(self) -> GraphPlace | None:
-        """Where the cursor stands."""
+        """The place at the cursor."""
         stop = self._stop()
         return None if stop is None else stop.place
 
     def show_node(self, update: GraphUpdate | None, name: str, *, everything: bool) -> None:
-        """Draw this node as it is now; another one begins in the middle."""
+        """Draw this node in its current state; for a new one the cursor starts in the middle."""
         node = node_called(update, name)
         if name != self._middle:
             self._column, self._at = CENTRE, 0
@@ -96,15 +96,15 @@ class GraphMap(ScrollView, can_focus=True):
             self._draw()
 
     def on_resize(self) -> None:
-        """Draw anew."""
+        """Redraw for the new size."""
         self._draw()
 
     def action_step(self, by: int) -> None:
-        """Go up or down among those on this side."""
+        """Move the cursor up or down on this side."""
         self._go(self._column, self._at + by)
 
     def action_across(self, by: int) -> None:
-        """Go to the other side of the line: to the node, or from it to its neighbours."""
+        """Move the cursor sideways: to the node, or from it to its neighbours."""
         column = self._column + by
         if not 0 <= column <= len(self._drawing.stops) - 1 or not self._drawing.stops[column]:
             return
@@ -114,13 +114,13 @@ class GraphMap(ScrollView, can_focus=True):
         self._go(column, min(range(len(stops)), key=lambda at: abs(stops[at].row - row)))
 
     def action_open(self) -> None:
-        """Tell that this place is wanted."""
+        """Request the place at the cursor."""
         here = self.here
         if here is not None:
             self.post_message(self.PlaceWanted(here))
 
     def on_click(self, event: Click) -> None:
-        """Go to what was clicked; twice opens it."""
+        """Move the cursor to what was clicked; a second click opens it."""
         x = event.x - self.gutter.left
         y = event.y - self.gutter.top + self.scroll_offset.y
         for column, stops in enumerate(self._drawing.stops):
@@ -133,7 +133,7 @@ class GraphMap(ScrollView, can_focus=True):
                     return
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Keep the node in the middle of what is seen."""
+        """Keep the node in the middle of the visible part."""
         super().watch_scroll_y(old_value, new_value)
         if round(old_value) != round(new_value):
             self._draw()
@@ -183,7 +183,7 @@ class GraphMap(ScrollView, can_focus=True):
 
 
 def middle_of(update: GraphUpdate | None, here: GraphPlace | None) -> str:
-    """Return the node that is to be drawn for a chosen place: it, or one that has to do with it."""
+    """Return the node to draw for a chosen place: the node itself, or one connected to it."""
     if update is None or here is None:
         return update.nodes[0].name if update and update.nodes else ""
     if here.kind is GraphKind.NODE:

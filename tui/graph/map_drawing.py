@@ -1,4 +1,4 @@
-"""A node and its neighbours as a drawing: what comes in on the left, what goes out on the right."""
+"""A node and its neighbours as a drawing: inputs on the left, outputs on the right."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ ROOMY = 52
 LONGEST = 200
 UP, DOWN, WEST, EAST = 1, 2, 4, 8
 BENDS = " │││─┘┐┤─└┌├─┴┬┼"
-"""The line that goes to these sides, by the sum of their numbers."""
+"""The line character that connects to these sides, indexed by the sum of their numbers."""
 SIGNS = {GraphKind.TOPIC: "", GraphKind.SERVICE: "()", GraphKind.ACTION: " ⚑"}
-"""Written behind a name: a service is called like a function, an action is given a goal."""
+"""Written after a name: a service is called like a function, an action is given a goal."""
 
 
 class MapPiece(NamedTuple):
-    """A text at a place of the drawing."""
+    """A text at a position in the drawing."""
 
     row: int
     x: int
@@ -40,17 +40,17 @@ class MapPiece(NamedTuple):
 
 
 class MapStop(NamedTuple):
-    """Something that the cursor can stand on."""
+    """Something that the cursor can be on."""
 
     place: GraphPlace
     row: int
     piece: int
-    """Its number among the pieces."""
+    """Its index among the pieces."""
 
 
 @dataclass
 class MapDrawing:
-    """The pieces, and what the cursor can stand on by columns, from top to bottom."""
+    """The pieces, and the stops of the cursor by column, from top to bottom."""
 
     height: int
     pieces: list[MapPiece] = field(default_factory=list)
@@ -59,14 +59,14 @@ class MapDrawing:
     )
 
     def put(self, piece: MapPiece, place: GraphPlace | None = None, column: int = CENTRE) -> None:
-        """Add a piece, one that the cursor can stand on if it has a `place`."""
+        """Add a piece; with a `place`, the cursor can be on it."""
         if place is not None:
             self.stops[column].append(MapStop(place, piece.row, len(self.pieces)))
         self.pieces.append(piece)
 
 
 def drawing(name: str, around: Neighbours, width: int, height: int, top: int = 0) -> MapDrawing:
-    """Draw into `width` cells; the node stands in the middle of `height` rows below `top`."""
+    """Draw into `width` cells, with the node in the middle of `height` rows below `top`."""
     box = min(cell_len(plain(name, LONGEST)) + 4, max(12, width // 3))
     side = max(6, (width - box - 7) // 2)
     coming = _heights(around.coming, side, height)
@@ -81,7 +81,7 @@ def drawing(name: str, around: Neighbours, width: int, height: int, top: int = 0
 
 
 def _heights(ways: Sequence[Way], side: int, height: int) -> list[int]:
-    """Return how many rows each way takes; one more where there is room for all."""
+    """Return the number of rows for each way; one more each if there is room for all."""
     above = 0 if side >= ROOMY else 1
     heights = [above + max(1, len(way.nodes)) for way in ways]
     roomy = sum(heights) + len(heights) <= height
@@ -109,7 +109,7 @@ def _side(
     column: int,
     x: int = 0,
 ) -> None:
-    """Draw the ways of one side; `x` is where the box ends, on the right side."""
+    """Draw the ways of one side; on the right side, `x` is where the box ends."""
     if not ways:
         words = _("hears nothing") if column == LEFT else _("says nothing")
         at = max(0, side - cell_len(words)) if column == LEFT else x + 3
@@ -126,7 +126,7 @@ def _side(
 
 
 def _trunk(drawn: MapDrawing, rows: Sequence[int], middle: int, x: int, column: int) -> None:
-    """Draw the line that gathers the ways of a side, and leads to the box or away from it."""
+    """Draw the line that joins the ways of a side, and leads to the box or away from it."""
     towards, away = (WEST, EAST) if column == LEFT else (EAST, WEST)
     first, last = min(*rows, middle), max(*rows, middle)
     for row in range(first, last + 1):
@@ -142,7 +142,7 @@ def _trunk(drawn: MapDrawing, rows: Sequence[int], middle: int, x: int, column: 
 
 
 def _narrow(drawn: MapDrawing, way: Way, row: int, side: int, column: int, x: int) -> None:
-    """The way, and below it the nodes at its other end."""
+    """Draw the way, and below it the nodes at its other end."""
     name = ended(_named(way), side - 2)
     drawn.put(MapPiece(row, x, name, "name"), way.place, column)
     if column == LEFT:
@@ -158,7 +158,7 @@ def _narrow(drawn: MapDrawing, way: Way, row: int, side: int, column: int, x: in
 
 
 def _wide(drawn: MapDrawing, way: Way, row: int, side: int, column: int, x: int) -> None:
-    """The way beside the nodes at its other end, each in a row of its own."""
+    """Draw the way beside the nodes at its other end, each node in a row of its own."""
     name = ended(_named(way), side // 2 - 4)
     room = side // 2 - 2
     at = x + side - side // 2 if column == LEFT else x

@@ -1,4 +1,4 @@
-"""Who talks to a node and whom it talks to: the graph one step around it."""
+"""Who talks to a node and whom it talks to: its immediate neighbourhood in the graph."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Way:
 
 @dataclass(frozen=True)
 class Neighbours:
-    """The ways that lead to a node, and those that lead from it.
+    """The ways that lead to a node, and those that lead away from it.
 
-    To it lead what it hears, serves and is sent goals for; from it what it says, and what it asks
-    of others.
+    What it subscribes to, serves, and receives goals for leads to it; what it publishes, calls, and
+    sends goals to leads away from it.
     """
 
     heard: tuple[Way, ...] = ()
@@ -49,13 +49,13 @@ class Neighbours:
 
 
 def node_called(update: GraphUpdate | None, name: str) -> NodeRow | None:
-    """Return the node of this full name."""
+    """Return the node with this full name."""
     nodes = () if update is None else update.nodes
     return next((row for row in nodes if row.name == name), None)
 
 
 def neighbours(update: GraphUpdate, node: NodeRow, *, everything: bool = False) -> Neighbours:
-    """Return what stands around a node; ROS's own topics and services if `everything` is wanted."""
+    """Return the neighbours of a node; with ROS's own topics and services if `everything`."""
 
     def ways(kind: GraphKind, names: Iterable[str], end: str) -> tuple[Way, ...]:
         return tuple(
@@ -75,5 +75,5 @@ def neighbours(update: GraphUpdate, node: NodeRow, *, everything: bool = False) 
 
 
 def _with(update: GraphUpdate, end: str, name: str) -> tuple[str, ...]:
-    """Return the nodes that have `name` at this end of theirs: `publishes`, and so on."""
+    """Return the nodes with `name` at this end of theirs: `publishes`, and so on."""
     return tuple(row.name for row in update.nodes if name in getattr(row, end))

@@ -1,4 +1,4 @@
-"""What every detail of the graph has: a head with name and facts, and words where there is none."""
+"""What all details of the graph have: a head with name and facts, and words if it is empty."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LONGEST = 300
 
 
 class EmptyNotice(Static):
-    """A headline and what to do, where nothing can be shown."""
+    """A headline and advice, where nothing can be shown."""
 
     DEFAULT_CSS = """
     EmptyNotice { width: 1fr; height: auto; padding: 0 1; }
@@ -32,7 +32,7 @@ class EmptyNotice(Static):
         self.said = ("", "")
 
     def show(self, headline: str, way_out: str = "") -> None:
-        """Show these, harmless."""
+        """Show these texts with control characters made harmless."""
         if (headline, way_out) != self.said:
             self.said = (headline, way_out)
             parts = [Content.styled(plain(headline, LONGEST), "bold")]
@@ -51,7 +51,7 @@ class GraphPane(Vertical, Working):
         super().__init__(id=id)
         self.name_shown = ""
         self.everything = False
-        """Whether ROS's own things are shown."""
+        """Whether what belongs to ROS itself is shown."""
 
     @property
     def deck(self) -> Host:
@@ -60,7 +60,7 @@ class GraphPane(Vertical, Working):
 
     @property
     def graph_now(self) -> GraphUpdate | None:
-        """The newest of the graph."""
+        """The newest update of the graph."""
         return self.deck.feed.update
 
     @property
@@ -69,19 +69,19 @@ class GraphPane(Vertical, Working):
         return False
 
     def show_name(self, name: str) -> None:
-        """Show what has this full name from now on."""
+        """Show the thing with this full name from now on."""
         self.name_shown = name
         self.redraw()
 
     def redraw(self) -> None:
-        """Show how things stand now, in the language spoken now."""
+        """Show the current state in the current language."""
 
     def relabel(self) -> None:
-        """Say everything anew."""
+        """Redraw in the current language."""
         self.redraw()
 
     def first(self) -> Widget | None:
-        """Return what is focused when somebody goes into the detail."""
+        """Return the widget to focus when the user enters the detail."""
         return None
 
     def warn(self, words: str) -> None:

@@ -1,4 +1,4 @@
-"""The dialog in which a parameter is given another value."""
+"""The dialog for changing the value of a parameter."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 
 LONGEST = 400
 LONGEST_TITLE = 64
-"""Cells that the frame has room for on a terminal of 80 columns; a longer one is told below it."""
+"""Cells that fit into the frame on a terminal with 80 columns; a longer title is shown below it."""
 TEXTS = frozenset({"string", "not_set"})
-"""Types whose value is the text that is typed."""
+"""Types whose value is the typed text itself."""
 
 Apply = Callable[["Value"], Awaitable[str]]
 """Sets the value; returns why it was refused, or nothing."""
 
 
 class ParameterDialog(Dialog[bool]):
-    """Answers whether it was set; stays open, with the reason, while it is refused."""
+    """Returns whether it was set; stays open, with the reason, while the value is refused."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False)]
     DEFAULT_CSS: ClassVar[str] = """
@@ -55,7 +55,7 @@ class ParameterDialog(Dialog[bool]):
         return f"{plain(self._node, LONGEST)} · {plain(self._row.name, LONGEST)}"
 
     def words(self) -> Content:
-        """Tell what it is and what it may be."""
+        """Say what it is, and which values are allowed."""
         row, title = self._row, self.title_words()
         lines = [Content.styled(plain(row.type_name), "$text-muted")]
         if row.description:
@@ -76,13 +76,13 @@ class ParameterDialog(Dialog[bool]):
             yield Static(id="parameter-keys", markup=False)
 
     def on_mount(self) -> None:
-        """Begin in the field."""
+        """Focus the field."""
         self.query_one(Input).focus()
         if self._row.read_only:
             self._remark(_("It can only be read: the node sets it when it starts."))
 
     def redraw(self) -> None:
-        """Show the texts in the language spoken now."""
+        """Redraw in the current language."""
         super().redraw()
         keys = _("Enter sets it, Escape leaves")
         if self._row.read_only:
@@ -90,7 +90,7 @@ class ParameterDialog(Dialog[bool]):
         self.query_one("#parameter-keys", Static).update(keys)
 
     def action_leave(self) -> None:
-        """Change nothing."""
+        """Close without changing anything."""
         self.dismiss(False)
 
     @on(Input.Changed)
@@ -114,7 +114,7 @@ class ParameterDialog(Dialog[bool]):
             self.dismiss(True)
 
     def _value(self, text: str) -> Value:
-        """Return what the text stands for; the value that it was as long as nobody changed it."""
+        """Return the value of the text; the original value as long as the text is unchanged."""
         if self._row.value is not None and text == self._typed:
             return self._row.value
         return meant(text) if self._row.type_name in TEXTS else text

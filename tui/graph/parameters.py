@@ -1,4 +1,4 @@
-"""The parameters of a node: read when asked, each with its type and what it may be."""
+"""The parameters of a node: read on request, each with its type and its allowed values."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ ROOMY = 70
 """Cells from which on there are columns for type and limits."""
 TICK_S = 0.5
 PARAMETER_EVENTS = "/parameter_events"
-"""Where every node tells what was changed of its parameters, by whomever."""
+"""The topic on which every node reports changes of its parameters, whoever made them."""
 
 
 class GraphParameters(Vertical, Working):
-    """A table of parameters, or why there is none."""
+    """A table of parameters, or the reason why there is none."""
 
     DEFAULT_CSS: ClassVar[str] = """
     GraphParameters {
@@ -50,9 +50,9 @@ class GraphParameters(Vertical, Working):
         self._asked_s: float | None = None
         self._question = 0
         self._changed = False
-        """Whether one may have changed since the node was asked."""
+        """Whether a parameter may have changed since the node was asked."""
         self._processes: tuple[int, ...] | None = None
-        """Of the node that was asked; None until it is known whom it was."""
+        """Processes of the node that was asked; None until they are known."""
 
     def compose(self) -> ComposeResult:
         """Title, words, table."""
@@ -61,7 +61,7 @@ class GraphParameters(Vertical, Working):
         yield Rows(id="graph-parameters")
 
     def on_mount(self) -> None:
-        """Keep the seconds of waiting true."""
+        """Keep the waiting time up to date."""
         self.set_interval(TICK_S, self._tick)
 
     @property
@@ -71,27 +71,27 @@ class GraphParameters(Vertical, Working):
 
     @property
     def node(self) -> str:
-        """Whose parameters they are."""
+        """The node whose parameters are shown."""
         return self._node
 
     @property
     def rows(self) -> tuple[ParameterRow, ...]:
-        """What was read."""
+        """The parameters that were read."""
         return () if self._result is None else self._result.parameters
 
     @property
     def chosen(self) -> ParameterRow | None:
-        """The chosen one."""
+        """The chosen parameter."""
         return next((row for row in self.rows if row.name == self.table.chosen), None)
 
     def forget(self) -> None:
-        """Show nothing of the node before."""
+        """Forget the previous node."""
         self._question += 1
         self._node, self._result, self._asked_s, self._processes = "", None, None, None
         self.redraw()
 
     def read(self, node: str) -> None:
-        """Ask the node for its parameters; what was read before is shown until it answers."""
+        """Ask the node for its parameters; the previous ones stay until it answers."""
         graph = host_of(self).feed.graph
         if node != self._node:
             self.forget()
@@ -104,15 +104,15 @@ class GraphParameters(Vertical, Working):
         self.redraw()
 
     def hear(self, events: Iterable[Sample]) -> None:
-        """Read them anew if these messages of /parameter_events tell of this node."""
+        """Read them again if these messages of /parameter_events are about this node."""
         if not any(event.value.get("node") == self._node for event in events):
             return
         self._read_anew()
 
     def see(self, processes: tuple[int, ...]) -> None:
-        """Read them anew if the node lives in others: who starts again has its first values.
+        """Read them again if the node has a new process: a restarted node has its initial values.
 
-        Empty: it is not in the graph, or the middleware does not tell.
+        Empty if it is not in the graph, or if the middleware does not know the process.
         """
         if self._processes is None:
             self._processes = processes
@@ -124,7 +124,7 @@ class GraphParameters(Vertical, Working):
         if self._asked_s is None:
             self.read(self._node)
         else:
-            # The answer that is awaited may be older; one asked anew each time might never come.
+            # The pending answer may be outdated, but asking again every time might never finish.
             self._changed = True
 
     async def _take(self, future: Future[ParametersResult], question: int) -> None:
@@ -140,11 +140,11 @@ class GraphParameters(Vertical, Working):
             self._label()
 
     def on_resize(self) -> None:
-        """Show the columns that there is room for."""
+        """Show the columns that fit."""
         self.redraw()
 
     def redraw(self) -> None:
-        """Show what was read, in the language spoken now."""
+        """Show the parameters in the current language."""
         if not self.is_mounted:
             return
         self._label()

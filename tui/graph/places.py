@@ -1,4 +1,4 @@
-"""Places in the graph that one can go to, and where one has been, to go back."""
+"""Places in the graph that the user can go to, and the way back."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class GraphKind(str, Enum):
-    """What stands there."""
+    """The kind of a place."""
 
     NODE = "node"
     SERVICE = "service"
@@ -22,7 +22,7 @@ class GraphKind(str, Enum):
 
 
 LISTED = (GraphKind.NODE, GraphKind.SERVICE, GraphKind.ACTION, GraphKind.TYPE)
-"""The kinds that the screen of the graph lists itself; topics have a screen of their own."""
+"""The kinds that the Graph screen itself lists; topics have their own screen."""
 
 TITLES = {
     GraphKind.NODE: N_("Nodes"),
@@ -30,22 +30,22 @@ TITLES = {
     GraphKind.ACTION: N_("Actions"),
     GraphKind.TYPE: N_("Types"),
 }
-"""As the tab of the list says it."""
+"""The titles of the tabs."""
 
 
 class GraphPlace(NamedTuple):
-    """One of them by its full name."""
+    """A thing in the graph, by its full name."""
 
     kind: GraphKind
     name: str
 
     def key(self, section: str = "") -> str:
-        """Return the key of a row that leads there; `section` tells rows with one aim apart."""
+        """Return the key of a row that links there; `section` tells rows with one target apart."""
         return f"{section}|{self.kind.value}|{self.name}"
 
     @classmethod
     def of_key(cls, key: str) -> GraphPlace | None:
-        """Return where the row of this key leads, None for a row that leads nowhere."""
+        """Return the place that the row with this key links to, None if it is not a link."""
         _section, _bar, rest = key.partition("|")
         kind, bar, name = rest.partition("|")
         return cls(GraphKind(kind), name) if bar and name else None
@@ -55,11 +55,11 @@ LONGEST = 100
 
 
 class PlaceHistory:
-    """The place of every kind that was chosen last, and the places that a link led away from."""
+    """The last chosen place of every kind, and the places from which links were followed."""
 
     def __init__(self) -> None:
         self.kind = GraphKind.NODE
-        """What is listed."""
+        """The kind that is listed."""
         self._chosen: dict[GraphKind, str] = {}
         self._been: list[GraphPlace] = []
 
@@ -71,29 +71,29 @@ class PlaceHistory:
 
     @property
     def chosen(self) -> Mapping[GraphKind, str]:
-        """What was chosen last of each kind."""
+        """The last choice of each kind."""
         return self._chosen
 
     def choose(self, name: str) -> None:
-        """Choose another of the same kind, as one does who walks down the list."""
+        """Choose another place of the same kind, without adding to the history."""
         self._chosen[self.kind] = name
 
     def go(self, place: GraphPlace) -> None:
-        """Follow a link; `back` returns from there."""
+        """Follow a link; `back` returns from it."""
         here = self.here
         if here is not None and here != place:
             self._been = [*self._been, here][-LONGEST:]
         self._set(place)
 
     def back(self) -> bool:
-        """Return to where the newest link was followed; False if there is none."""
+        """Return to where the last link was followed; False if there is none."""
         if self._been:
             self._set(self._been.pop())
             return True
         return False
 
     def forget(self) -> None:
-        """Begin anew."""
+        """Start over."""
         self._chosen.clear()
         self._been.clear()
 

@@ -1,4 +1,4 @@
-"""The kinds of the graph as tabs, each with its number."""
+"""The kinds of the graph as tabs, each with the number of its entries."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 class GraphTabs(Widget):
-    """One line; the kind in front is bold, and a click chooses."""
+    """One line; the current kind is bold, and a click chooses another."""
 
     class Selected(Message):
-        """Another kind is wanted."""
+        """Another kind was chosen."""
 
         def __init__(self, kind: GraphKind) -> None:
             super().__init__()
@@ -45,18 +45,18 @@ class GraphTabs(Widget):
         self._counts: dict[GraphKind, int] = {}
 
     def show(self, front: GraphKind, counts: Mapping[GraphKind, int]) -> None:
-        """Show how many there are of each kind, and which kind is listed."""
+        """Show the number of entries of each kind, and which kind is listed."""
         if (front, dict(counts)) != (self._front, self._counts):
             self._front, self._counts = front, dict(counts)
             self.refresh(layout=True)
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
-        """As wide as its words."""
+        """Return the width of its text."""
         del container, viewport
         return self.render().cell_length
 
     def action_choose(self, kind: str) -> None:
-        """Tell that a tab was clicked."""
+        """Report that a tab was clicked."""
         self.post_message(self.Selected(GraphKind(kind)))
 
     def render(self) -> Content:

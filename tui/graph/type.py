@@ -1,4 +1,4 @@
-"""A type: what uses it, and what it is made of, as a tree that folds."""
+"""A type: its users, and its fields as a folding tree."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 LONGEST = 200
 WIDEST = 2**63 - 1
-"""Bounds from which on they tell nothing."""
+"""A bound of this size or more is not informative."""
 PARTS = {
     "request": N_("request"),
     "response": N_("response"),
@@ -44,10 +44,10 @@ PARTS = {
 
 
 class GraphTypeTree(Tree["str | None"], Working):
-    """Fields with their types, defaults and bounds; each that holds a message has its type."""
+    """Fields with their types, defaults and bounds; a field that holds a message can be opened."""
 
     class TypeWanted(Message):
-        """Enter was pressed on a field that holds a message: that type is wanted."""
+        """Enter was pressed on a field that holds a message, to go to its type."""
 
         def __init__(self, type_name: str) -> None:
             super().__init__()
@@ -87,7 +87,7 @@ class GraphTypeTree(Tree["str | None"], Working):
         self.refresh()
 
     def action_unfold(self) -> None:
-        """Open the field at the cursor, or go into it."""
+        """Open the field at the cursor, or enter it."""
         node = self.cursor_node
         if node is not None and node.allow_expand and not node.is_expanded:
             node.expand()
@@ -95,7 +95,7 @@ class GraphTypeTree(Tree["str | None"], Working):
             self.action_cursor_down()
 
     def action_fold(self) -> None:
-        """Close the field at the cursor, or go out to the one it lies in."""
+        """Close the field at the cursor, or go to its parent."""
         node = self.cursor_node
         if node is None:
             return
@@ -105,7 +105,7 @@ class GraphTypeTree(Tree["str | None"], Working):
             self.move_cursor(node.parent)
 
     def action_open(self) -> None:
-        """Tell that the type of the field at the cursor is wanted."""
+        """Request the type of the field at the cursor."""
         node = self.cursor_node
         if node is not None and node.data:
             self.post_message(self.TypeWanted(node.data))
@@ -113,7 +113,7 @@ class GraphTypeTree(Tree["str | None"], Working):
             node.toggle()
 
     def on_tree_node_expanded(self, event: Tree.NodeExpanded[str | None]) -> None:
-        """Load what the message in this field is made of."""
+        """Load the fields of the message in this field."""
         event.stop()
         node = event.node
         if node.data and not node.children:
@@ -121,7 +121,7 @@ class GraphTypeTree(Tree["str | None"], Working):
 
     async def _load(self, node: TreeNode[str | None], type_name: str) -> None:
         try:
-            # The first look at a package imports it, which takes its time.
+            # The first use of a package imports it, which takes time.
             found = await asyncio.to_thread(definition, type_name)
         except UnknownTypeError as error:
             node.add_leaf(Text(plain(said(error.reason), LONGEST), "italic"))
@@ -152,7 +152,7 @@ def _fill(
 
 
 def _told(field: MessageField) -> list[Any]:
-    """Return type, default, and bounds that the type's name does not tell by itself."""
+    """Return type, default, and the bounds that the name of the type does not include."""
     parts: list[Any] = [(plain(field.type_name), "cyan")]
     if not field.message:
         parts.append(f" = {plain(_default(field.default), LONGEST)}")
@@ -172,7 +172,7 @@ SETTLED_S = 0.12
 
 
 class TypePane(GraphPane):
-    """Users above, the tree below."""
+    """The tree above, its users below."""
 
     DEFAULT_CSS: ClassVar[str] = """
     TypePane {
@@ -200,7 +200,7 @@ class TypePane(GraphPane):
 
     @property
     def is_settling(self) -> bool:
-        """Whether its package is to be loaded."""
+        """Whether its package is still to be loaded."""
         return self._settling is not None
 
     def show_name(self, name: str) -> None:
@@ -213,7 +213,7 @@ class TypePane(GraphPane):
         super().show_name(name)
 
     def redraw(self) -> None:
-        """Show who uses it, and why there is no tree."""
+        """Show its users, and if there is no tree, why."""
         if not self.name_shown or not self.is_mounted:
             return
         self.query_one(NameHead).show(self.name_shown)
@@ -228,7 +228,7 @@ class TypePane(GraphPane):
             words.show(_("this type cannot be inspected"), said(self._failure))
 
     def relabel(self) -> None:
-        """Say everything anew."""
+        """Redraw in the current language."""
         if self._definition is not None:
             self.fields.show_definition(self._definition)
         self.redraw()
@@ -242,7 +242,7 @@ class TypePane(GraphPane):
         self.run_worker(self._load(self.name_shown), group="load", exclusive=True)
 
     async def _load(self, name: str) -> None:
-        # Reading a type imports its package, which takes its time.
+        # Reading a type imports its package, which takes time.
         from graph.messages.browse import definition
 
         try:

@@ -1,4 +1,4 @@
-"""A page to be read: headings, paragraphs, and entries with a column of their own at the left."""
+"""A page of text: headings, paragraphs, and entries with a column of their own on the left."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 LEFT = 14
-"""Cells of the column at the left."""
+"""Cells of the left column."""
 WIDEST = 110
-"""Lines longer than that are hard to read."""
+"""Longer lines are hard to read."""
 
 
 class PageEntry(NamedTuple):
-    """A paragraph; with a `left` it stands beside that, with a `name` it begins with it, bold.
+    """A paragraph, beside its `left` if there is one; a `name` starts it in bold.
 
     A name without a text is a heading.
     """
@@ -29,7 +29,7 @@ class PageEntry(NamedTuple):
 
 
 class Page(ScrollView, can_focus=True):
-    """Shows entries, folded to its width."""
+    """Shows entries, wrapped to its width."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"page--heading", "page--name", "page--text"}
     DEFAULT_CSS = """
@@ -47,17 +47,17 @@ class Page(ScrollView, can_focus=True):
         self._lines: list[list[tuple[str, str]]] = []
 
     def show(self, entries: Sequence[PageEntry]) -> None:
-        """Show these from the beginning."""
+        """Show these entries from the top."""
         self._entries = entries
         self._fold()
 
     @property
     def text(self) -> str:
-        """All that is shown, folded as it is."""
+        """The whole text as wrapped now."""
         return "\n".join("".join(text for text, _look in line) for line in self._lines)
 
     def on_resize(self) -> None:
-        """Fold anew."""
+        """Wrap to the new width."""
         self._fold()
 
     def render_line(self, y: int) -> Strip:

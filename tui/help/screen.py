@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class CloseHelp(Action["HelpScreen"]):
-    """Back to the screen."""
+    """Go back to the screen."""
 
     id = "help.close"
     key = "escape,f1,enter"
@@ -42,7 +42,7 @@ class CloseHelp(Action["HelpScreen"]):
 
 
 class HelpScreen(ModalScreen[None], Acting):
-    """A page made of the actions themselves, so that it cannot be wrong about a key."""
+    """A page generated from the actions, so that it is never wrong about a key."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(CloseHelp)
     DEFAULT_CSS = """
@@ -58,23 +58,23 @@ class HelpScreen(ModalScreen[None], Acting):
         self._explained = explained
 
     def compose(self) -> ComposeResult:
-        """The page between title and keys."""
+        """The page between the title and the keys."""
         yield TitleBar()
         yield Page()
         yield KeyBar()
 
     def on_mount(self) -> None:
-        """Write the page."""
+        """Show the page."""
         self.redraw()
         self.query_one(Page).focus()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Write the page anew."""
+        """Show the page in the new language."""
         del message
         self.redraw()
 
     def redraw(self) -> None:
-        """Write the page in the language spoken now."""
+        """Show the page in the current language."""
         self.query_one(TitleBar).show((), (_("Help"),))
         self.query_one(Page).show(list(self._entries()))
 
@@ -97,7 +97,7 @@ class HelpScreen(ModalScreen[None], Acting):
         )
 
     def _everywhere(self) -> list[type[Action[Any]]]:
-        """Return what the app can do; what is for recordings only beside one."""
+        """Return the app's actions; those for recordings only in a replay."""
         replayed = host_of(self).feed.replay is not None
         actions = list(bound(self.app))
         return [each for each in actions if replayed or not issubclass(each, ReplayAction)]

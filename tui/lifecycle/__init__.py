@@ -1,4 +1,4 @@
-"""The way into a session and out of it: what is opened, how, and the dialogs that ask on the way.
+"""Opening and closing a session, and the dialogs that ask questions on the way.
 
-It stands above the screens: they know it by `tui.frame.host.SessionDoor` alone.
+It is above the screens, which know it only as `tui.frame.host.SessionDoor`.
 """

@@ -1,4 +1,4 @@
-"""Asks before a second session is started in a domain: both would hear each other."""
+"""Asks before a second session is started in a domain, where both would hear each other."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 
 class DomainAnswer(Enum):
-    """What is to be done."""
+    """The user's decision."""
 
     APART = "apart"
-    """Start it in the domain that is free."""
+    """Start it in the free domain."""
     TOGETHER = "together"
-    """Start it where the other is."""
+    """Start it in the same domain as the other."""
     NOT = "not"
 
 
 class StartApart(Action["DomainTakenScreen"]):
-    """In the domain that is free."""
+    """Start it in the free domain."""
 
     id = "domain_taken.apart"
     key = "enter"
@@ -40,12 +40,12 @@ class StartApart(Action["DomainTakenScreen"]):
 
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
-        """Answer so."""
+        """Choose that."""
         target.dismiss(DomainAnswer.APART)
 
 
 class StartTogether(Action["DomainTakenScreen"]):
-    """Where the other is."""
+    """Start it in the same domain."""
 
     id = "domain_taken.together"
     key = "s,ы"
@@ -57,12 +57,12 @@ class StartTogether(Action["DomainTakenScreen"]):
 
     @classmethod
     def possible(cls, target: DomainTakenScreen) -> bool | None:
-        """Not where both have nodes of one name, or both drive."""
+        """Not if both have nodes of the same name, or both drive."""
         return target.taken.can_share
 
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
-        """Answer so."""
+        """Choose that."""
         target.dismiss(DomainAnswer.TOGETHER)
 
 
@@ -78,12 +78,12 @@ class StartNot(Action["DomainTakenScreen"]):
 
     @classmethod
     async def run(cls, target: DomainTakenScreen) -> None:
-        """Answer so."""
+        """Choose that."""
         target.dismiss(DomainAnswer.NOT)
 
 
 class DomainTakenScreen(Dialog[DomainAnswer]):
-    """Names who is in the domain, and a domain that is free."""
+    """Says who is in the domain, and which domain is free."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StartApart, StartTogether, StartNot)
 
@@ -94,11 +94,11 @@ class DomainTakenScreen(Dialog[DomainAnswer]):
         self.taken = taken
 
     def title_words(self) -> str:
-        """Name what was found."""
+        """Return the title."""
         return _("Domain {domain} is in use").format(domain=self.taken.domain)
 
     def words(self) -> Content:
-        """Say who is there, what it would mean, and which domain is free."""
+        """Say who is there, what that means, and which domain is free."""
         taken = self.taken
         if taken.can_share:
             means = _("In one domain the nodes of both would see and hear each other.")

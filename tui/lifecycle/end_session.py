@@ -1,4 +1,4 @@
-"""Asks before a session is ended that was started elsewhere: whose it is, and what goes with it."""
+"""Asks before stopping a session that was started elsewhere: whose it is, and what will stop."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class EndIt(Action["EndSessionScreen"]):
 
 
 class LeaveIt(Action["EndSessionScreen"]):
-    """Let it go on."""
+    """Let it continue."""
 
     id = "end_session.leave"
     key = "escape"
@@ -61,11 +61,11 @@ class EndSessionScreen(Dialog[bool]):
         self._session = session
 
     def title_words(self) -> str:
-        """Name the question."""
+        """Return the question."""
         return _("End what was started elsewhere?")
 
     def words(self) -> Content:
-        """Say whose it is, since when it runs, and what ending it does."""
+        """Say whose it is, how long it has been running, and what stopping it does."""
         session, count = self._session, len(self.deck.feed.nodes)
         ends = ngettext(
             "Its {n} node will be stopped. Every screen that shows it will be told that you "

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class CloseRefused(Action["RefusedScreen"]):
-    """Back to the list."""
+    """Go back to the list."""
 
     id = "refused.close"
     key = "escape,enter"
@@ -32,7 +32,7 @@ class CloseRefused(Action["RefusedScreen"]):
 
 
 class RefusedScreen(Dialog[None]):
-    """Shows the reason, one problem a line."""
+    """Shows the reason, one line for each problem."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(CloseRefused)
 
@@ -42,7 +42,7 @@ class RefusedScreen(Dialog[None]):
         self._reason = reason
 
     def title_words(self) -> str:
-        """Name what happened."""
+        """Return the title."""
         return _("It could not be opened")
 
     def words(self) -> Content:

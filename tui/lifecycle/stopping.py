@@ -1,4 +1,4 @@
-"""Shown while the nodes are being stopped: which are still there, and why."""
+"""Shown while the nodes are being stopped: which ones are still running, and why."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class StopNow(Action["StoppingScreen"]):
-    """Skip the waiting."""
+    """Stop waiting."""
 
     id = "stopping.now"
     key = "q,й,ctrl+q,ctrl+c"
@@ -35,21 +35,21 @@ class StopNow(Action["StoppingScreen"]):
 
 
 class StoppingScreen(Dialog[None]):
-    """A list of the nodes that still run, looked at a few times a second."""
+    """A list of the nodes that are still running, updated a few times a second."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StopNow)
     can_be_covered = False
 
     def on_mount(self) -> None:
-        """Look again until it is over."""
+        """Update the list until all have stopped."""
         self.set_interval(0.2, self.redraw)
 
     def title_words(self) -> str:
-        """Name what happens."""
+        """Return the title."""
         return _("Stopping the nodes")
 
     def words(self) -> Content:
-        """Return the nodes that still run."""
+        """Return the nodes that are still running."""
         alive = [node for node in self.deck.feed.nodes.values() if node.state.alive]
         if not alive:
             return Content(_("All nodes have stopped."))

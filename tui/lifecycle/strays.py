@@ -1,4 +1,4 @@
-"""Processes that an earlier run left behind, offered for stopping."""
+"""Processes that an earlier run left behind, with an offer to stop them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class StopStrays(Action["StraysScreen"]):
-    """End them."""
+    """Stop them."""
 
     id = "strays.stop"
     key = "enter"
@@ -34,7 +34,7 @@ class StopStrays(Action["StraysScreen"]):
 
 
 class LeaveStrays(Action["StraysScreen"]):
-    """Let them be."""
+    """Leave them running."""
 
     id = "strays.leave"
     key = "escape"
@@ -50,7 +50,7 @@ class LeaveStrays(Action["StraysScreen"]):
 
 
 class StraysScreen(Dialog[bool]):
-    """Asks what is to become of them."""
+    """Asks what to do with them."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StopStrays, LeaveStrays)
 
@@ -60,7 +60,7 @@ class StraysScreen(Dialog[bool]):
         self._strays = strays
 
     def title_words(self) -> str:
-        """Name what was found."""
+        """Return the title."""
         return _("Left behind by an earlier run")
 
     def words(self) -> Content:

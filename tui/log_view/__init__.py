@@ -1,6 +1,7 @@
-"""Lines that come in, in a view that follows the newest: filtered, searched, copied, written down.
+"""Incoming lines in a view that follows the newest: filtered, searched, copied, saved.
 
-Screens that show such lines make a `LogPane` around a `LogView` (`pane`, `view`), bind subclasses
-of the actions in `actions`, and choose what is shown by a `LogFilter` (`filter`). `index.folded`
-and `rows.clock` fold a text and tell a time for others too. The rest is the view's own.
+Screens that show such lines create a `LogPane` around a `LogView` (`pane`, `view`), bind subclasses
+of the actions in `actions`, and choose what is shown with a `LogFilter` (`filter`). `index.folded`
+and `rows.clock`, which wrap a text and format a time, are used elsewhere too. Everything else is
+internal.
 """

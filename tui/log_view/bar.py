@@ -1,4 +1,4 @@
-"""One line under the log: following or paused, how much is shown, and by which choice."""
+"""One line under the log: following or paused, how much is shown, and which filters apply."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class LogBar(Widget):
     """
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Begin empty."""
+        """Start empty."""
         super().__init__(id=id, classes=classes)
         self._parts: tuple[tuple[str, str], ...] = ()
 
@@ -52,7 +52,7 @@ class LogBar(Widget):
 
     @property
     def words(self) -> str:
-        """All that is to be said, the most important first."""
+        """The full text, the most important parts first."""
         return " · ".join(text for text, _style in self._parts)
 
     def render(self) -> Content:
@@ -82,7 +82,7 @@ def _tail_parts(view: LogView) -> list[tuple[str, str]]:
 
 
 def _node_parts(view: LogView) -> list[tuple[str, str]]:
-    """The node of the line pointed at, where its column has no room for the name."""
+    """The node of the line at the cursor, if its column has no room for the name."""
     node = view.choice.node
     return [(plain(node), "chosen")] if node is not None and view.cuts(node) else []
 

@@ -1,4 +1,4 @@
-"""The lines that a person has chosen in a log: a cursor, and how far back the choice reaches."""
+"""The chosen lines of a log: a cursor, and the line where the choice began."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class LineChoice:
-    """A range of the lines that an index shows, by their ids; empty until one is pointed at."""
+    """A range of the lines in an index, by id; empty until one is chosen."""
 
     def __init__(self, index: LogIndex) -> None:
         self.cursor: int | None = None
@@ -23,7 +23,7 @@ class LineChoice:
         self._index = index
 
     def move(self, entry_id: int, *, extend: bool) -> None:
-        """Point at a line; with `extend` choose all from where the choice began to it."""
+        """Choose a line; with `extend`, all lines from where the choice began to it."""
         if not extend or self._anchor is None:
             self._anchor = self.cursor if extend and self.cursor is not None else entry_id
         self.cursor = entry_id
@@ -38,7 +38,7 @@ class LineChoice:
 
     @property
     def entries(self) -> Sequence[LogEntry]:
-        """Those of the lines shown that are chosen."""
+        """The shown lines that are chosen."""
         span = self._span
         if span is None:
             return ()
@@ -47,17 +47,17 @@ class LineChoice:
 
     @property
     def node(self) -> str | None:
-        """Node of the line pointed at, None if none is."""
+        """Node of the line at the cursor, None without a cursor."""
         return next((entry.node for entry in self.entries if entry.id == self.cursor), None)
 
     @property
     def found_number(self) -> int:
-        """Which of the found lines is pointed at, from 1; 0 if none is."""
+        """Number of the match at the cursor, from 1; 0 if there is none."""
         return self._index.found_number(self.cursor)
 
     @property
     def _span(self) -> tuple[int, int] | None:
-        """Lowest and highest id chosen, None if nothing is."""
+        """Lowest and highest chosen id, None if nothing is chosen."""
         if self.cursor is None or self._anchor is None:
             return None
         return min(self.cursor, self._anchor), max(self.cursor, self._anchor)

@@ -1,4 +1,4 @@
-"""The rows of a log as they are drawn: columns, colours of the nodes, and each row drawn once."""
+"""The rows of a log as they are drawn: columns, colours of the nodes, and a cache of rows."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tui.log_view.ring import LogEntry
 
 ColumnsFor: TypeAlias = "Callable[[int, int], LogColumns]"
-"""Which columns stand in front of the text, for rows and a longest node of so many cells."""
+"""Returns the columns in front of the text, for the given widths of a row and the longest node."""
 LEAST_TEXT = 8
 
 
@@ -32,7 +32,7 @@ class DrawnRows:
     def __init__(
         self, widget: Widget, index: LogIndex, columns_for: ColumnsFor, *, fold: bool
     ) -> None:
-        """Draw in the colours of `widget`; long lines are folded, or shifted sideways."""
+        """Use the colours of `widget`; with `fold` long lines are wrapped, else shifted."""
         self.fold = fold
         self._widget = widget
         self._index = index
@@ -46,7 +46,7 @@ class DrawnRows:
         self._strips: LRUCache[tuple[int, int], Strip] = LRUCache(512)
 
     def know_nodes(self, names: Iterable[str]) -> bool:
-        """Give these nodes their colours, in this order; tell whether one needs more room."""
+        """Assign colours to these nodes, in this order; return whether one needs a wider column."""
         for name in names:
             self._node_places.setdefault(name, len(self._node_places))
         longest = max(map(len, self._node_places), default=0)
@@ -55,34 +55,34 @@ class DrawnRows:
         return wider
 
     def lay_out(self, width: int) -> None:
-        """Fit columns and folding to rows of so many cells."""
+        """Fit columns and wrapping to rows of this width."""
         self._width = width
         self._columns = self._columns_for(width, self._longest_node)
         self._index.fold(self._text_width if self.fold else None)
         self.forget()
 
     def set_fold(self, fold: bool) -> None:
-        """Fold long lines, or show one row of each; to be laid out after."""
+        """Wrap long lines, or show one row of each; call `lay_out` afterwards."""
         self.fold, self._shift = fold, 0
 
     def shift(self, cells: int) -> bool:
-        """Shift lines that are not folded to the left; tell whether they look different now."""
+        """Shift unwrapped lines to the left; return whether they look different now."""
         most = 0 if self.fold else max(0, self._index.longest - self._text_width)
         shift = max(0, min(self._shift + cells, most))
         shifted, self._shift = shift != self._shift, shift
         return shifted
 
     def forget(self) -> None:
-        """Draw every row anew: it looks different."""
+        """Discard all drawn rows, since they look different now."""
         self._painter = None
         self._strips.clear()
 
     def cuts(self, node: str) -> bool:
-        """Whether its column has no room for the name of this node."""
+        """Whether the column has no room for the name of this node."""
         return cell_len(plain(node)) > self._columns.node
 
     def text(self, entry: LogEntry) -> str:
-        """Columns and text of a line as they are drawn, unfolded."""
+        """Columns and text of a line as they are drawn, but unwrapped."""
         return "".join(gutter_texts(entry, self._columns)) + self._index.text_of(entry)
 
     def strip(

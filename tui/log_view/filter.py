@@ -1,4 +1,4 @@
-"""Which lines of a log are shown: by node, by severity, by text."""
+"""Which lines of a log are shown: by node, severity and text."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from launcher.status import Severity
 
 @dataclass(frozen=True)
 class LogFilter:
-    """A choice of lines. It never changes: every change of mind is a new one."""
+    """Selects lines. It is immutable: every change returns a new one."""
 
     muted: frozenset[str] = frozenset()
-    """Nodes whose lines are left out, unless one node is listened to alone."""
+    """Nodes whose lines are hidden, unless only one node is shown."""
     only: str | None = None
-    """The one node that is listened to; all others are mute."""
+    """The only node that is shown; all others are muted."""
     minimum: Severity = Severity.DEBUG
     search: str = ""
-    """Text to be found, in any case of its letters; empty finds nothing."""
+    """Text to search for, ignoring case; if empty, there are no matches."""
     only_found: bool = False
-    """Whether lines without that text are left out."""
+    """Whether lines without that text are hidden."""
 
     def shows_node(self, node: str) -> bool:
         """Whether lines of this node are shown at all."""
@@ -30,22 +30,22 @@ class LogFilter:
 
     @property
     def pattern(self) -> re.Pattern[str] | None:
-        """What finds the text to be found; None if there is none."""
+        """The pattern for the search text; None if there is none."""
         return re.compile(re.escape(self.search), re.IGNORECASE) if self.search else None
 
     def toggled(self, node: str) -> LogFilter:
-        """Mute this node, or let it speak again; listening to one alone ends with it."""
+        """Mute this node, or unmute it; this also ends showing a single node."""
         return replace(self, muted=self.muted ^ {node}, only=None)
 
     def alone(self, node: str) -> LogFilter:
-        """Mute all but this node; asked again for the same, back to what was muted before."""
+        """Show only this node; if called again for it, restore the previous state."""
         return replace(self, only=None if self.only == node else node)
 
     def all_nodes(self) -> LogFilter:
-        """Let every node speak."""
+        """Unmute all nodes."""
         return replace(self, muted=frozenset(), only=None)
 
     def next_minimum(self) -> LogFilter:
-        """Raise the lowest severity shown by one; after the highest comes the lowest."""
+        """Raise the lowest severity shown by one level; after the highest comes the lowest."""
         levels = list(Severity)
         return replace(self, minimum=levels[(self.minimum.rank + 1) % len(levels)])

@@ -1,6 +1,6 @@
-"""One row of the log as a strip, with what was searched for, chosen or selected made visible.
+"""One row of the log as a strip, with matches, chosen lines and the mouse selection highlighted.
 
-The columns in front of the text stand still when long lines are shifted sideways.
+The columns in front of the text stay in place when long lines are shifted sideways.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ CHOSEN, MORE = "▌", "›"
 class RowPainter:
     """Draws rows at one width, in one theme.
 
-    Every character carries its place, for the mouse: the entry's id, and how many characters of
-    `gutter + text` stand before it. So a selection stays with its lines whatever moves them.
+    Every character carries its position for the mouse: the entry's id, and how many characters of
+    `gutter + text` come before it. So a selection stays with its lines whatever moves them.
     """
 
     palette: Palette
@@ -39,7 +39,7 @@ class RowPainter:
     width: int
     """Cells of the text."""
     shift: int
-    """Cells that it is shifted by; folded lines are not shifted."""
+    """Cells that the text is shifted by; wrapped lines are not shifted."""
     fold: bool
     pattern: re.Pattern[str] | None
 
@@ -53,7 +53,7 @@ class RowPainter:
         *,
         chosen: bool,
     ) -> Strip:
-        """Row number `part` of an entry, with what was found and what the mouse has selected."""
+        """Row number `part` of an entry, with matches and the mouse selection."""
         under = self.palette.cursor if chosen else Style()
         lead = self._gutter(entry, node_style, under)
         if chosen and not part:
@@ -105,7 +105,7 @@ class RowPainter:
         return self.palette.base
 
     def _piece(self, text: str, part: int) -> tuple[int, str, bool]:
-        """Where in the text the row's piece starts, the piece, and whether more is cut off."""
+        """The start of the row's piece in the text, the piece, and whether more is cut off."""
         if self.fold:
             pieces = folded(text, self.width)
             part = min(part, len(pieces) - 1)
@@ -121,7 +121,7 @@ class RowPainter:
 
 
 def _laid_over(segments: Iterable[Segment], span: Span) -> list[Segment]:
-    """Segments with a style over a part of their common text."""
+    """Segments with a style applied to a part of their combined text."""
     laid: list[Segment] = []
     at = 0
     start, end, over = span
@@ -132,7 +132,7 @@ def _laid_over(segments: Iterable[Segment], span: Span) -> list[Segment]:
 
 
 def painted(text: str, style: Style, spans: Iterable[Span]) -> list[Segment]:
-    """The text as segments, with other styles laid over parts of it; later ones lie on top."""
+    """The text as segments, with other styles applied to parts of it; later ones win."""
     marks = [(max(0, start), min(len(text), end), over) for start, end, over in spans]
     marks = [mark for mark in marks if mark[0] < mark[1]]
     if not marks:

@@ -1,4 +1,4 @@
-"""The colours of the log: from the theme for severities, a fixed wheel of hues for nodes."""
+"""The colours of the log: from the theme for severities, from a fixed cycle of hues for nodes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PALETTE_CSS = """
 
 @dataclass(frozen=True)
 class Palette:
-    """The styles of the moment's theme."""
+    """The styles of the current theme."""
 
     base: Style
     muted: Style
@@ -44,12 +44,12 @@ class Palette:
     selection: Style
 
     def node(self, place: int) -> Style:
-        """Style of the node at this place."""
+        """Style of the node with this number."""
         return self.nodes[place % len(self.nodes)]
 
 
 def palette_of(widget: Widget) -> Palette:
-    """The styles of the widget's theme as it is now."""
+    """Return the styles of the widget's current theme."""
 
     def part(name: str, *, partial: bool = False) -> Style:
         return widget.get_component_rich_style(f"log--{name}", partial=partial)

@@ -1,4 +1,4 @@
-"""One line in which something is asked: what to search for, where to write."""
+"""One line that asks a question: what to search for, where to save."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 class LogPrompt(Horizontal):
-    """A label, a text field and room for a remark; out of sight until `ask` is called.
+    """A label, a text field and room for a remark; hidden until `ask` is called.
 
-    `kind` tells what was asked. Escape gives up.
+    `kind` says what was asked. Escape cancels.
     """
 
     DEFAULT_CSS = """
@@ -36,10 +36,10 @@ class LogPrompt(Horizontal):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "give_up", show=False)]
 
     class Said(Message):
-        """Base of what it tells."""
+        """Base of its messages."""
 
         def __init__(self, prompt: LogPrompt, text: str) -> None:
-            """Carry the text as it is now."""
+            """Carry the current text."""
             super().__init__()
             self.prompt, self.kind, self.text = prompt, prompt.kind, text
 
@@ -49,7 +49,7 @@ class LogPrompt(Horizontal):
             return self.prompt
 
     class Edited(Said):
-        """The text is another one."""
+        """The text has changed."""
 
     class Answered(Said):
         """Enter was pressed."""
@@ -58,7 +58,7 @@ class LogPrompt(Horizontal):
         """Escape was pressed."""
 
     def __init__(self, id: str | None = None) -> None:
-        """Begin out of sight."""
+        """Start hidden."""
         super().__init__(id=id)
         self.kind = ""
 
@@ -69,7 +69,7 @@ class LogPrompt(Horizontal):
         yield Static("", id="remark", markup=False)
 
     def ask(self, kind: str, label: str, text: str) -> None:
-        """Ask, with an answer to begin with."""
+        """Ask, with `text` as the default answer."""
         self.kind = kind
         self.add_class("-asking")
         self.query_one("#label", Static).update(label)
@@ -81,25 +81,25 @@ class LogPrompt(Horizontal):
         self.screen.set_focus(field)
 
     def remark(self, words: str) -> None:
-        """Say something about the answer."""
+        """Show a remark about the answer."""
         self.query_one("#remark", Static).update(words)
 
     def close(self) -> None:
-        """Go out of sight."""
+        """Hide the prompt."""
         self.kind = ""
         self.remove_class("-asking")
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Hand on what is being written."""
+        """Report the text being typed."""
         event.stop()
         self.remark("")
         self.post_message(self.Edited(self, event.value))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Hand on the answer."""
+        """Report the answer."""
         event.stop()
         self.post_message(self.Answered(self, event.value))
 
     def action_give_up(self) -> None:
-        """Leave it."""
+        """Cancel."""
         self.post_message(self.Cancelled(self, self.query_one(Input).value))

@@ -1,8 +1,8 @@
-"""The lines that a log view keeps: bounded in number and bytes, fair to quiet nodes.
+"""The lines that a log view keeps: limited in number and bytes, fair to quiet nodes.
 
-When there are too many, the nodes that wrote most lose their oldest lines; a flood of one node
-does not push out the lines of the others. While somebody reads (`hold`), nothing that he has
-before him is dropped: then the lines that came since are the ones that must go, and a mark tells.
+When there are too many, the nodes that wrote most lose their oldest lines; a flood from one node
+does not push out the lines of others. While somebody reads (`hold`), none of the lines present are
+dropped: instead newer lines are, and a mark takes their place.
 """
 
 from __future__ import annotations
@@ -17,47 +17,47 @@ from text.i18n import said
 from text.plain import plain
 
 LONGEST_TEXT = 16_384
-"""Characters of one line that are kept; the file has the whole line."""
+"""Characters kept of one line; the file has the whole line."""
 SLACK = 1.25
-"""Dropping goes through all lines, so it is done now and then, for many at once."""
+"""Dropping goes through all lines, so it is done only occasionally, for many at once."""
 _OBJECT_BYTES = 160
 
 
 @dataclass(slots=True)
 class LogEntry:
-    """A line, or a mark that lines are missing here."""
+    """A line, or a mark for missing lines."""
 
     id: int
-    """Counts up in the order of arrival."""
+    """Increases in order of arrival."""
     node: str
     rank: int
     """Rank of the severity."""
     time_s: float
     text: str
-    """Harmless: no control characters."""
+    """The text without control characters."""
     skipped: int = 0
-    """For a mark: how many lines are missing; 0 for a line."""
+    """Number of missing lines for a mark; 0 for a line."""
     size: int = _OBJECT_BYTES
-    """Bytes that it takes, about."""
+    """Approximate size in bytes."""
     dropped: bool = False
 
 
 class LineRing:
-    """Lines in the order of their arrival."""
+    """Lines in order of arrival."""
 
     def __init__(self, max_lines: int = 20_000, max_bytes: int = 16 * 2**20) -> None:
-        """Keep at most so many lines and bytes, and a quarter more for a while."""
+        """Keep at most this many lines and bytes, and temporarily a quarter more."""
         self.max_lines, self.max_bytes = max_lines, max_bytes
         self.entries: list[LogEntry] = []
         self.counts: dict[str, list[int]] = {}
-        """Lines that ever came, by node and rank of the severity; missing ones do not count."""
+        """Lines received so far, by node and rank of the severity; missing ones do not count."""
         self._next_id = 0
         self._held = 0
         self._bytes = 0
         self._last_seq: dict[str, int] = {}
 
     def append(self, lines: Sequence[LogLine], skipped: Mapping[str, int]) -> list[LogEntry]:
-        """Take lines in; return them with marks where `seq` or `skipped` tells of missing ones."""
+        """Add lines; return them with marks where `seq` or `skipped` shows that any are missing."""
         start = len(self.entries)
         seen: Counter[str] = Counter()
         for line in lines:
@@ -94,30 +94,30 @@ class LineRing:
         self._bytes += size
 
     def clear(self) -> None:
-        """Forget every line."""
+        """Remove every line."""
         self.entries.clear()
         self.counts.clear()
         self._last_seq.clear()
         self._held = self._bytes = 0
 
     def hold(self) -> None:
-        """Drop none of the lines that are here now."""
+        """Keep all lines that are present now."""
         self._held = len(self.entries)
         self._bytes = 0
 
     def release(self) -> None:
-        """Drop the oldest lines first again."""
+        """Allow the oldest lines to be dropped again."""
         self._held = 0
         self._bytes = sum(entry.size for entry in self.entries)
 
     @property
     def full(self) -> bool:
-        """Whether it is time to `trim`."""
+        """Whether it is time to call `trim`."""
         loose = len(self.entries) - self._held
         return loose > self.max_lines * SLACK or self._bytes > self.max_bytes * SLACK
 
     def trim(self) -> list[LogEntry]:
-        """Drop lines of those who wrote most, until the bounds hold; return new marks for them."""
+        """Drop lines of the nodes that wrote most until the limits hold; return new marks."""
         loose = self.entries[self._held :]
         lines = Counter(entry.node for entry in loose)
         over_lines = _surplus(lines, self.max_lines)
@@ -146,13 +146,13 @@ class LineRing:
 
 
 def _surplus(amounts: Mapping[str, int], budget: int) -> Counter[str]:
-    """How much each has too much, when no one may have more than a common level."""
+    """How much each exceeds its share, if all have the same maximum."""
     level = _level(amounts.values(), budget)
     return Counter({name: amount - level for name, amount in amounts.items() if amount > level})
 
 
 def _level(amounts: Iterable[int], budget: int) -> int:
-    """The highest level for which the sum of min(amount, level) keeps within the budget."""
+    """The highest level for which the sum of min(amount, level) stays within the budget."""
     rest = sorted(amounts)
     while rest:
         share = budget // len(rest)

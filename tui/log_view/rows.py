@@ -1,7 +1,7 @@
 """What a row of the log says, in columns: time, severity, node, text.
 
 The severity is a word or its first letter as well as a colour. The columns in front of the text
-stand still when long lines are shifted sideways.
+stay in place when long lines are shifted sideways.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ WORD_CELLS = max(map(len, WORDS))
 
 @dataclass(frozen=True)
 class LogColumns:
-    """Cells that the columns take; 0 leaves one out."""
+    """Widths of the columns; 0 leaves one out."""
 
     time: int
     word: int
@@ -36,7 +36,7 @@ class LogColumns:
 
 
 def columns_for(width: int, longest_node: int) -> LogColumns:
-    """The columns that leave at least half of the width to the text."""
+    """Return columns that leave at least half of the width to the text."""
     if width < 40:
         return LogColumns(0, 1, min(longest_node, 6))
     if width < 70:
@@ -47,7 +47,7 @@ def columns_for(width: int, longest_node: int) -> LogColumns:
 
 
 def text_of(entry: LogEntry, where: str = "") -> str:
-    """What is drawn as the text of an entry; `where` is the place of the file with all lines."""
+    """Return the drawn text of an entry; `where` is the path of the file with all lines."""
     if not entry.skipped:
         return entry.text
     count = f"{entry.skipped:,}".replace(",", "\N{NO-BREAK SPACE}")
@@ -68,7 +68,7 @@ def _second(second: int) -> str:
 
 
 def clock(time_s: float, cells: int) -> str:
-    """Local time of day in so many cells, with milliseconds if they fit."""
+    """Local time of day in this many cells, with milliseconds if they fit."""
     try:
         second, milliseconds = divmod(round(time_s * 1000), 1000)
         words = f"{_second(second)}.{milliseconds:03}"
@@ -78,9 +78,9 @@ def clock(time_s: float, cells: int) -> str:
 
 
 def gutter_texts(entry: LogEntry, columns: LogColumns) -> tuple[str, str, str]:
-    """Time, severity and node of an entry, each with the blank after it, "" when left out.
+    """Time, severity and node of an entry, each followed by a blank, or "" if left out.
 
-    The time has the cell in front of it in which the mark of a chosen line stands.
+    The time is preceded by the cell for the mark of a chosen line.
     """
     when = f" {clock(entry.time_s, columns.time)} " if columns.time else " "
     word = "⋯" if entry.skipped else WORDS[entry.rank]

@@ -1,4 +1,4 @@
-"""Writing lines of a log to a file that somebody names: never over another one unasked."""
+"""Saving lines of a log to a file that the user names; it is not overwritten without asking."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from text.os_words import os_reason
 
 
 def default_path(folder: str, time_s: float) -> Path:
-    """A name for a new file in `folder` by the local time `time_s`."""
+    """Return a name for a new file in `folder`, from the local time `time_s`."""
     when = datetime.fromtimestamp(time_s, timezone.utc).astimezone()
     return Path(folder or ".") / f"deck-{when:%Y%m%d-%H%M%S}.log"
 
 
 def home_path(name: str) -> Path:
-    """The path that somebody typed, with `~` for the home directory where there is one."""
+    """Return the typed path, with `~` replaced by the home directory if there is one."""
     try:
         return Path(name).expanduser()
     except RuntimeError:
@@ -27,10 +27,10 @@ def home_path(name: str) -> Path:
 
 
 def save_lines(path: Path, lines: Iterable[str], *, replace: bool = False) -> int:
-    """Write the lines, each with a line end, as UTF-8; return the bytes written.
+    """Write the lines, each with a line end, as UTF-8; return the number of bytes written.
 
-    Folders that are missing are made. Raises FileExistsError unless `replace`, and any other
-    OSError of the file system.
+    Creates missing folders. Raises FileExistsError unless `replace`, and any other OSError of the
+    file system.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     flags = os.O_WRONLY | os.O_CREAT | (os.O_TRUNC if replace else os.O_EXCL)
@@ -53,7 +53,7 @@ _REASONS = {
 
 
 def reason(error: OSError | ValueError) -> str:
-    """Why a file could not be written, in words."""
+    """Return why a file could not be written, in words."""
     if not isinstance(error, OSError):
         return str(error)
     known = _REASONS.get(error.errno or 0)

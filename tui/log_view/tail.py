@@ -1,7 +1,7 @@
-"""How a view of rows that grow at their end stays at the newest until somebody looks back.
+"""Keeps a growing view of rows at the newest one until the user scrolls back.
 
-Growing costs no layout: the scrollbar is always there, and it is drawn again only when its thumb
-would look different.
+Growing needs no layout: the scrollbar is always there, and it is redrawn only when its thumb would
+look different.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 class Tail:
-    """Moves and draws a scroll view whose number of rows `total_rows` tells.
+    """Scrolls and draws a scroll view with `total_rows` rows.
 
-    `on_drawn` is called whenever rows have come or are placed anew.
+    `on_drawn` is called whenever rows have been added or moved.
     """
 
     def __init__(
@@ -29,11 +29,11 @@ class Tail:
         on_drawn: Callable[[], object],
         period_s: float,
     ) -> None:
-        """Begin at the end, following it; draw rows that come after `period_s`."""
+        """Start at the end, following it; new rows are drawn within `period_s`."""
         self.following = True
-        """Whether the newest row is kept in sight."""
+        """Whether to keep the newest row in sight."""
         self.steering = False
-        """Whether it is the tail that scrolls now, and not a person."""
+        """Whether the tail itself is scrolling, rather than the user."""
         self._view = view
         self._total_rows = total_rows
         self._on_drawn = on_drawn
@@ -43,11 +43,11 @@ class Tail:
 
     @property
     def page_rows(self) -> int:
-        """How many rows are on screen."""
+        """Number of rows on screen."""
         return self._view.container_size.height
 
     def rows_came(self) -> None:
-        """Draw soon, together with what comes until then; the first rows of all at once."""
+        """Draw soon, together with rows that arrive until then; draw the first rows at once."""
         if self._waiting:
             return
         if self._period_s and self._view.is_running and self._view.virtual_size.height:
@@ -62,10 +62,10 @@ class Tail:
         self.redraw(only_end=not self.following and self._total_rows() >= had)
 
     def redraw(self, *, only_end: bool = False) -> None:
-        """Draw; with `only_end` nothing but rows that came into sight below the others."""
+        """Draw; with `only_end`, only if rows became visible below the others."""
         view = self._view
         had = view.virtual_size.height
-        # Assigned past the reactive: its watcher would lay out the whole screen for each batch.
+        # Set without the reactive: its watcher would lay out the whole screen for each batch.
         size = Size(view.container_size.width, self._total_rows())
         view.set_reactive(Widget.virtual_size, size)
         self.steer(view.max_scroll_y if self.following else int(view.scroll_y))
@@ -75,13 +75,13 @@ class Tail:
         self._on_drawn()
 
     def steer(self, row: int) -> None:
-        """Put this row at the top without that counting as somebody's wish; not drawn yet."""
+        """Put this row at the top without treating it as the user's scrolling; does not draw."""
         self.steering = True
         self._view.scroll_target_y = self._view.scroll_y = row
         self.steering = False
 
     def show(self, first: int, end: int) -> None:
-        """Scroll as little as brings the rows from `first` to before `end` into sight."""
+        """Scroll as little as needed to show the rows from `first` to before `end`."""
         if first < self._view.scroll_y or end - first > self.page_rows:
             self.steer(first)
         elif end > self._view.scroll_y + self.page_rows:
@@ -89,7 +89,7 @@ class Tail:
         self.sync_scrollbar()
 
     def sync_scrollbar(self) -> None:
-        """Make the thumb fit, if it would look different by an eighth of a cell."""
+        """Update the thumb if it would differ by an eighth of a cell."""
         view = self._view
         if not view.show_vertical_scrollbar:
             return

@@ -1,7 +1,7 @@
-"""The log as a person works with it: scroll, point at lines, choose, search.
+"""The log as the user works with it: scrolling, choosing lines, searching.
 
-Each line is looked at once, by the filter, when it comes; only rows on screen are ever drawn.
-Pointing, searching and scrolling up pause the view; End follows again.
+The filter examines each line once, on arrival; only rows on screen are ever drawn. Choosing,
+searching and scrolling up pause the view; End follows again.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ SHIFT_CELLS = 16
 
 
 class LogView(OneStyle, ScrollView, can_focus=True):
-    """Shows what its filter lets through of the lines appended.
+    """Shows those of the appended lines that pass its filter.
 
-    Up and down point at lines, with shift they choose several. `ring` keeps the lines, `index`
-    knows which of them are shown, on which rows, and which a search found, `choice` those chosen.
+    Up and down choose a line, with Shift several. `ring` keeps the lines, `index` knows which of
+    them are shown, on which rows, and which match the search, `choice` knows the chosen ones.
     """
 
     ALLOW_SELECT = True
@@ -69,10 +69,10 @@ class LogView(OneStyle, ScrollView, can_focus=True):
     ]
 
     class StateChanged(Message):
-        """Rows have come, or what is shown, followed, found or chosen is not what it was."""
+        """The rows have changed, or the filter, following, search or choice."""
 
         def __init__(self, view: LogView) -> None:
-            """Name the view."""
+            """Carry the view."""
             super().__init__()
             self.view = view
 
@@ -82,7 +82,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             return self.view
 
         def can_replace(self, message: Message) -> bool:
-            """Of many, the newest is enough."""
+            """Of several, only the newest is needed."""
             return isinstance(message, LogView.StateChanged) and message.view is self.view
 
     def __init__(
@@ -96,9 +96,9 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         id: str | None = None,
         classes: str | None = None,
     ) -> None:
-        """Keep so many lines; draw at most every `period_s`.
+        """Keep this many lines; draw at most every `period_s`.
 
-        `file_of` gives the path of the file with all lines of a node, "" if it is not known.
+        `file_of` returns the path of the file with all lines of a node, "" if it is not known.
         """
         super().__init__(id=id, classes=classes)
         self.ring = LineRing(max_lines)
@@ -106,19 +106,19 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             lambda entry: text_of(entry, file_of(entry.node)) if entry.skipped else entry.text
         )
         self.fresh = 0
-        """Lines shown that have come since following ended."""
+        """Shown lines that have arrived since following ended."""
         self.empty_words = ""
-        """Why no line has come; in place of "no lines yet"."""
+        """Why there are no lines, in place of "no lines yet"."""
         self.minimum_words = ""
-        """How the bar calls lines above the lowest severity; in place of "WARN and worse"."""
+        """How the bar describes the lowest severity shown, in place of "WARN and worse"."""
         self.choice = LineChoice(self.index)
         self._tail = Tail(self, lambda: self.index.rows, self._tell, period_s)
         self._drawn = DrawnRows(self, self.index, columns_for, fold=fold)
 
-    # What is shown
+    # Display
 
     def append(self, lines: Sequence[LogLine], skipped: Mapping[str, int] | None = None) -> None:
-        """Take lines in the order they came in, and how many were skipped of which node."""
+        """Add lines in order of arrival, and the numbers of skipped lines by node."""
         entries = self.ring.append(lines, skipped or {})
         self.know_nodes(dict.fromkeys(entry.node for entry in entries))
         shown = self.index.extend(entries)
@@ -128,18 +128,18 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._tail.rows_came()
 
     def know_nodes(self, names: Iterable[str]) -> None:
-        """Give these nodes their colours, in this order."""
+        """Assign colours to these nodes, in this order."""
         if self._drawn.know_nodes(names):
             self.lay_out()
 
     def clear(self) -> None:
-        """Forget every line."""
+        """Remove every line."""
         self.ring.clear()
         self.index.rebuild(())
         self.follow()
 
     def replace_lines(self, lines: Sequence[LogLine]) -> None:
-        """Show these lines in place of all others; a paused view stays paused."""
+        """Replace all lines; a paused view stays paused."""
         following = self.following
         self.clear()
         self.append(lines)
@@ -148,7 +148,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
 
     @property
     def log_filter(self) -> LogFilter:
-        """Which lines are shown."""
+        """The filter in use."""
         return self.index.filter
 
     @log_filter.setter
@@ -161,21 +161,21 @@ class LogView(OneStyle, ScrollView, can_focus=True):
 
     @property
     def fold(self) -> bool:
-        """Whether long lines are folded."""
+        """Whether long lines are wrapped."""
         return self._drawn.fold
 
     def set_fold(self, fold: bool) -> None:
-        """Fold long lines, or show one row of each and shift it sideways."""
+        """Wrap long lines, or show one row of each and shift it sideways."""
         if fold != self.fold:
             self._drawn.set_fold(fold)
             self.lay_out()
 
     def cuts(self, node: str) -> bool:
-        """Whether its column has no room for the name of this node."""
+        """Whether the column has no room for the name of this node."""
         return self._drawn.cuts(node)
 
     def row_text(self, entry: LogEntry) -> str:
-        """Columns and text of a line as they are drawn, unfolded."""
+        """Columns and text of a line as they are drawn, but unwrapped."""
         return self._drawn.text(entry)
 
     # Following
@@ -186,7 +186,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         return self._tail.following
 
     def follow(self) -> None:
-        """Keep the newest line in sight from now on, nothing chosen."""
+        """Keep the newest line in sight from now on, with no line chosen."""
         if self.choice.cursor is not None:
             self.choice.clear()
             self._repaint()
@@ -196,7 +196,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._tail.redraw()
 
     def pause(self) -> None:
-        """Stand still: no line that is here now is dropped while lines come in."""
+        """Pause: keep all lines that are present now while others arrive."""
         if self.following:
             self.fresh = 0
             self.ring.hold()
@@ -211,7 +211,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self.follow()
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Leave the end: pause. Come back to it: follow."""
+        """Pause when scrolled away from the end; follow when scrolled back to it."""
         if self._tail.steering:
             return
         super().watch_scroll_y(old_value, new_value)
@@ -222,11 +222,11 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self.follow()
 
     def action_page_up(self) -> None:
-        """Go up by what is on screen."""
+        """Scroll up by one page."""
         self.scroll_to(y=self.scroll_y - self._tail.page_rows, animate=False)
 
     def action_page_down(self) -> None:
-        """Go down by what is on screen."""
+        """Scroll down by one page."""
         self.scroll_to(y=self.scroll_y + self._tail.page_rows, animate=False)
 
     def action_scroll_home(self) -> None:
@@ -237,10 +237,10 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         """Go to the newest row and follow."""
         self.follow()
 
-    # Pointing, choosing, searching
+    # Choosing and searching
 
     def find(self, step: int) -> bool:
-        """Point at the next (1) or previous (-1) line that holds the text searched for."""
+        """Choose the next (1) or previous (-1) line that contains the search text."""
         shown = self.index.shown
         if not shown:
             return False
@@ -254,23 +254,23 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         return True
 
     def chosen_lines(self) -> list[str]:
-        """The lines chosen, as text with date, severity and node."""
+        """The chosen lines, as text with date, severity and node."""
         return exported(self.choice.entries, self.index)
 
     def shown_lines(self) -> list[str]:
-        """All lines that the filter lets through, likewise."""
+        """All lines that pass the filter, in the same form."""
         return exported(self.index.shown, self.index)
 
     def action_scroll_up(self) -> None:
-        """Point at the line above."""
+        """Choose the line above."""
         self._step(-1, extend=False)
 
     def action_scroll_down(self) -> None:
-        """Point at the line below."""
+        """Choose the line below."""
         self._step(1, extend=False)
 
     def action_choose(self, step: int) -> None:
-        """Choose one line more, upwards (-1) or downwards (1)."""
+        """Extend the choice by one line, upwards (-1) or downwards (1)."""
         self._step(step, extend=True)
 
     def action_let_go(self) -> None:
@@ -280,27 +280,27 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._tell()
 
     def action_scroll_left(self) -> None:
-        """Shift lines that are not folded."""
+        """Shift unwrapped lines."""
         self._shift(-SHIFT_CELLS)
 
     def action_scroll_right(self) -> None:
-        """Shift lines that are not folded."""
+        """Shift unwrapped lines."""
         self._shift(SHIFT_CELLS)
 
     def on_click(self, event: Click) -> None:
-        """Point at the line that was clicked; with shift choose all up to it."""
+        """Choose the clicked line; with Shift, all lines up to it."""
         row = int(self.scroll_y) + event.y
         if self.text_selection is None and row < self.index.rows:
             self._point_at(self.index.locate(row)[0], extend=event.shift)
 
     def selection_updated(self, selection: Selection | None) -> None:
-        """Stand still while text is selected by the mouse."""
+        """Pause while text is selected with the mouse."""
         if selection is not None:
             self.pause()
         self.refresh()
 
     def get_selection(self, selection: Selection) -> tuple[str, str] | None:
-        """Text that the mouse has selected: what the rows show, folded lines in one piece."""
+        """The text selected with the mouse: what the rows show, with wrapped lines joined."""
         ids = [self.index.shown[0].id, self.index.shown[-1].id] if self.index.shown else [0, -1]
         first = ids[0] if selection.start is None else selection.start.y
         last = ids[1] if selection.end is None else selection.end.y
@@ -321,7 +321,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._point_at(place, extend=extend)
 
     def _place_on_row(self, y: int) -> int:
-        """Place of the line on this row of the screen, or of the last above it."""
+        """Index of the line on this row of the screen, or of the last one above it."""
         row = min(int(self.scroll_y) + y, self.index.rows - 1)
         return self.index.locate(row)[0] if row >= 0 else 0
 
@@ -347,12 +347,12 @@ class LogView(OneStyle, ScrollView, can_focus=True):
 
     @property
     def top_id(self) -> int | None:
-        """Which line is at the top of the screen."""
+        """Id of the line at the top of the screen."""
         place = self.index.locate(int(self.scroll_y))[0]
         return self.index.shown[place].id if place < len(self.index.shown) else None
 
     def lay_out(self) -> None:
-        """Fit columns and folding to the size and the language."""
+        """Fit columns and wrapping to the size and the language."""
         width = self.container_size.width - self.scrollbar_size_vertical
         if width >= 1:
             top = self.top_id
@@ -363,12 +363,12 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.lay_out()
 
     def notify_style_update(self) -> None:
-        """Take the colours anew."""
+        """Use the colours of the new theme."""
         super().notify_style_update()
         self._drawn.forget()
 
     def _settle(self, top: int | None) -> None:
-        """After rows have changed: the same line at the top, unless the end is followed."""
+        """After rows have changed, keep the same line at the top, or follow the end."""
         self._repaint()
         if not self.following and top is not None:
             self._tail.steer(self.index.row_of(self.index.place_of(top)))
@@ -379,7 +379,7 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """One row, or words where there is no line."""
+        """One row, or words if there are no lines."""
         row = int(self.scroll_y) + y
         if row < self.index.rows:
             place, part = self.index.locate(row)

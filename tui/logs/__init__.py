@@ -1,5 +1,5 @@
-"""The tab of logs: what all nodes say, and the list of those nodes.
+"""The Logs tab: the log of all nodes, and a list of those nodes.
 
-The app makes its `screen.LogsScreen`, the palette lists its `actions`; nothing else here is for
-others.
+The app creates `screen.LogsScreen` and the palette lists `actions`; nothing else here is meant for
+use elsewhere.
 """

@@ -1,4 +1,4 @@
-"""The nodes of a log, with how much each has said and whether it is heard."""
+"""The nodes of a log, with how much each has written and whether it is shown."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ HEARD, MUTE, ALONE = "●", "○", "★"
 
 
 class LogNodes(Rows):
-    """One row a node: its mark, its name, its lines, its warnings and errors.
+    """One row for each node: its mark, name, number of lines, warnings and errors.
 
-    `Opened` says that the chosen node shall be muted or heard.
+    `Opened` means that the chosen node is to be muted or unmuted.
     """
 
     DEFAULT_CSS = """

@@ -1,4 +1,4 @@
-"""What all nodes say: filtered, searched, copied, written to a file."""
+"""The log of all nodes: filtered, searched, copied, saved to a file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ COUNTS_EVERY_S = 0.5
 
 
 class LogsScreen(DeckScreen):
-    """The log of every node; at the left the nodes, which on a narrow screen come when asked."""
+    """The log of every node, with the nodes on the left; on a narrow screen only on request."""
 
     tab: ClassVar[str] = "logs"
     about: ClassVar[str] = N_(
@@ -80,18 +80,18 @@ class LogsScreen(DeckScreen):
 
     @property
     def chosen_node(self) -> str | None:
-        """The node that is meant: the chosen row of the list in focus, else the chosen line's."""
+        """The node that actions apply to: that of the focused list, else the chosen line's."""
         if self.node_list.has_focus:
             return self.node_list.chosen or None
         return self.pane.view.choice.node
 
     def on_mount(self) -> None:
-        """Begin at the newest line."""
+        """Start at the newest line."""
         self.pane.view.focus()
         self.set_interval(COUNTS_EVERY_S, self._show_nodes)
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Another session begins with an empty log; one that has ended keeps its lines."""
+        """Start a new session with an empty log; keep the lines of a session that has ended."""
         del message
         session = self.feed.session
         if session is not None:
@@ -100,19 +100,19 @@ class LogsScreen(DeckScreen):
                 self.pane.view.clear()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Know the nodes before they speak."""
+        """Add the nodes before they write anything."""
         self.pane.view.know_nodes(message.nodes)
         self._show_nodes()
 
     def on_log_arrived(self, message: LogArrived) -> None:
-        """Take the lines; the counts of the nodes follow at their own pace."""
+        """Add the lines; the counts of the nodes are updated less often."""
         self.pane.view.append(message.lines, message.skipped)
         if monotonic() - self._counted_s > COUNTS_EVERY_S:
             self._counted_s = monotonic()
             self._show_nodes()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Draw anew."""
+        """Redraw in the current language."""
         del message
         self.pane.words_changed()
         self._show_nodes()
@@ -130,17 +130,17 @@ class LogsScreen(DeckScreen):
         self.choose(self.pane.view.log_filter.toggled(event.key))
 
     def choose(self, chosen: LogFilter) -> None:
-        """Show these lines."""
+        """Apply a filter."""
         self.pane.view.log_filter = chosen
         self._show_nodes()
 
     def hear_all(self) -> None:
-        """Let every node be heard, at every severity."""
+        """Show every node, at every severity."""
         heard = self.pane.view.log_filter.all_nodes()
         self.choose(replace(heard, minimum=Severity.DEBUG))
 
     def toggle_nodes(self) -> None:
-        """Go to the list of nodes; back to the lines if it is there already."""
+        """Go to the list of nodes, or back to the lines."""
         if self.node_list.has_focus:
             self.action_close_nodes()
         else:
@@ -148,7 +148,7 @@ class LogsScreen(DeckScreen):
             self.node_list.focus()
 
     def action_close_nodes(self) -> None:
-        """Back to the lines."""
+        """Go back to the lines."""
         self.node_list.remove_class("-open")
         self.pane.view.focus()
 

@@ -1,6 +1,6 @@
-"""What came of JSON of an LLM: accepted or refused, then drive, wheels and head, with delays.
+"""The outcome of an LLM's JSON: accepted or refused, then drive, wheels and head, with delays.
 
-The composer tells it of what it has sent, a panel of whatever comes, the flow in its own lines.
-Plain data of updates of the graph: `story` follows a message, `words` and `problem_words` say each
-thing, `view` shows it. All of it may be imported from outside.
+The composer passes it what it has sent, a panel whatever arrives; the flow shows it in its own
+lines. `story` follows a message through the updates of the graph, `words` and `problem_words`
+describe each event, and `view` shows it. All modules may be used elsewhere.
 """

@@ -1,4 +1,4 @@
-"""What is wrong with the LLM's JSON, said in the language of the screen."""
+"""What is wrong with the LLM's JSON, in the current language."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ LONGEST = 300
 
 
 def problem_words(problem: Problem) -> str:
-    """The place, the field and the mend: `line 3, column 12: commands[1].speed: must be …`."""
+    """The place, the field and the fix: `line 3, column 12: commands[1].speed: must be …`."""
     place = _("line {line}, column {column}").format(line=problem.line, column=problem.column)
     parts = [place, problem.field, _message(problem)]
     return plain(": ".join(part for part in parts if part), LONGEST)
 
 
 def reported_words(report: dict[str, Any]) -> str:
-    """The same of a problem as llm_parser reports it; whatever the report is, there are words."""
+    """The same for a problem reported by llm_parser; accepts any report."""
     args = report.get("args")
     return problem_words(
         Problem(

@@ -1,4 +1,4 @@
-"""What came of a message to /llm_raw_json: the trail it left on the topics, with its delays."""
+"""The outcome of a message to /llm_raw_json: the trail it left on the topics, with its delays."""
 
 from __future__ import annotations
 
@@ -33,23 +33,23 @@ FOLLOWED = frozenset({LLM_RESULT, DRIVE, DRIVE_SAFE, WHEEL_COMMANDS, HEAD_STATE,
 
 ANSWER_WITHIN_S = 3.0
 OVER_AFTER_S = 12.0
-"""How long the trail of a message is looked for."""
+"""For how long the trail of a message is followed."""
 SETTLED_S = 0.3
-"""What comes steadily and says the same that long after the command has taken it in."""
+"""A steady topic that has not changed this long after the command already reflects it."""
 NEAR_RAD = math.radians(1.5)
 MOST_OF_A_KIND = 12
 
 
 @dataclass(frozen=True)
 class OutcomeEntry:
-    """One thing that came of it."""
+    """One event of the trail."""
 
     mark: str
     """`✓` done, `✗` refused, `!` held back, `→` passed on, `·` under way or awaited."""
     topic: str
     text: str
     delay_s: float | None = None
-    """Since the sending; None for what has not come."""
+    """Delay after sending; None for an event that has not happened."""
 
 
 class Story:
@@ -66,7 +66,7 @@ class Story:
         self.sent_s = sent_s
         self.listeners = tuple(listeners)
         self.failure = ""
-        """Why it could not be sent at all."""
+        """Why it could not be sent."""
         self._before = dict(before)
         commands = () if expected is None else expected.commands
         drives = sum(command.action == "drive" for command in commands)
@@ -79,15 +79,15 @@ class Story:
         """Entries by topic or service."""
         self._drive: tuple[float, float] | None = None
         self._drive_s: float | None = None
-        """When the newest setpoint came."""
+        """Delay of the newest setpoint after sending."""
 
     def over(self, now_s: float) -> bool:
-        """Whether nothing more is looked for."""
+        """Whether the trail has ended."""
         return bool(self.failure) or now_s - self.sent_s > OVER_AFTER_S
 
     def see(self, samples: Mapping[str, Iterable[Sample]]) -> None:
-        """Take in what has come."""
-        # What comes of a setpoint can be told only after the setpoint itself.
+        """Take in new samples."""
+        # The effects of a setpoint can be recognised only after the setpoint itself.
         for topic, read in (
             (LLM_RESULT, self._see_result),
             (DRIVE, self._see_drive),
@@ -102,7 +102,7 @@ class Story:
                     read(sample, delay_s)
 
     def entries(self, now_s: float) -> list[OutcomeEntry]:
-        """Everything so far in order of time, and what is still awaited."""
+        """All events so far in order of time, and what is still awaited."""
         came = [entry for entries in self._came.values() for entry in entries]
         came.sort(key=lambda entry: math.inf if entry.delay_s is None else entry.delay_s)
         return [*came, *self._awaited(now_s)]
@@ -183,7 +183,7 @@ class Story:
             self._add("→", WHEEL_COMMANDS, words.wheel_words(sample.value), delay_s)
 
     def _is_news(self, topic: str, sample: Sample, delay_s: float) -> bool:
-        """Whether this is the topic's first word after the setpoint, and not the old one again."""
+        """Whether this is the first message of the topic that reflects the setpoint."""
         if topic in self._came or self._drive_s is None or delay_s < self._drive_s:
             return False
         before = self._before.get(topic)
@@ -197,7 +197,7 @@ class Story:
             return
         looks = words.joint(sample.value, HEAD_PAN), words.joint(sample.value, HEAD_TILT)
         if any(map(math.isnan, looks)):
-            # Nobody knows yet where servos look that were not moved.
+            # The position of servos that have not been moved is unknown.
             return
         there = all(abs(a - b) < NEAR_RAD for a, b in zip(looks, self._target, strict=True))
         entry = OutcomeEntry(

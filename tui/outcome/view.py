@@ -1,4 +1,4 @@
-"""The trail of a sent message as lines: how long after, what kind, where, and what."""
+"""The trail of a sent message as lines: delay, kind, topic and text."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 DELAY, MARK, TOPIC = 8, 3, 18
 """Cells for the delay, for the mark between its blanks, and for the name of the topic."""
 ROOMY = 64
-"""Width from which on what is said stands in a column of its own."""
+"""Width from which on the text has a column of its own."""
 KINDS = {"✓": "good", "✗": "bad", "!": "held", "→": "passed", "·": "awaited"}
 SECOND_MS = 1000
 
 
 class Outcome(ScrollView, can_focus=True):
-    """Shows a headline and entries below it, long ones wrapped."""
+    """Shows a headline and below it the entries, with long ones wrapped."""
 
     ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {f"outcome--{kind}" for kind in KINDS.values()}
@@ -49,10 +49,10 @@ class Outcome(ScrollView, can_focus=True):
         self._entries: tuple[OutcomeEntry, ...] = ()
         self._strips: list[Strip] = []
         self._off_colour = False
-        """Whether the strips have the colours of another theme."""
+        """Whether the strips still have the colours of the previous theme."""
 
     def show(self, headline: str, entries: Sequence[OutcomeEntry]) -> None:
-        """Show these entries; drawn only if something is new."""
+        """Show these entries; redraws only if something has changed."""
         shown = (headline, tuple(entries))
         if shown != (self._headline, self._entries):
             self._headline, self._entries = shown
@@ -78,17 +78,17 @@ class Outcome(ScrollView, can_focus=True):
         return self._strips[index].adjust_cell_length(width, self.rich_style)
 
     def on_resize(self) -> None:
-        """Wrap anew."""
+        """Wrap to the new width."""
         self._draw()
 
     def notify_style_update(self) -> None:
-        """Draw in the colours of another theme: those of the parts come after this call."""
+        """Redraw in the colours of the new theme; component styles change after this call."""
         super().notify_style_update()
         self._off_colour = True
         self.refresh()
 
     def watch_show_vertical_scrollbar(self) -> None:
-        """Wrap anew at the width that the scroll bar leaves."""
+        """Wrap to the width that the scroll bar leaves."""
         self._draw()
 
     def _draw(self) -> None:
@@ -122,7 +122,7 @@ class Outcome(ScrollView, can_focus=True):
     def _wrap(
         self, before: list[Segment], indent: int, text: str, style: Style, width: int
     ) -> None:
-        """Add the text behind `before`, its further lines indented."""
+        """Append the text to `before`, with its further lines indented."""
         lines = Text(text).wrap(self.app.console, max(8, width - indent))
         for number, line in enumerate(lines or [Text("")]):
             margin = before if number == 0 else [Segment(" " * indent, self.rich_style)]
@@ -130,7 +130,7 @@ class Outcome(ScrollView, can_focus=True):
 
 
 def delay_text(delay_s: float | None) -> str:
-    """A delay, in milliseconds where it is short."""
+    """Return a delay, in milliseconds if it is short."""
     if delay_s is None:
         return "…"
     milliseconds = delay_s * SECOND_MS

@@ -1,4 +1,4 @@
-"""Messages that a command leaves behind, as short sentences."""
+"""The messages that follow a command, as short sentences."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ LONGEST = 400
 
 
 def setpoint(value: Mapping[str, Value]) -> tuple[float, float]:
-    """Speed in m/s and steering in rad of an AckermannDriveStamped, nan where there is none."""
+    """Speed in m/s and steering in rad of an AckermannDriveStamped, nan where missing."""
     drive = value.get("drive")
     fields: Mapping[str, Any] = drive if isinstance(drive, dict) else {}
     return number(fields.get("speed")), number(fields.get("steering_angle"))
 
 
 def drive_words(speed_m_s: float, steering_rad: float) -> str:
-    """A setpoint with the side it steers to."""
+    """Describe a setpoint, and the side it steers to."""
     words = _("{speed} m/s, {steering} rad, straight on")
     if steering_rad > 0:
         words = _("{speed} m/s, {steering} rad, to the left")
@@ -37,7 +37,7 @@ def drive_words(speed_m_s: float, steering_rad: float) -> str:
 
 
 def wheel_words(value: Mapping[str, Value]) -> str:
-    """The speeds of the rear wheels of a JointState."""
+    """Describe the speeds of the rear wheels in a JointState."""
     return _("left {left}, right {right} rad/s").format(
         left=figure(joint(value, REAR_LEFT_WHEEL, "velocity")),
         right=figure(joint(value, REAR_RIGHT_WHEEL, "velocity")),
@@ -45,14 +45,14 @@ def wheel_words(value: Mapping[str, Value]) -> str:
 
 
 def head_words(pan_rad: float, tilt_rad: float) -> str:
-    """Where the head looks."""
+    """Describe where the head looks."""
     return _("pan {pan}°, tilt {tilt}°").format(
         pan=whole(math.degrees(pan_rad)), tilt=whole(math.degrees(tilt_rad))
     )
 
 
 def service_words(event: Mapping[str, Any]) -> tuple[bool, str]:
-    """Whether the head took a command, and its answer, of llm_parser's `head` event."""
+    """Whether the head accepted a command, and its answer, from llm_parser's `head` event."""
     asked = head_words(
         math.radians(number(event.get("pan"))), math.radians(number(event.get("tilt")))
     )
@@ -65,7 +65,7 @@ def service_words(event: Mapping[str, Any]) -> tuple[bool, str]:
 
 
 def joint(value: Mapping[str, Value], name: str, field: str = "position") -> float:
-    """A figure of one joint of a JointState, nan if it has none."""
+    """A value of one joint of a JointState, nan if it has none."""
     names: Any = value.get("name")
     figures: Any = value.get(field)
     try:
@@ -84,9 +84,9 @@ def event_of(value: Mapping[str, Value]) -> dict[str, Any]:
 
 
 def number(value: object) -> float:
-    """A number from outside, nan if it is none."""
+    """A number from outside, nan if it is not one."""
     try:
         return float(value) if isinstance(value, (int, float)) else math.nan
     except OverflowError:
-        # JSON has whole numbers of any length.
+        # Integers in JSON may be of any length.
         return math.nan

@@ -1,8 +1,8 @@
-"""The panels of the Deck: each joins topics of the graph to a widget that draws them.
+"""The panels of the Deck: each connects topics of the graph to a widget that draws them.
 
-`registry` knows them by the names that profiles give them, `panel` is what each is, `shelf` shows
-as many as have room. A panel's folder has the panel itself, the widget, which knows nothing of
-topics, and `reading`, which makes plain values of messages. From outside: `registry`, `panel`,
-`shelf`, and a panel's `reading` where another screen shows the same messages. A new panel is an
-entry of `registry` and a module or folder here.
+`registry` maps the names in profiles to panels, `panel` is their base class, and `shelf` shows as
+many as fit. A panel's folder has the panel itself, the widget, which knows nothing about topics,
+and `reading`, which turns messages into plain values. Other rooms import only `registry`, `panel`,
+`shelf`, and a panel's `reading` if they show the same messages. A new panel is an entry in
+`registry` and a module or folder here.
 """

@@ -1,4 +1,4 @@
-"""What the camera sees, within what a slow line can carry."""
+"""The camera picture, at a rate that a slow line can carry."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 TYPE = "sensor_msgs/msg/Image"
 PERIOD_S = 0.3
-"""Three pictures a second: a terminal is no cinema, and SSH no cable."""
+"""Three pictures a second are enough for a terminal, and for SSH."""
 
 
 class CameraFeed(Panel):
@@ -36,7 +36,7 @@ class CameraFeed(Panel):
         super().__init__()
         self._shown_s = float("-inf")
         self._refused = False
-        """Whether words stand there of what came last, which is no picture."""
+        """Whether an error message is shown because the last message was not a picture."""
 
     def compose(self) -> ComposeResult:
         """The picture."""
@@ -47,7 +47,7 @@ class CameraFeed(Panel):
         return {CAMERA}
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest picture, not more often than is good for the line."""
+        """Show the newest picture, at most as often as the line allows."""
         view = self.query_one(ImageView)
         sample = newest(update, CAMERA)
         trouble, detail, age_s = trouble_of(update, CAMERA)

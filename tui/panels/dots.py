@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from tui.widgets.drawing import Ink, Line
 
 Point = tuple[float, float]
-"""x to the right, y downwards, in dots."""
+"""x to the right and y downwards, in dots."""
 
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 BLANK = 0x2800
@@ -18,20 +18,20 @@ class Dots:
     """A grid of cells; a cell takes the look of the last thing drawn in it."""
 
     def __init__(self, columns: int, rows: int) -> None:
-        """So many cells, all blank."""
+        """Create a blank grid of this size, in cells."""
         self.width, self.height = 2 * columns, 4 * rows
         self._bits = [[0] * columns for _row in range(rows)]
         self._looks = [[""] * columns for _row in range(rows)]
 
     def dot(self, x: float, y: float, look: str = "") -> None:
-        """Set one dot; one outside the grid is left out."""
+        """Set one dot; one outside the grid is ignored."""
         column, row = math.floor(x), math.floor(y)
         if 0 <= column < self.width and 0 <= row < self.height:
             self._bits[row // 4][column // 2] |= _BITS[row % 4][column % 2]
             self._looks[row // 4][column // 2] = look
 
     def line(self, start: Point, end: Point, look: str = "") -> None:
-        """A straight line."""
+        """Draw a straight line."""
         steps = max(1, math.ceil(max(abs(end[0] - start[0]), abs(end[1] - start[1]))))
         for step in range(steps + 1):
             share = step / steps
@@ -40,12 +40,12 @@ class Dots:
             self.dot(x, y, look)
 
     def outline(self, corners: Sequence[Point], look: str = "") -> None:
-        """A closed figure."""
+        """Draw a closed figure."""
         for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
             self.line(start, end, look)
 
     def fill(self, corners: Sequence[Point], look: str = "") -> None:
-        """A closed convex figure with all dots in it."""
+        """Fill a closed convex figure."""
         top, bottom = min(y for _x, y in corners), max(y for _x, y in corners)
         for y in range(math.floor(top), math.ceil(bottom) + 1):
             crossings = _crossings(corners, y + 0.5)
@@ -54,7 +54,7 @@ class Dots:
                     self.dot(x, y, look)
 
     def lines(self) -> list[Line]:
-        """The grid as lines of ink."""
+        """Return the grid as lines of ink."""
         return [
             [
                 Ink(chr(BLANK + bits) if bits else " ", look if bits else "")
@@ -73,7 +73,7 @@ def _crossings(corners: Sequence[Point], y: float) -> list[float]:
 
 
 def rectangle(centre: Point, width: float, length: float, angle_rad: float) -> list[Point]:
-    """Corners of a rectangle that is `length` long upwards, turned anticlockwise by the angle."""
+    """Corners of a rectangle that is `length` long upwards, rotated anticlockwise by the angle."""
     sin, cos = math.sin(angle_rad), math.cos(angle_rad)
     corners: list[Point] = []
     for across, along in ((-1, -1), (1, -1), (1, 1), (-1, 1)):

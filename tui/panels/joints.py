@@ -1,4 +1,4 @@
-"""Whether the joints that a panel shows come, or others do."""
+"""Whether the joints that a panel shows are received, or others."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ if TYPE_CHECKING:
 
 TYPE = "sensor_msgs/msg/JointState"
 ANOTHER_S = 2.0
-"""So long after the last message that could be read it counts: two may publish by turns."""
+"""A readable message counts for this long: two publishers may alternate."""
 LONGEST = 200
 
 
 class Joints:
-    """What came on a topic of JointState that should be about these joints."""
+    """Messages of a JointState topic that should be about these joints."""
 
     def __init__(self, topic: str, awaited: Sequence[str]) -> None:
-        """`awaited` are the joints of which at least one must be there."""
+        """Pass in `awaited` the joints of which at least one must be present."""
         self._topic, self._awaited = topic, tuple(awaited)
         self._read_s = -math.inf
         self._other: Sample | None = None
 
     def hear(self, sample: Sample, *, read: bool) -> None:
-        """Take in a message, and whether it could be read."""
+        """Take in a message, and whether it was readable."""
         if read:
             self._read_s, self._other = sample.received_s, None
         elif not 0.0 <= sample.received_s - self._read_s < ANOTHER_S:
@@ -38,7 +38,7 @@ class Joints:
 
     @property
     def instead(self) -> Instead | None:
-        """What to say in place of values: which joints come, and which are awaited."""
+        """What to show instead of values: which joints are received, and which are expected."""
         sample = self._other
         if sample is None:
             return None

@@ -1,4 +1,4 @@
-"""What came of the newest JSON on /llm_raw_json, whoever sent it."""
+"""The outcome of the newest JSON on /llm_raw_json, whoever sent it."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ class LlmFeed(Panel):
         yield Outcome()
 
     def on_mount(self) -> None:
-        """Say how to begin."""
+        """Show how to begin."""
         self._say()
 
     def followed(self) -> set[str]:
-        """The messages, and everything that may come of them."""
+        """The messages, and all topics that they may affect."""
         return {LLM_RAW_JSON, *FOLLOWED}
 
     def show(self, update: GraphUpdate) -> None:
-        """Begin a trail with each message, and follow it."""
+        """Start a trail with each message, and follow it."""
         for sample in update.samples.get(LLM_RAW_JSON, ()):
             row = row_of(update, LLM_RAW_JSON)
             listeners = [str(row.subscribers)] if row is not None and row.subscribers else []
@@ -60,7 +60,7 @@ class LlmFeed(Panel):
         self._say()
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         super().words_changed()
         self._say()
 
@@ -76,7 +76,7 @@ class LlmFeed(Panel):
 
 
 def _read(text: str) -> LlmResponse | None:
-    # pydantic is imported for the lessons that need it.
+    # pydantic is imported only for the lessons that need it.
     from robot.commands.schema import CommandError, parse_llm
 
     try:

@@ -1,4 +1,4 @@
-"""Messages of another type than a panel reads: said in place of values, which cannot come."""
+"""Messages of another type than a panel reads: reported in place of values."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LONGEST = 200
 
 
 def other_type(sample: Sample | None, awaited: str) -> Instead | None:
-    """Return which type comes and which is awaited; None if that is the same, or nothing comes."""
+    """Return the received and the expected type; None if they are the same, or nothing arrives."""
     if sample is None or sample.type_name == awaited:
         return None
     words = _("{topic}: {type} comes; expected: {awaited}").format(

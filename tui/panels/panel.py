@@ -1,4 +1,4 @@
-"""What a panel of the Deck is: a titled frame, a widget in it, and the topics that feed it."""
+"""The base of all panels: a titled frame, a widget in it, and the topics that feed it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 ALWAYS = 1_000_000
 CORNERS, SIDES = 2, 6
-"""Cells of the upper edge that a title cannot have, without and with edges at the sides."""
+"""Cells of the upper edge that a title cannot use, without and with edges at the sides."""
 
 
 class Panel(Vertical):
@@ -39,35 +39,35 @@ class Panel(Vertical):
     title: ClassVar[str] = ""
     """Marked by `N_`."""
     least: ClassVar[int] = 2
-    """Rows within the frame below which the panel is of no use."""
+    """Rows within the frame below which the panel is useless."""
     weight: ClassVar[int] = 2
-    """Its share of the rows that are left over."""
+    """Its share of the remaining rows."""
     across_below: ClassVar[int] = 0
-    """Width of the shelf below which no other panel stands beside it."""
+    """Width of the shelf below which the panel has a row to itself."""
 
     _source = ""
     _pages: Sequence[str] = ()
     _fault = ""
-    """What is said in place of the widget while it fails."""
+    """Shown in place of the widget while it fails."""
 
     def on_mount(self) -> None:
         """Show the title."""
         self._entitle()
 
     def name_source(self, topic: str) -> None:
-        """Say in the title which topic is shown, where it is not the usual one."""
+        """Show the topic in the title if it is not the usual one."""
         if topic != self._source:
             self._source = topic
             self._entitle()
 
     def name_page(self, *words: str) -> None:
-        """Say in the title that there are more pages: in the first words that there is room for."""
+        """Show in the title that there are more pages, using the first of `words` that fits."""
         if words != self._pages:
             self._pages = words
             self._entitle()
 
     def on_resize(self) -> None:
-        """Say the title in the words that fit."""
+        """Show the title in the words that fit."""
         self._entitle()
 
     def _entitle(self) -> None:
@@ -79,57 +79,57 @@ class Panel(Vertical):
         self.border_title = Content(next(fits, titles[-1]))
 
     def watched(self) -> set[str]:
-        """Return the topics whose newest message is wanted."""
+        """Return the topics whose newest message is needed."""
         return set()
 
     def kept(self) -> set[str]:
-        """Return those of the watched that are wanted also while another tab is in front."""
+        """Return the watched topics that are needed even while another tab is in front."""
         return set()
 
     def followed(self) -> set[str]:
-        """Return the topics of which every message is wanted."""
+        """Return the topics of which every message is needed."""
         return set()
 
     def show(self, update: GraphUpdate) -> None:
-        """Show what has come, and why nothing has."""
+        """Show the new values, or why there are none."""
         raise NotImplementedError
 
     def keep(self, update: GraphUpdate) -> None:
-        """Take in what has come while nobody sees the panel."""
+        """Take in new values while the panel is hidden."""
         self.show(update)
 
     def take(self, update: GraphUpdate, *, seen: bool = True) -> None:
-        """Show what has come, or that it cannot be shown, until something comes that can.
+        """Show the update; if that fails, say so until an update can be shown again.
 
-        While another tab is in front, only what must not be missing later is taken in.
+        While another tab is in front, only values that will be needed later are taken in.
         """
         if not seen and update.samples.keys().isdisjoint(self.followed() | self.kept()):
             return
         try:
             (self.show if seen else self.keep)(update)
-        except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+        except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
             self.show_fault(bear(self, error))
         else:
             self.show_fault("")
 
     @property
     def failed(self) -> bool:
-        """Whether words stand in place of the widget."""
+        """Whether an error message is shown in place of the widget."""
         return bool(self._fault)
 
     def show_fault(self, words: str) -> None:
-        """Say in place of the widget what has failed; nothing has if there are no words."""
+        """Show an error message in place of the widget; an empty text means it works again."""
         if words != self._fault:
             self._fault = words
             self.set_class(bool(words), "-failed")
             self.refresh(layout=True)
 
     def render(self) -> VisualType:
-        """Draw what stands behind the widget, which is seen while that fails."""
+        """Draw the background of the widget, which is visible while the widget fails."""
         return Content(self._fault) if self._fault else super().render()
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         self._entitle()
 
 
@@ -145,21 +145,21 @@ def newest(update: GraphUpdate, topic: str) -> Sample | None:
 
 
 def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, float | None]:
-    """Return (trouble, its words, age of the newest message) of a topic."""
+    """Return (trouble, details, age of the newest message) of a topic."""
     row = row_of(update, topic)
     if row is None:
         return Trouble.NO_PUBLISHER, topic, None
-    # Nobody there, or nobody speaking, is said by the headline already.
+    # The headline already says that nobody is there, or that nothing arrives.
     if row.trouble in {None, Trouble.NO_PUBLISHER, Trouble.QUIET} or not row.detail:
         return row.trouble, topic, row.age_s
-    # The first frame does without.
+    # Not needed for the first frame.
     from tui.widgets.trouble import advice
 
     return row.trouble, f"{topic}: {advice(row)[1]}", row.age_s
 
 
 def first_published(update: GraphUpdate, topics: Iterable[str]) -> str:
-    """Return the first topic that somebody publishes, else the first of all."""
+    """Return the first topic that somebody publishes, otherwise the first of all."""
     names = list(topics)
     for name in names:
         row = row_of(update, name)

@@ -1,4 +1,4 @@
-"""The panels by the names that profiles give them; imported when a session that has them opens."""
+"""The panels by their names in profiles; imported when a session that has them is opened."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 
 class PanelEntry(NamedTuple):
-    """Where a panel is, and what it is for."""
+    """Where to find a panel, and its topics."""
 
     title: str
-    """As the picker says it, to be translated."""
+    """The name in the picker, to be translated."""
     module: str
     class_name: str
     needs: tuple[str, ...] = ()
-    """Topics: with one of them, it has something to show of what others have started."""
+    """Topics of others: if one of them exists, the panel has something to show."""
 
 
 PANELS: dict[PanelName, PanelEntry] = {
@@ -50,11 +50,11 @@ PANELS: dict[PanelName, PanelEntry] = {
     "voice": PanelEntry(N_("voice"), "tui.panels.voice.panel", "VoiceFeed", (MICROPHONE, SPEAKER)),
     "composer": PanelEntry(N_("composer"), "tui.panels.llm", "LlmFeed"),
 }
-"""What a profile's `panels` may name, in the order in which panels stand."""
+"""The panels that a profile may name in `panels`, in the order in which they are shown."""
 
 
 def entry_of(name: str) -> PanelEntry | None:
-    """Return what is known of a panel, None for a name that this deck does not know."""
+    """Return the entry of a panel, None for a name that this version does not know."""
     return PANELS.get(name)  # type: ignore[call-overload, no-any-return]
 
 

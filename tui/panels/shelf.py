@@ -1,4 +1,4 @@
-"""The panels side by side and below each other; what does not fit is turned to, page by page."""
+"""The panels side by side and below each other; those that do not fit are on further pages."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 Row: TypeAlias = "list[Panel]"
 BESIDE_FROM = 52
-"""Cells from which on two panels stand side by side."""
+"""Width from which on two panels stand side by side."""
 
 
 class Shelf(Container):
-    """Shows as many panels as have room, and says how many pages there are."""
+    """Shows as many panels as fit, and the number of pages."""
 
     DEFAULT_CSS = """
     Shelf { layout: grid; grid-gutter: 0; width: 1fr; height: 1fr; overflow: hidden; }
@@ -30,7 +30,7 @@ class Shelf(Container):
     """
 
     def __init__(self, panels: Sequence[Panel], id: str | None = None) -> None:
-        """Hold these panels, the first ones first."""
+        """Hold these panels, in this order."""
         super().__init__(*panels, id=id)
         self._panels = list(panels)
         self._page = 0
@@ -39,7 +39,7 @@ class Shelf(Container):
 
     @property
     def pages(self) -> int:
-        """How many pages there are."""
+        """Number of pages."""
         return len(self._pages)
 
     @property
@@ -54,26 +54,26 @@ class Shelf(Container):
             self._lay_out(self.size.height)
 
     def on_click(self, event: Click) -> None:
-        """Turn the page by a click on the title that tells of it."""
+        """Turn the page when the part of the title that mentions it is clicked."""
         first = next((panel for panel in self._panels if panel.display), None)
         if first is not None and event.screen_y == first.region.y and self.pages > 1:
             self.turn()
 
     def on_resize(self, event: Resize) -> None:
-        """Place the panels anew."""
+        """Place the panels in the new size."""
         width, height = event.size
         self._frame = 2 if width >= BESIDE_FROM else 1
         self.set_class(self._frame == 1, "-thin")
         before = self.pages
         self._pages = paged(in_rows(self._panels, width), height, self._frame)
         if self.pages != before:
-            # The key that turns the page comes and goes with the pages.
+            # The key that turns the page is shown only with several pages.
             self.screen.refresh_bindings()
         self._page = min(self._page, max(0, len(self._pages) - 1))
         self._lay_out(height)
 
     def words_changed(self) -> None:
-        """Say the page in another language."""
+        """Show the page number in the current language."""
         self._lay_out(self.size.height)
 
     def _lay_out(self, height: int) -> None:
@@ -95,7 +95,7 @@ class Shelf(Container):
 
 
 def in_rows(panels: Sequence[Panel], width: int) -> list[Row]:
-    """Put panels into rows of two where there is room for two."""
+    """Put panels into rows, two in each if there is room."""
     rows: list[Row] = []
     half: Row | None = None
     for panel in panels:
@@ -111,7 +111,7 @@ def in_rows(panels: Sequence[Panel], width: int) -> list[Row]:
 
 
 def paged(rows: Sequence[Row], height: int, frame: int) -> list[list[Row]]:
-    """Put each row onto the first page of so many lines that has room for it."""
+    """Put each row onto the first page with enough room, given the lines of a page."""
     pages: list[list[Row]] = []
     rooms: list[int] = []
     for row in rows:
@@ -126,7 +126,7 @@ def paged(rows: Sequence[Row], height: int, frame: int) -> list[list[Row]]:
 
 
 def heights(rows: Sequence[Row], height: int, frame: int) -> list[int]:
-    """Share out the lines of a page: what each row needs, and of the rest what it is worth."""
+    """Divide the lines of a page: each row gets its minimum, and the rest is shared by weight."""
     weights = [max(panel.weight for panel in row) for row in rows]
     spare = max(0, height - sum(frame + least(row) for row in rows))
     shares = [spare * weight // sum(weights) for weight in weights]
@@ -136,5 +136,5 @@ def heights(rows: Sequence[Row], height: int, frame: int) -> list[int]:
 
 
 def least(row: Row) -> int:
-    """Return how many lines a row needs within its frame."""
+    """Return the lines that a row needs within its frame."""
     return max(panel.least for panel in row)

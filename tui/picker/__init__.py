@@ -1,5 +1,5 @@
-"""The list of lessons and of sessions that run: what may be opened, and what is in it.
+"""The list of lessons and of running sessions: what can be opened, and what is in it.
 
-From outside: `screen` for the app. What is asked or told before one opens stands in
-`tui.lifecycle`, which opens it.
+Only `screen` is used elsewhere, by the app. Dialogs before opening are in `tui.lifecycle`, which
+opens the session.
 """

@@ -1,4 +1,4 @@
-"""The lessons there are: what each starts and shows, and what runs in the background already."""
+"""The available lessons: what each starts and shows, and what is already running."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ if TYPE_CHECKING:
 
 RUNNING = "running:"
 WATCHED = "watch:"
-"""The row for what others have started."""
+"""Prefix of the row for nodes that others have started."""
 
 
 class StartLesson(Action["PickerScreen"]):
-    """Start what is chosen."""
+    """Open the chosen entry."""
 
     id = "lesson.start"
     key = "enter"
@@ -51,7 +51,7 @@ class StartLesson(Action["PickerScreen"]):
 
     @classmethod
     def possible(cls, target: PickerScreen) -> bool | None:
-        """Not a broken one."""
+        """Not for a broken lesson."""
         return True if target.request() is not None else None
 
     @classmethod
@@ -61,7 +61,7 @@ class StartLesson(Action["PickerScreen"]):
 
 
 class PickerScreen(Screen[None], Acting, Working):
-    """A list of lessons, and beside or below it all about the chosen one."""
+    """A list of lessons, and beside or below it the details of the chosen one."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(StartLesson)
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
@@ -90,7 +90,7 @@ class PickerScreen(Screen[None], Acting, Working):
         self._sessions: list[SessionInfo] = []
         self._offered = ""
         self._domain: int | None = None
-        """What is looked at without a lesson; None if the one that is set cannot be."""
+        """The domain to watch without a lesson; None if the configured one is invalid."""
 
     @property
     def deck(self) -> Host:
@@ -98,7 +98,7 @@ class PickerScreen(Screen[None], Acting, Working):
         return host_of(self)
 
     def compose(self) -> ComposeResult:
-        """Put the list beside what is said of the chosen lesson."""
+        """Put the list beside the details of the chosen lesson."""
         yield TitleBar()
         with Horizontal(id="picker"):
             yield Rows(header=False, id="lessons")
@@ -107,19 +107,19 @@ class PickerScreen(Screen[None], Acting, Working):
         yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show what is there, once it is known."""
+        """Show the list once it is known."""
         self.query_one(Rows).focus()
         self.redraw()
         self.look()
 
     def on_screen_resume(self) -> None:
-        """Look again: sessions come and go."""
+        """Refresh the list: sessions come and go."""
         if self._lessons:
             self.look()
 
     @work(exclusive=True)
     async def look(self) -> None:
-        """Ask for the lessons and for what runs."""
+        """Read the lessons and the running sessions."""
         with suppress(LauncherError):
             self._domain = self.deck.sessions.opener.domain(self.deck.sessions.request.domain)
         self._lessons = await self.deck.sessions.opener.lessons()
@@ -130,7 +130,7 @@ class PickerScreen(Screen[None], Acting, Working):
             await self.deck.sessions.opener.prepare()
 
     def _offer(self) -> None:
-        """Draw what is known, the likeliest row chosen, unless a person has chosen another."""
+        """Show the list, with the likeliest row chosen unless the user has chosen another."""
         rows = self.query_one(Rows)
         untouched = rows.chosen in ("", self._offered)
         self.redraw()
@@ -139,7 +139,7 @@ class PickerScreen(Screen[None], Acting, Working):
             rows.choose(self._offered)
 
     def _first(self) -> str:
-        """Return the row to begin with: what runs, the lesson of the last time, or the first."""
+        """Return the initial row: a running session, the last lesson, or the first one."""
         if self._sessions:
             return f"{RUNNING}{self._sessions[0].name}"
         last = self.deck.sessions.last_lesson
@@ -147,7 +147,7 @@ class PickerScreen(Screen[None], Acting, Working):
         return next(iter(named or map(_key, self._lessons)), "")
 
     def redraw(self) -> None:
-        """Draw everything in the language spoken now."""
+        """Redraw everything in the current language."""
         title = _("The lessons")
         self.query_one(TitleBar).show((), (title,))
         rows: list[Row] = []
@@ -164,7 +164,7 @@ class PickerScreen(Screen[None], Acting, Working):
         self._show_about()
 
     def request(self) -> OpenRequest | None:
-        """Return what Enter would open; None where that is nothing."""
+        """Return what Enter would open, None for nothing."""
         session, lesson = self._chosen_session(), self._chosen_lesson()
         if self._chosen == WATCHED and self._domain is not None:
             return self.deck.sessions.request._replace(watch=WatchRequest(self._domain))
@@ -175,24 +175,24 @@ class PickerScreen(Screen[None], Acting, Working):
         return None
 
     def open_chosen(self) -> None:
-        """Open what is chosen."""
+        """Open the chosen entry."""
         request = self.request()
         if request is not None:
             self.deck.sessions.open(request)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Draw anew."""
+        """Redraw in the current language."""
         del message
         self.redraw()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
-        """Tell about the chosen one."""
+        """Show the details of the chosen entry."""
         del message
         self._show_about()
         self.refresh_bindings()
 
     def on_rows_opened(self, message: Rows.Opened) -> None:
-        """Open what was clicked twice."""
+        """Open an entry that was clicked twice."""
         message.stop()
         self.open_chosen()
 
@@ -236,7 +236,7 @@ class PickerScreen(Screen[None], Acting, Working):
 
 
 def _key(lesson: Lesson) -> str:
-    """Return the row's key: names may be given twice."""
+    """Return the row's key: several lessons may have the same name."""
     return str(lesson.path)
 
 

@@ -1,4 +1,4 @@
-"""Recording what runs: begun, looked at and ended by `recording.Recording`, told by `words`.
+"""Recording a session: `recording.Recording` starts, monitors and stops it; `words` describe it.
 
-The keys for it are in `tui.frame.actions`; what reads and writes bags is in `graph`.
+The keys for it are in `tui.frame.actions`; reading and writing bags is in `graph`.
 """

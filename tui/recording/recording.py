@@ -1,6 +1,7 @@
-"""Recording from the screen: begun and ended by a key, shown in the title, ended with the session.
+"""Recording from the screen: started and stopped with a key, shown in the title.
 
-All that touches the disk or ROS is done on threads; here it is only asked for and told.
+It ends with the session. Everything that touches the disk or ROS runs in threads; here it is only
+requested and reported.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ class Recording:
     """The recording of the session on the screen, if there is one."""
 
     def __init__(self, app: App[Any], feed: Feed, key: Callable[[], str]) -> None:
-        """Record the session of `feed`, and tell of it in `app`; `key` names what ends it."""
+        """Record the session of `feed`, and notify in `app`; `key` names the key that stops it."""
         self._app = app
         self._feed = feed
         self._key = key
@@ -48,17 +49,17 @@ class Recording:
 
     @property
     def active(self) -> bool:
-        """Whether it records."""
+        """Whether it is recording."""
         return self._recorder is not None
 
     @property
     def status(self) -> RecordingStatus | None:
-        """How it stands, None while nothing is recorded."""
+        """Its current state, None while nothing is being recorded."""
         return None if self._recorder is None else self._recorder.status
 
     @property
     def words(self) -> Sequence[str]:
-        """What the title says of it, the longest first: `● rec 12 s 3.4 MB 80 kB/s`, or nothing."""
+        """The texts for the title, the longest first: `● rec 12 s 3.4 MB 80 kB/s`, or none."""
         status = self.status
         if status is None:
             return ()
@@ -67,11 +68,11 @@ class Recording:
         return (f"{short} {rate_words(status.bytes_per_s)}", short, f"● {size}")
 
     def toggle(self, *, images: bool = True) -> None:
-        """Begin, with pictures or without, or end."""
+        """Start, with or without images, or stop."""
         self._app.run_worker(self.end() if self.active else self._begin(images), group="recording")
 
     async def end(self) -> None:
-        """End it, if there is one, and say where it is."""
+        """Stop it if it is running, and say where it is."""
         async with self._busy:
             recorder, self._recorder = self._recorder, None
             if self._timer is not None:
@@ -106,7 +107,7 @@ class Recording:
         self._changed()
 
     def _look(self) -> None:
-        """Keep the title true, and say what goes wrong when it does."""
+        """Update the title, and report problems as they occur."""
         status = self.status
         if status is None:
             return
@@ -140,7 +141,7 @@ class Recording:
 
 
 def _started(session: SessionInfo, images: bool) -> Recorder:
-    """Begin to record everything of the session, where `deck replay` finds it by its name."""
+    """Start recording the whole session, where `deck replay` finds it by name."""
     from graph.recording.recorder import Recorder
     from launcher.rundir import new_recording
 

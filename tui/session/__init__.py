@@ -1,5 +1,5 @@
-"""What runs, as the screens see it: the session, the graph, and the messages that tell of both.
+"""The session as the screens see it: its nodes, the graph, and the messages about both.
 
-The screen reaches the supervisor and the ROS graph by the two ports (`ports`) alone. `feed.Feed`
-is the only one who tells screens; they are known to it by the shape `feed.SessionScreen`.
+The screen reaches the supervisor and the ROS graph only through the two ports (`ports`). Only
+`feed.Feed` sends messages to screens, which it knows as `feed.SessionScreen`.
 """

@@ -1,6 +1,6 @@
-"""What is left of a session that has ended by itself: stopped nodes, silent topics.
+"""What remains of a session that has ended by itself: stopped nodes, silent topics.
 
-Nobody tells of either any more, so the last that was told must not stand there as if it were true.
+Neither is updated any more, so the last known state must not look as if it were current.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def ended_nodes(nodes: Mapping[str, NodeStatus], reason: str) -> dict[str, NodeStatus]:
-    """Return the nodes with those that had not ended yet ended for this `reason`."""
+    """Return the nodes, with those that were still running marked as ended for this `reason`."""
     return {name: _ended(node, reason) for name, node in nodes.items()}
 
 
@@ -36,10 +36,10 @@ def _ended(node: NodeStatus, reason: str) -> NodeStatus:
 
 
 def silent_graph(update: GraphUpdate) -> GraphUpdate:
-    """Return the graph with nobody on its topics."""
+    """Return the graph with no publishers and no subscribers."""
     return replace(update, samples={}, seen_goals=(), topics=tuple(map(_silent, update.topics)))
 
 
 def _silent(row: TopicRow) -> TopicRow:
-    # Without an age: nobody would let it grow.
+    # Without an age, since nothing would update it.
     return TopicRow(row.name, row.type_names, 0, 0, count=row.count, trouble=Trouble.NO_PUBLISHER)

@@ -1,4 +1,4 @@
-"""What the nodes of a session move and hear, in a word: a robot, or what stands in its place."""
+"""The hardware of a session in one word: a real robot, or a mock."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from text.i18n import N_, _
 from text.plain import plain
 
 WORDS = {"mock": N_("mock"), "real": N_("real")}
-"""As `--hardware` has them."""
+"""The values of `--hardware`."""
 
 
 def hardware_words(hardware: str) -> str:
-    """Return `mock` or `real` in the language of the screen; anything else as it is."""
+    """Return `mock` or `real` in the current language; anything else unchanged."""
     return _(WORDS[hardware]) if hardware in WORDS else plain(hardware)

@@ -1,4 +1,4 @@
-"""The newest log lines of a session, for a screen that is opened late."""
+"""The newest log lines of a session, for screens that are opened later."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ KEPT_CHARACTERS = 8_000_000
 
 
 class LogHistory:
-    """Lines in the order they came in, bounded in number and in characters."""
+    """Lines in order of arrival, limited in number and in characters."""
 
     def __init__(self, lines: int = KEPT_LINES, characters: int = KEPT_CHARACTERS) -> None:
         self._lines: deque[LogLine] = deque()
@@ -23,7 +23,7 @@ class LogHistory:
         self._characters = 0
 
     def add(self, lines: Iterable[LogLine]) -> None:
-        """Append lines, and forget the oldest ones beyond the bounds."""
+        """Append lines, and drop the oldest ones beyond the limits."""
         for line in lines:
             self._lines.append(line)
             self._characters += len(line.text)
@@ -34,10 +34,10 @@ class LogHistory:
         return len(self._lines)
 
     def all(self) -> tuple[LogLine, ...]:
-        """Return what is remembered, oldest first."""
+        """Return the stored lines, oldest first."""
         return tuple(self._lines)
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Remove all lines."""
         self._lines.clear()
         self._characters = 0

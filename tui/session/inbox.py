@@ -1,7 +1,7 @@
 """Updates of the graph on their way from the observer's thread to the app.
 
-While the app is busy they are merged, newest rows and all samples, so that at most one waits:
-a slow screen falls behind in drawing, never in time.
+While the app is busy they are merged, keeping the newest rows and all samples, so that at most one
+waits: a slow screen draws less often, but does not fall behind.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 KEPT_SAMPLES = 256
 KEPT_BYTES = 32 * 1024 * 1024
-"""Of one topic, while the app does not come to take them; the newest is kept whatever its size."""
+"""Limit for one topic while the app does not take them; the newest sample is always kept."""
 
 
 class GraphInbox:
-    """Holds the one update that waits; `wake` is called when the first one has come in."""
+    """Holds the one waiting update; `wake` is called when an update arrives in an empty inbox."""
 
     def __init__(self, wake: Callable[[], object]) -> None:
-        """`wake` must be safe to call from any thread."""
+        """Pass a `wake` that may be called from any thread."""
         self._wake = wake
         self._lock = threading.Lock()
         self._waiting: GraphUpdate | None = None
 
     def put(self, update: GraphUpdate) -> None:
-        """Take an update on the observer's thread."""
+        """Add an update, on the observer's thread."""
         with self._lock:
             first = self._waiting is None
             self._waiting = update if self._waiting is None else merged(self._waiting, update)
@@ -37,14 +37,14 @@ class GraphInbox:
             self._wake()
 
     def take(self) -> GraphUpdate | None:
-        """Return what waits, on the app's thread."""
+        """Return the waiting update, on the app's thread."""
         with self._lock:
             update, self._waiting = self._waiting, None
         return update
 
 
 def merged(older: GraphUpdate, newer: GraphUpdate) -> GraphUpdate:
-    """Return `newer` with the samples of both, each topic's in order and bounded."""
+    """Return `newer` with the samples of both, each topic's in order and limited in size."""
     samples: dict[str, tuple[Sample, ...]] = dict(older.samples)
     for topic, fresh in newer.samples.items():
         samples[topic] = _newest((*samples.get(topic, ()), *fresh))
@@ -52,7 +52,7 @@ def merged(older: GraphUpdate, newer: GraphUpdate) -> GraphUpdate:
 
 
 def _newest(samples: tuple[Sample, ...]) -> tuple[Sample, ...]:
-    """Return as many of the newest as may wait."""
+    """Return as many of the newest samples as the limit allows."""
     kept = samples[-KEPT_SAMPLES:]
     room = KEPT_BYTES
     for count, sample in enumerate(reversed(kept)):

@@ -1,9 +1,9 @@
-"""The nodes of a session's domain that Deck has not started: who they are, and what they say.
+"""The nodes in a session's domain that Deck did not start: their names, and their log lines.
 
-A learner's `python my_node.py` is on the same graph as the lesson. It is shown and heard, and is
-nobody's to start, stop or count. What tells it from Deck's own is its process: whatever Deck has
-started, under whatever name, carries the mark of its run. Only where the middleware does not tell
-of the process does the name decide.
+A learner's `python my_node.py` is on the same graph as the lesson. Its state and its log are shown,
+but it cannot be started or stopped here and is not counted. It is told apart by its process:
+everything that Deck has started, under whatever name, carries the mark of its run. The name decides
+only if the middleware does not report the process.
 """
 
 from __future__ import annotations
@@ -24,46 +24,46 @@ if TYPE_CHECKING:
     from launcher.status import LogLine, NodeStatus
 
 KEPT_UNKNOWN = 256
-"""Lines of those who speak before the graph knows them, which they do for a moment."""
+"""Lines from nodes that the graph does not know yet, which is so only for a moment."""
 KEPT_HEARD = 4096
-"""Lines by which one that comes again is known; a node keeps its last 1000 for who comes late."""
+"""Lines kept to recognise repetitions; a node keeps its last 1000 for late subscribers."""
 
 
 class _Owner(Enum):
     DECK = 1
     ANOTHER = 2
     GONE = 3
-    """It has ended and is in the tables still, or it is on another machine."""
+    """It has ended but is still listed, or it is on another machine."""
 
 
 class Outside:
-    """Those there are now."""
+    """The current nodes of others."""
 
     def __init__(self) -> None:
-        """Begin with nobody."""
+        """Start empty."""
         self.forget()
 
     def forget(self) -> None:
-        """Start anew with another session."""
+        """Reset for another session."""
         self.now: tuple[str, ...] = ()
-        """Their names without the first slash; with it where a node of Deck's is called so."""
+        """Their names without the first slash; with it if one of Deck's nodes has the same name."""
         self._rows: tuple[NodeRow, ...] = ()
         self._owners: dict[int, _Owner] = {}
         self._speakers: dict[str, str] = {}
-        """Logger to the name of who is outside, empty for others."""
+        """Maps a logger to the name of its outside node, empty for other nodes."""
         self._reader = RosoutReader()
         self._unknown: deque[Sample] = deque(maxlen=KEPT_UNKNOWN)
         self._heard: dict[tuple[str, ...], None] = {}
 
     def see(self, update: GraphUpdate, nodes: Mapping[str, NodeStatus], run_id: str) -> bool:
-        """Look at the graph of the run with these nodes; tell whether there are others now."""
+        """Examine the graph of a run with these nodes; return whether the outside nodes changed."""
         if update.error or update.nodes is self._rows:
             return False
         before, self._rows = self.now, update.nodes
-        # Where it tells of processes at all, that of a node may come a little after its name.
+        # Where processes are reported, that of a node may arrive slightly later than its name.
         rows = [row for row in update.nodes if row.processes] or update.nodes
         numbers = {number for row in rows for number in row.processes}
-        # A mark that was seen holds; a number may have become another's.
+        # A mark that was found stays valid; a process number may be reused.
         known = {n: owner for n, owner in self._owners.items() if owner is _Owner.DECK}
         self._owners = known | {n: _owner(n, run_id) for n in numbers - known.keys()}
         self._speakers = {row.name[1:].replace("/", "."): self._called(row, nodes) for row in rows}
@@ -73,7 +73,7 @@ class Outside:
     def lines(
         self, samples: Iterable[Sample], nodes: Mapping[str, NodeStatus]
     ) -> tuple[LogLine, ...]:
-        """Read what they say on /rosout; Deck's own nodes are heard by their output."""
+        """Read their messages on /rosout; the output of Deck's own nodes is read elsewhere."""
         found: list[LogLine] = []
         waiting = (*self._unknown, *samples)
         self._unknown.clear()
@@ -86,7 +86,7 @@ class Outside:
         return tuple(found)
 
     def _called(self, row: NodeRow, nodes: Mapping[str, NodeStatus]) -> str:
-        """Return its name if it is outside, else nothing."""
+        """Return its name if it is outside, otherwise an empty text."""
         name = row.name[1:]
         owners = {self._owners[number] for number in row.processes}
         is_named = name in nodes
@@ -96,18 +96,18 @@ class Outside:
         return plain(row.name if is_named else name, 200)
 
     def _speaker(self, logger: str, nodes: Mapping[str, NodeStatus]) -> str | None:
-        """Return who is outside and has this logger, empty for others, None for nobody known."""
+        """Return the outside node with this logger, empty for other nodes, None if unknown."""
         while logger:
             if logger in self._speakers:
                 name = self._speakers[logger]
                 own = nodes.get(name.removeprefix("/")) if name.startswith("/") else None
-                # Of two by one name nobody can tell who has spoken.
+                # If two nodes have the same name, it is unknown which one logged.
                 return "" if own is not None and own.state.alive else name
             logger = logger.rpartition(".")[0]
         return None
 
     def _is_new(self, sample: Sample) -> bool:
-        """Whether it was not heard before: a subscription opened anew hears all that is kept."""
+        """Whether it was not received before: a new subscription receives old messages again."""
         value = sample.value
         line = tuple(str(value.get(field)) for field in ("stamp", "name", "line", "msg"))
         if line in self._heard:
@@ -119,7 +119,7 @@ class Outside:
 
 
 def _owner(number: int, run_id: str) -> _Owner:
-    """Return whose process of this machine has this number, as far as the middleware tells it."""
+    """Return who started the process with this number, as far as the middleware reports it."""
     from launcher.processes.table import RUN_MARK, process_numbers, read_marks
 
     found = [pid for pid in process_numbers() if pid % PROCESS_NUMBERS == number]

@@ -1,4 +1,4 @@
-"""What can be picked, and what is asked to be opened: plain data."""
+"""What can be picked, and requests to open something: plain data."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class Lesson(NamedTuple):
-    """One profile as the picker shows it."""
+    """One profile in the picker."""
 
     name: str
     """File name without its ending: `09-brain`."""
@@ -42,7 +42,7 @@ class WatchRequest(NamedTuple):
 
 
 class OpenRequest(NamedTuple):
-    """What is to be opened: a profile to be started, or what is there without being started."""
+    """What to open: a profile to be started, or something that already exists."""
 
     profile: Path | None = None
     attach: str | None = None
@@ -52,4 +52,4 @@ class OpenRequest(NamedTuple):
     replay: ReplayRequest | None = None
     watch: WatchRequest | None = None
     beside: bool = False
-    """Whether it may be started beside other sessions in its domain."""
+    """Whether it may share its domain with other sessions."""

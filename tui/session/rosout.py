@@ -1,4 +1,4 @@
-"""What nodes say on /rosout, as lines of the log: nodes that others have started have no other."""
+"""Messages on /rosout as log lines: the only log of nodes that others have started."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 TOPIC = "/rosout"
 LONGEST = 4000
-"""Characters of a line."""
+"""Characters kept of a line."""
 
 
 class RosoutReader:
@@ -25,9 +25,9 @@ class RosoutReader:
         self._numbers: dict[str, int] = {}
 
     def lines(self, samples: Iterable[Sample], node: str = "") -> tuple[LogLine, ...]:
-        """Read messages of rcl_interfaces/msg/Log; what is none of them is left out.
+        """Read messages of rcl_interfaces/msg/Log; malformed ones are ignored.
 
-        `node` has said them; empty: whoever the logger is named after.
+        `node` has sent them; if empty, the node that the logger is named after.
         """
         return tuple(self._line(one, node) for one in samples if "msg" in one.value)
 
@@ -53,7 +53,7 @@ def _severity(level: object) -> Severity:
 
 
 def _seconds(stamp: Any) -> float:  # noqa: ANN401
-    """Unix time, 0 where there is none."""
+    """Unix time, 0 if there is none."""
     try:
         seconds = float(stamp["sec"]) + float(stamp["nanosec"]) * 1e-9
     except (TypeError, ValueError, KeyError):

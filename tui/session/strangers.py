@@ -1,8 +1,9 @@
-"""Who publishes what only the gate and the differential should: past them, straight to the wheels.
+"""Publishers that bypass the gate and the differential, and so command the wheels directly.
 
-The nodes of the session may publish what they like: their profile says so. Anybody else on these
-topics drives past the gate, and so does a second publisher by the name of one of them. Where the
-session has no such node of Deck's nobody can tell whose topic it is; then it takes two to be told.
+The nodes of the session may publish anything that their profile says. Any other publisher on these
+topics bypasses the gate, and so does a second publisher with the name of one of them. If the
+session has no such node of Deck's, the owner of the topic is unknown; then only two publishers are
+reported.
 """
 
 from __future__ import annotations
@@ -22,24 +23,24 @@ if TYPE_CHECKING:
     from launcher.status import NodeStatus
 
 OURSELVES = "Deck"
-"""Who publishes what is published from this screen at a rate."""
+"""Stands for what is published from this screen at a rate."""
 NAMELESS = "_NODE_NAME_UNKNOWN_"
 """Source: rmw, `get_topic_endpoint_info.h`."""
 NAMED_WITHIN_S = 3.0
-"""The name of an endpoint comes a little later than the endpoint; that of no node never does."""
+"""An endpoint gets its name slightly later; one without a node never gets a name."""
 FORGOTTEN_S = 25.0
-"""Until then the middleware may still tell of a publisher that was killed with its node."""
+"""For this long the middleware may still report a publisher that was killed with its node."""
 
 
 @dataclass(frozen=True)
 class Keeper:
-    """The node of Deck's that should be alone on a topic."""
+    """The node of Deck's that should be the only publisher on a topic."""
 
     module: str
     topic: str
     type_name: str
     names: frozenset[str]
-    """What it is called where no profile names it."""
+    """Its names when no profile contains it."""
 
 
 KEEPERS = (
@@ -60,17 +61,17 @@ KEEPERS = (
 
 @dataclass(frozen=True)
 class Stranger:
-    """Somebody who publishes a topic that is not his."""
+    """A publisher on a topic reserved for another node."""
 
     topic: str
     node: str
-    """Full name; ends with `NAMELESS` for who is no node of ROS."""
+    """Full name; ends with `NAMELESS` for a publisher that is not a ROS node."""
     is_namesake: bool = False
-    """Whether there is a node of this name that may."""
+    """Whether it has the name of a node that may publish the topic."""
 
     @property
     def called(self) -> str:
-        """Its name, for people."""
+        """Its name for display."""
         if self.node.endswith(NAMELESS):
             return _("a program without a node's name")
         name = plain(self.node, 60)
@@ -78,14 +79,14 @@ class Stranger:
 
 
 class Strangers:
-    """Those there are now."""
+    """The current strangers."""
 
     def __init__(self) -> None:
         self.now: tuple[Stranger, ...] = ()
         self._seen_s: dict[Stranger, float] = {}
 
     def see(self, update: GraphUpdate, nodes: Mapping[str, NodeStatus]) -> bool:
-        """Look at the graph; tell whether there are others now than before."""
+        """Examine the graph; return whether the strangers have changed."""
         if update.error:
             return False
         ours = frozenset(one.topic for one in update.publications if not one.error)
@@ -103,11 +104,11 @@ class Strangers:
         return self.now != before
 
     def forget(self) -> None:
-        """Start anew with another session."""
+        """Reset for another session."""
         self.now, self._seen_s = (), {}
 
     def words(self) -> tuple[str, ...]:
-        """Say who they are, from long to short; empty if there are none."""
+        """Return texts that say who they are, from long to short; empty if there are none."""
         if not self.now:
             return ()
         topics = ", ".join(dict.fromkeys(plain(stranger.topic, 60) for stranger in self.now))
@@ -130,7 +131,7 @@ def _on_topics_of(
         by = Counter(end.node for end in row.published_by)
         if row.name in ours:
             by[OURSELVES] += 1
-        # Its profile may have given the topic another name.
+        # Its profile may have remapped the topic.
         is_kept = keeper.type_name in row.type_names and bool(by.keys() & keeping.keys())
         if is_kept or (row.name == keeper.topic and (row.subscribers or sum(by.values()) > 1)):
             yield from _strangers(row.name, by, keeper, keeping, nodes)
@@ -155,5 +156,5 @@ def _strangers(
 
 
 def _may_be_left(node: NodeStatus | None) -> bool:
-    """Whether the second of that name may be what a crash has left in the tables."""
+    """Whether the second publisher of that name may be left over from a crash."""
     return node is not None and node.restarts > 0 and (node.uptime_s or 0.0) < FORGOTTEN_S

@@ -1,4 +1,4 @@
-"""Driving by keys, below the lesson: `widget.TeleopPanel` and the keys, routes and actions of it.
+"""Driving with keys, below the lesson: `widget.TeleopPanel` with its keys, routes and actions.
 
-A screen on which one can drive offers what `actions.CanDrive` says.
+A screen with this panel implements `actions.CanDrive`.
 """

@@ -1,4 +1,4 @@
-"""Driving by keys on a screen: the panel below the others, and away again."""
+"""Shows the panel for driving with keys below the others, and removes it."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ if TYPE_CHECKING:
     from tui.teleop.widget import TeleopPanel
 
 QUICK_S, USUAL_S = 0.1, 0.25
-"""Between two updates of the graph while driving, and else."""
+"""Seconds between two updates of the graph, while driving and otherwise."""
 
 
 class TeleopDock:
-    """Brings the panel that drives below the `#board` of a screen.
+    """Shows the panel for driving below the `#board` of a screen.
 
-    The screen tells it what comes, and that something else has the keys now.
+    The screen passes it updates, and tells it when something else receives the keys.
     """
 
     def __init__(self, screen: DeckScreen, leave: Callable[[], None]) -> None:
-        """`leave` gives the focus to what has it while nobody drives."""
+        """Pass `leave`, which gives the focus back when driving ends."""
         self._screen, self._leave = screen, leave
         self._panel: TeleopPanel | None = None
 
     @property
     def topics(self) -> frozenset[str]:
-        """What the panel shows."""
+        """The topics that the panel shows."""
         return frozenset() if self._panel is None else self._panel.topics
 
     async def open(self) -> None:
-        """Bring the panel and give it the focus."""
+        """Show the panel and focus it."""
         if self._panel is None:
             from tui.teleop.widget import TeleopPanel
 
@@ -43,7 +43,7 @@ class TeleopDock:
         self._panel.focus()
 
     async def close(self) -> None:
-        """Take the panel away, and give the focus back."""
+        """Remove the panel, and give the focus back."""
         panel, self._panel = self._panel, None
         if panel is not None:
             await panel.remove()
@@ -52,16 +52,16 @@ class TeleopDock:
             self._leave()
 
     def take(self, update: GraphUpdate) -> None:
-        """Show what has come."""
+        """Update the panel."""
         if self._panel is not None:
             self._panel.show(update)
 
     def release(self) -> None:
-        """End what the keys asked for: after a stop, and where another screen has the keys."""
+        """Release all keys: after a stop, or when another screen receives them."""
         if self._panel is not None:
             self._panel.release()
 
     def words_changed(self) -> None:
-        """Draw it anew in another language."""
+        """Redraw in the current language."""
         if self._panel is not None:
             self._panel.words_changed()

@@ -1,10 +1,10 @@
-"""Driving by keys: what the keys ask for, and until when. Pure; times are monotonic seconds.
+"""Driving with keys: what the keys ask for, and until when. Pure; times are monotonic seconds.
 
-A terminal tells that a key is down only by its auto-repeat: nothing for the first half second,
-then some thirty times a second, and only for the key that went down last. So a key that has just
-been pressed counts as down for `FIRST_HOLD_S`, one that repeats for `NEXT_HOLD_S` after each
-repetition, and the keys that were down before it go on with it: forward and then left is a curve
-for as long as left is held.
+A terminal shows that a key is down only by its auto-repeat: nothing for the first half second, then
+about thirty times a second, and only for the key pressed last. So a key that has just been pressed
+counts as down for `FIRST_HOLD_S`, and one that repeats for `NEXT_HOLD_S` after each repetition.
+Keys that were already down stay down with it: forward and then left is a curve for as long as left
+is held.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
 
 FIRST_HOLD_S = 0.6
-"""The silence before a key begins to repeat: 0.25 to 0.6 s, by the settings of the desktop."""
+"""Delay before a key repeats: 0.25 to 0.6 s, depending on the settings of the desktop."""
 NEXT_HOLD_S = 0.25
-"""Between two repetitions there are 0.03 to 0.1 s; a slow line may swallow a few."""
+"""Repetitions come every 0.03 to 0.1 s; a slow line may lose a few."""
 STEP = 0.05
-"""By which the limits change: m/s, and rad."""
+"""Step by which the limits change, in m/s and rad."""
 LEAST = 0.05
 
 
@@ -39,52 +39,52 @@ STEERS = {Move.LEFT: 1, Move.RIGHT: -1}
 
 @dataclass(frozen=True)
 class TeleopLimits:
-    """How fast and how sharp the keys drive."""
+    """The speed and steering of the keys."""
 
     speed_m_s: float = 0.2
     steering_rad: float = 0.3
 
     def faster(self, steps: int) -> TeleopLimits:
-        """Return with so many steps more speed, or less, within what the robot may be asked."""
+        """Return these limits with the speed changed by some steps, within the robot's range."""
         return replace(self, speed_m_s=_stepped(self.speed_m_s, steps, SPEED.high))
 
     def sharper(self, steps: int) -> TeleopLimits:
-        """Return with so many steps more steering, or less."""
+        """Return these limits with the steering changed by some steps."""
         return replace(self, steering_rad=_stepped(self.steering_rad, steps, STEERING.high))
 
 
 @dataclass(frozen=True)
 class Teleop:
-    """Which way is asked for by the keys that are down."""
+    """The motion asked for by the keys that are down."""
 
     drive: int = 0
     """1 forward, -1 back."""
     steer: int = 0
     """1 left, -1 right."""
     newest: Move | None = None
-    """The key that repeats."""
+    """The key that is repeating."""
     until_s: float = 0.0
-    """When it counts as up again."""
+    """When it counts as released."""
 
     def pressed(self, move: Move, at_s: float) -> Teleop:
-        """Return with this key pressed, or repeated, at that time; times never go back."""
+        """Return the state with this key pressed or repeated at that time; times never decrease."""
         now = self.at(at_s)
         repeats = now.newest is move
         hold_s = NEXT_HOLD_S if repeats else FIRST_HOLD_S
         drive, steer = DRIVES.get(move, now.drive), STEERS.get(move, now.steer)
         if not repeats and move in DRIVES and drive == now.drive:
-            # Forward once more while it goes forward in a curve: straight on.
+            # A second press of forward while driving forward in a curve means straight on.
             steer = 0
-        # A second press may not cut short what the first one may still be waiting for.
+        # A second press must not shorten the wait for the repetition of the first one.
         until_s = max(now.until_s if repeats else 0.0, at_s + hold_s)
         return Teleop(drive, steer, move, until_s)
 
     def at(self, now_s: float) -> Teleop:
-        """Return how it is at that time: nothing is down when the time of the keys is over."""
+        """Return the state at that time: nothing is down once the time of the keys is over."""
         return self if now_s < self.until_s else NOTHING
 
     def setpoint(self, limits: TeleopLimits) -> DriveSetpoint:
-        """Return what is asked of the robot, m/s and rad."""
+        """Return the resulting setpoint, m/s and rad."""
         if not (self.drive or self.steer):
             return STOP
         return DriveSetpoint(self.drive * limits.speed_m_s, self.steer * limits.steering_rad)
@@ -94,6 +94,6 @@ NOTHING = Teleop()
 
 
 def _stepped(value: float, steps: int, most: float) -> float:
-    """Return the value some whole steps further, without the dust of adding."""
+    """Return the value changed by whole steps, without rounding errors adding up."""
     wanted = (round(value / STEP) + steps) * STEP
     return round(max(LEAST, min(most, wanted)), 2)

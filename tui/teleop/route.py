@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
 RATE_HZ = 20.0
-"""Of the commands while a key is held."""
+"""Rate of the commands while a key is held."""
 FRAME = "base_link"
 
 
 class Route(NamedTuple):
-    """The topic that the keys drive by."""
+    """The topic that the keys publish to."""
 
     topic: str = ""
     """Empty: nobody listens."""
@@ -28,7 +28,7 @@ class Route(NamedTuple):
 
 
 def route(update: GraphUpdate | None) -> Route:
-    """Return the topic that somebody listens to, the gate's own one first."""
+    """Return the topic that has a subscriber, preferring that of the gate."""
     rows = {row.name: row for row in update.topics} if update is not None else {}
     safe = rows.get(DRIVE_SAFE)
     gated = safe is not None and safe.publishers > 0

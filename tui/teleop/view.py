@@ -1,4 +1,4 @@
-"""How driving by keys looks: what is asked, what is allowed, what the wheels do."""
+"""The display for driving with keys: what is asked, what is allowed, what the wheels do."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ STRAIGHT_RAD = 0.005
 
 
 class Driving(NamedTuple):
-    """All that is shown."""
+    """Everything that is shown."""
 
     asked: DriveSetpoint = STOP
     allowed: DriveSetpoint | None = None
-    """What the gate lets through; None without a gate, or without a word of it."""
+    """What the gate lets through; None without a gate, or before its first report."""
     gated: bool = False
     wheels: WheelsReading | None = None
     limits: TeleopLimits = TeleopLimits()
     words: str = ""
-    """What is to be known now: why it does not move, where it goes."""
+    """The current remark: why nothing moves, or where the commands go."""
     look: str = ""
     """How the words look."""
 
 
 def drawn(driving: Driving, width: int, height: int) -> list[Line]:
-    """Return the lines, as many as there is room for."""
+    """Return the lines, as many as fit."""
     columns = (
         _column(_("asked"), driving.asked, "accent", ""),
         _column(
@@ -65,11 +65,11 @@ class _Column(NamedTuple):
     short: str = ""
 
     def line(self, row: int, room: int) -> Line:
-        """One of its five lines: the title, three of the number, the detail."""
+        """One of its five lines: the title, three for the number, the detail."""
         if row == 0:
             return [Ink(fit(self.title, room), "muted")]
         if row == 4:
-            # Where there is no room for words the arrows do.
+            # If there is no room for words, there are arrows.
             detail = self.detail if cell_len(self.detail) <= room else self.short
             return [Ink(fit(detail, room), "strong")]
         unit = _("{speed} m/s").format(speed="").strip() if row == 3 else ""
@@ -129,7 +129,7 @@ def _angle(angle: float) -> str:
 
 
 def _of(wheels: WheelsReading | None) -> DriveSetpoint | None:
-    """The speed between the rear wheels."""
+    """The speed midway between the rear wheels."""
     if wheels is None:
         return None
     return DriveSetpoint((wheels.left_m_s + wheels.right_m_s) / 2, wheels.steering_rad)

@@ -1,7 +1,7 @@
-"""Driving by keys: has the focus, reads the keys, and holds what they ask for.
+"""Driving with keys: has the focus, reads the keys, and holds what they ask for.
 
-It publishes nothing itself: the observer's thread repeats a command for as long as the newest key
-allows, so that a screen that hangs, or is no more, leaves no command behind.
+It publishes nothing itself: the observer's thread repeats a command for as long as the last key
+allows, so that a screen that hangs, or has gone, leaves no command behind.
 """
 
 from __future__ import annotations
@@ -46,15 +46,15 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
 
 LOOK_S = 0.05
-"""How often it is looked whether a key is still down, while any is."""
+"""How often to check whether a key is still down, while any is."""
 TITLE = N_("Drive by keys")
 
 
 class TeleopPanel(Drawing, Acting, can_focus=True):
-    """What the keys ask, what the gate allows, what the wheels do; large where there is room."""
+    """What the keys ask for, what the gate allows, what the wheels do; large if there is room."""
 
     class Closed(Message):
-        """It is to be taken away."""
+        """The panel is to be removed."""
 
     BINDINGS: ClassVar = bindings(*TELEOP_ACTIONS)
     DEFAULT_CSS = """
@@ -66,7 +66,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
     }
     """
     topics: ClassVar = frozenset({DRIVE_SAFE, WHEEL_COMMANDS, SAFETY_STATE})
-    """What it shows."""
+    """The topics that it shows."""
 
     def __init__(self) -> None:
         super().__init__(id="teleop")
@@ -81,7 +81,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
     @property
     def has_value(self) -> bool:
-        """There is always something to say."""
+        """Always: there is something to show."""
         return True
 
     @property
@@ -90,7 +90,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
     @property
     def limits(self) -> TeleopLimits:
-        """How fast and how sharp the keys drive, from the next press on."""
+        """Speed and steering of the keys, from the next press on."""
         return self._limits
 
     @limits.setter
@@ -103,18 +103,18 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         """What the keys ask for now."""
         return self._keys.at(clock.steady()).setpoint(self._limits)
 
-    # The keys
+    # Keys
 
     def check_consume_key(self, key: str, character: str | None) -> bool:
-        """Keep letters from the screen and the app: a slip while driving must not end a node."""
+        """Keep letters from the screen and the app: a slip while driving must not stop a node."""
         del key
         return character is not None and character.isalpha()
 
     async def on_key(self, event: Key) -> None:
-        """Take the keys that drive with the time at which they were pressed, however late."""
+        """Take the driving keys with the time at which they were pressed, however late."""
         key = event.key
         if event.character is not None and event.character.isalpha():
-            # Caps lock is no reason not to drive.
+            # Caps Lock must not prevent driving.
             key = event.character.lower()
         active = self.screen.active_bindings.get(key)
         action = None if active is None else REGISTRY.get(active.binding.id or "")
@@ -126,7 +126,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             self.press(action.move, event.time)
 
     def press(self, move: Move, at_s: float | None = None) -> None:
-        """A key is down, or was at that moment of the steady clock."""
+        """Press a key now, or at that time of the monotonic clock."""
         now_s = clock.steady()
         at_s = now_s if at_s is None else min(at_s, now_s)
         deck = self._deck
@@ -150,7 +150,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.redraw()
 
     def release(self) -> None:
-        """Whatever was down is up."""
+        """Release all keys."""
         self._keys = NOTHING
         graph = self._deck.feed.graph
         if graph is not None and self._route.topic:
@@ -158,12 +158,12 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.redraw()
 
     def close(self) -> None:
-        """Drive no more."""
+        """Stop driving."""
         self.release()
         self.post_message(self.Closed())
 
     def _held(self, done: Future[int]) -> None:
-        """Told on the observer's thread."""
+        """Called on the observer's thread."""
         error = None if done.cancelled() else done.exception()
         words = reason_words(error) if isinstance(error, Exception) else ""
         if words != self._error:
@@ -177,29 +177,29 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
                 self._timer.pause()
         self.redraw()
 
-    # What is told
+    # Events
 
     def on_mount(self) -> None:
-        """Be ready to publish, without publishing anything."""
+        """Prepare for publishing, without publishing anything."""
         self._timer = self.set_interval(LOOK_S, self._look, pause=True)
         self._entitle()
         if self._deck.feed.update is not None:
             self.show(self._deck.feed.update)
 
     def on_unmount(self) -> None:
-        """Leave nothing moving."""
+        """Make sure that nothing keeps moving."""
         self.release()
 
     def on_focus(self) -> None:
-        """The keys come here."""
+        """The panel receives the keys."""
         self.redraw()
 
     def on_blur(self) -> None:
-        """The keys go elsewhere, or the terminal has lost the focus."""
+        """Others receive the keys, or the terminal has lost the focus."""
         self.release()
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest of the topics."""
+        """Show the newest values."""
         self._follow(route(update))
         for sample in update.samples.get(SAFETY_STATE, ()):
             self._gate = gate_in(sample) or self._gate
@@ -213,13 +213,13 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.redraw()
 
     def _follow(self, found: Route) -> None:
-        """Drive by another topic from now on, with a publisher made before it is needed."""
+        """Use another topic from now on, with its publisher created in advance."""
         if found.topic != self._route.topic:
             self.release()
             graph = self._deck.feed.graph
             if graph is not None and found.topic:
                 ready = graph.prepare_hold(found.topic, DRIVE_TYPE)
-                # If it cannot be made, the first key will say so.
+                # If it cannot be created, the first key reports that.
                 ready.add_done_callback(lambda done: done.cancelled() or done.exception())
         self._route = found
         self._entitle()
@@ -235,14 +235,14 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         self.border_title = Content(_(TITLE) + topic)
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         self._entitle()
         super().words_changed()
 
-    # What is drawn
+    # Drawing
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """As much as there is room for."""
+        """Draw as much as fits."""
         words, look = self._told()
         driving = Driving(
             self.asked, self._allowed, self._route.gated, self._wheels, self._limits, words, look
@@ -250,7 +250,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
         return drawn(driving, width, height)
 
     def _told(self) -> tuple[str, str]:
-        """Say what is to be known now, the gravest first, and how it looks."""
+        """Return the most serious remark for now, and its look."""
         if self._deck.emergency.state.engaged:
             key = self._deck.keys_of(EmergencyRelease)[0]
             return _("emergency stop: nothing moves; {key} releases").format(key=key), "stop"
@@ -274,7 +274,7 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
 
 
 def _drive(sample: Sample | None) -> DriveSetpoint | None:
-    """Read an AckermannDriveStamped; None if it is none."""
+    """Read an AckermannDriveStamped; None for an invalid one."""
     drive = None if sample is None else sample.value.get("drive")
     if not isinstance(drive, dict):
         return None

@@ -1,6 +1,6 @@
-"""The terminal itself: what is written to it, how fast, and what is typed on it.
+"""The terminal: what is written to it and how fast, and what is typed on it.
 
-The app runs on `driver.DeckDriver`, keeps keys in order by `key_queue`, watches for stalls by
-`stall_detector` and keeps what libraries print off the screen by `stray_output`. Widgets that show
-pictures ask `bandwidth` when the next may go. Nothing here knows a screen of Deck.
+The app uses `driver.DeckDriver` as its driver, `key_queue` to keep keys in order, `stall_detector`
+to detect stalls, and `stray_output` to keep the output of libraries off the screen. Widgets with
+pictures ask `bandwidth` when to send the next one. Nothing here knows any screen of Deck.
 """

@@ -1,8 +1,8 @@
-"""The terminal as it really is: slow at times, and gone at others.
+"""The terminal as it really is: sometimes slow, and sometimes gone.
 
-Textual writes to it through a short queue and waits when that is full, reads it in a thread that
-spins at its end, and knows nothing of a hang-up. Here writing never waits, and a terminal that
-has gone is told to the app.
+Textual writes to it through a short queue and blocks when that is full, reads it in a thread that
+spins at the end of input, and ignores a hang-up. Here writing never blocks, and the app is notified
+when the terminal has gone.
 """
 
 from __future__ import annotations
@@ -28,29 +28,29 @@ if TYPE_CHECKING:
     from textual.app import App
 
     class OnTerminal(App[int]):
-        """An app that knows its terminal."""
+        """An app that has a terminal."""
 
         terminal_fd: int
         bandwidth: Bandwidth
 
 
 MOST_WAITING = 1_000_000
-"""Bytes that may wait for the terminal; beyond them it counts as stalled."""
+"""Bytes that may wait for the terminal; with more it counts as stalled."""
 LAST_WORDS_S = 1.0
-"""How long leaving waits for a terminal that takes nothing."""
+"""How long exiting waits for a terminal that takes no output."""
 
 
 class Terminal:
-    """A file for Textual to write to that never makes the writer wait.
+    """A file to which Textual can write without ever blocking.
 
-    When the terminal takes nothing, what waits is dropped, and so is what comes, until it takes
-    again: then `on_caught_up` is called, for a full repaint. It is called on another thread.
+    When the terminal takes nothing, waiting and further output is dropped until it takes output
+    again: then `on_caught_up` is called, on another thread, for a full repaint.
     """
 
     def __init__(
         self, fd: int, on_caught_up: Callable[[], object], bandwidth: Bandwidth | None = None
     ) -> None:
-        """Write to `fd` on a thread of its own, and tell `bandwidth` of all that is written."""
+        """Write to `fd` on a separate thread, and report all output to `bandwidth`."""
         self._fd = fd
         self._bandwidth = bandwidth or Bandwidth()
         self._diff = TerminalDiff()
@@ -62,13 +62,13 @@ class Terminal:
         self._busy = False
         self._stalled = False
         self.gone = False
-        """Whether writing to it is no longer possible."""
+        """Whether writing to it has become impossible."""
         self.leaving = False
-        """Set: nothing is dropped any more, the terminal must be left as it was found."""
+        """Once set, nothing is dropped any more: the state of the terminal must be restored."""
         threading.Thread(target=self._run, name="terminal-output", daemon=True).start()
 
     def write(self, text: str) -> None:
-        """Have `text` written some time, or never if the terminal is stalled."""
+        """Queue `text` for writing; it is dropped if the terminal is stalled."""
         with self._lock:
             if self.gone or (self._stalled and not self.leaving):
                 return
@@ -92,12 +92,12 @@ class Terminal:
         return self._diff.changes(text)
 
     def forget(self) -> None:
-        """Assume nothing of what the terminal shows: somebody else may have written to it."""
+        """Assume nothing about what the terminal shows: another program may have written to it."""
         with self._lock:
             self._terminal_size = (0, 0)
 
     def size(self) -> tuple[int, int]:
-        """Return columns and lines, those of any terminal where it does not tell."""
+        """Return columns and lines, or default values if the terminal does not report them."""
         try:
             columns, lines = os.get_terminal_size(self._fd)
         except OSError:
@@ -105,10 +105,10 @@ class Terminal:
         return columns or 80, lines or 24
 
     def flush(self) -> None:
-        """Do nothing: what was written is on its way."""
+        """Do nothing: output is already on its way."""
 
     def isatty(self) -> bool:
-        """Say that it is a terminal."""
+        """Return that it is a terminal."""
         return True
 
     def fileno(self) -> int:
@@ -116,7 +116,7 @@ class Terminal:
         return self._fd
 
     def finish(self) -> None:
-        """Wait until all is out, but not for ever."""
+        """Wait until everything has been written, for a limited time."""
         with self._lock:
             self._lock.wait_for(
                 lambda: self.gone or not (self._waiting or self._busy), LAST_WORDS_S
@@ -143,7 +143,7 @@ class Terminal:
         view = memoryview(data)
         try:
             while True:
-                # Another program may have left the terminal non-blocking.
+                # Another program may have left the terminal in non-blocking mode.
                 select.select([], [self._fd], [])
                 view = view[os.write(self._fd, view[:4096]) :]
                 if not view:
@@ -153,10 +153,10 @@ class Terminal:
 
 
 class DeckDriver(LinuxDriver):
-    """Textual's driver, on a terminal that may stall or go."""
+    """Textual's driver for a terminal that may stall or disappear."""
 
     def __init__(self, app: OnTerminal, **options: bool | tuple[int, int] | None) -> None:
-        """Write to the app's terminal: descriptors 1 and 2 may lead elsewhere."""
+        """Write to the app's terminal: descriptors 1 and 2 may be redirected."""
         super().__init__(app, **options)  # type: ignore[arg-type]
         fd = app.terminal_fd
         self._terminal = Terminal(
@@ -170,25 +170,25 @@ class DeckDriver(LinuxDriver):
         return self._terminal.gone or _hung_up(self.fileno)
 
     def give_up(self) -> None:
-        """Read no more: a terminal that has hung up is always ready to be read, and empty."""
+        """Stop reading: a terminal that has hung up is always ready to be read, and empty."""
         self.exit_event.set()
 
     def run_input_thread(self) -> None:
-        """Read until the app ends or the terminal goes."""
+        """Read until the app ends or the terminal is gone."""
         with contextlib.suppress(OSError):
             super().run_input_thread()
 
     def start_application_mode(self) -> None:
-        """Take the terminal over, and tell the app of every size it gets, the last one last.
+        """Set up the terminal, and report every change of its size to the app, the last one last.
 
-        Textual does that in a Python signal handler. A second signal may interrupt it when it has
-        read a size and not yet told it; then the app is left with the size before the last.
+        Textual does that in a Python signal handler. A second signal may interrupt it after it has
+        read a size but before it has reported it; then the app keeps the second-to-last size.
         """
         super().start_application_mode()  # type: ignore[no-untyped-call]
         asyncio.get_running_loop().add_signal_handler(signal.SIGWINCH, self._tell_size)
 
     def _tell_size(self) -> None:
-        # A terminal that tells of its size itself, in its output, says it but once.
+        # A terminal that reports its size itself, in-band, does so only once.
         if not self._in_band_window_resize:
             size = Size(*self._get_terminal_size())
             self._app.post_message(Resize(size, size))
@@ -197,16 +197,16 @@ class DeckDriver(LinuxDriver):
         return self._terminal.size()
 
     def forget(self) -> None:
-        """Send everything anew with the next frame."""
+        """Send everything again with the next frame."""
         self._terminal.forget()
 
     def stop_application_mode(self) -> None:
-        """Leave the terminal as it was found, a stalled one too once it takes again."""
+        """Restore the terminal, even a stalled one once it takes output again."""
         self._terminal.leaving = True
         super().stop_application_mode()
 
     def close(self) -> None:
-        """Let the last words out."""
+        """Write the remaining output."""
         super().close()
         self._terminal.finish()
 

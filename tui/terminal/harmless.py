@@ -1,7 +1,7 @@
-"""The last look at what goes to the terminal: no control sequence of a widget's text gets through.
+"""The last check of what goes to the terminal: no control sequences in the text of widgets.
 
-Who shows text from outside makes it plain, so that it is seen and measured as it is shown. What
-somebody forgot, and what is typed or pasted into a field of Textual's own, is found here.
+Widgets that show text from outside make it harmless themselves, so that it is measured as it is
+shown. This catches what was overlooked, and what is typed or pasted into Textual's own fields.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 class Harmless(LineFilter):
-    """Replaces what must not be shown in a line, which stays as wide as it was."""
+    """Replaces characters that must not be shown, without changing the width of the line."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the line, as a rule the very same one."""
+        """Return the line, usually the same object."""
         del background
         if is_plain("".join([segment.text for segment in segments])):
             return segments

@@ -1,8 +1,8 @@
-"""Keys in the order in which they were pressed, however busy the screen is.
+"""Keeps keys in the order in which they were pressed, however busy the screen is.
 
-Textual hands a key to the widget that has the focus when it comes. One that puts the focus
-elsewhere takes effect later: on its way up from that widget to the app, where most keys are bound.
-What was typed meanwhile would go to the widget that is about to lose the focus, and be lost.
+Textual passes a key to the widget that has the focus when it arrives. A key that moves the focus
+takes effect later: on its way up from that widget to the app, where most keys are bound. Keys typed
+in the meantime would go to the widget that is about to lose the focus, and be lost.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from textual.message_pump import MessagePump
 
 PATIENCE_S = 3.0
-"""A key that is on its way for so long holds up no other: its widget may be gone."""
+"""A key that takes longer no longer holds up others: its widget may be gone."""
 
 
 class KeyQueue:
-    """What is typed while a key is on its way, and where that key is."""
+    """Keys typed while another key is on its way, and the state of that key."""
 
     def __init__(self, app: MessagePump) -> None:
-        """What has waited is given to `app` again."""
+        """Pass waiting keys to `app` later."""
         self._app = app
         self._waiting: deque[Key | Paste] = deque()
         self._due: Key | Paste | None = None
@@ -33,22 +33,22 @@ class KeyQueue:
         self._busy = False
 
     def must_wait(self, event: Key | Paste) -> bool:
-        """Whether it is not its turn."""
+        """Whether it is not the key's turn yet."""
         return self._busy and event is not self._due
 
     def wait(self, event: Key | Paste) -> None:
-        """Let it come again when it is its turn."""
+        """Keep the key until it is its turn."""
         self._waiting.append(event)
 
     def given(self, event: Key | Paste, target: DOMNode) -> None:
-        """A key has taken effect, or is on its way to `target`, and the others wait for it."""
+        """Record that a key has taken effect, or is on its way to `target` while others wait."""
         if event.is_forwarded:
             self.follow(target)
         else:
             self._next()
 
     def follow(self, target: DOMNode) -> None:
-        """Keep the others until what has been sent to `target` has taken effect."""
+        """Hold the other keys until what was sent to `target` has taken effect."""
         self._busy = True
         self._number += 1
         loop = asyncio.get_running_loop()
@@ -56,9 +56,9 @@ class KeyQueue:
         self._climb(self._number, target, target)
 
     def _climb(self, number: int, node: DOMNode | None, again: DOMNode | None) -> None:
-        """Come to each node behind the key: none takes it up again once this has passed.
+        """Visit each node behind the key: none can still handle it after this has passed.
 
-        A widget that says something because of the key says it behind this: hence once more.
+        A widget that posts a message because of the key posts it behind this, hence a second pass.
         """
         while node is not None and not node.call_later(self._climb, number, node.parent, again):
             node = node.parent
@@ -73,7 +73,7 @@ class KeyQueue:
             self._next()
 
     def _next(self) -> None:
-        """It is the turn of the next."""
+        """Continue with the next key."""
         if self._giving_up is not None:
             self._giving_up.cancel()
             self._giving_up = None

@@ -1,9 +1,9 @@
-"""Whether this process was held up, so that keys may have waited longer than their stamps tell.
+"""Detects that this process was stopped, so that keys may be older than their timestamps.
 
-A key is stamped when it is read from the terminal. What was typed while the process was stopped is
-read when it goes on, and looks as if it had just been pressed. So for a moment after such a stall
-no stamp is believed. A thread of its own looks, for an event loop that is merely busy delays no
-stamp.
+A key gets its timestamp when it is read from the terminal. Keys typed while the process was stopped
+are read when it continues, and look as if they had just been pressed. So for a moment after such a
+stall timestamps are not trusted. A separate thread checks this, because an event loop that is
+merely busy does not delay timestamps.
 """
 
 from __future__ import annotations
@@ -15,33 +15,33 @@ from tui import clock
 
 LOOK_S = 0.1
 LONGEST_S = 0.6
-"""Between two looks: a machine that is busy may hold everything up for nearly half a second."""
+"""Longest time between two checks: a busy machine may delay everything by nearly half a second."""
 DRAIN_S = 0.5
-"""How long it takes to read what has waited, on a machine that is busy besides."""
+"""How long it takes to read waiting keys on a busy machine."""
 
 
 class KeyStallDetector:
-    """Looks at the clock all the time; a long time between two looks was a stall."""
+    """Checks the clock all the time; a long time between two checks was a stall."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._last_s = clock.steady()
         self.woke_s = -math.inf
-        """When the newest stall was noticed, on the steady clock."""
+        """When the last stall was noticed, on the monotonic clock."""
         self._over = threading.Event()
 
     def watch(self) -> None:
-        """Look from now on."""
+        """Start checking."""
         self._last_s = clock.steady()
         threading.Thread(target=self._run, name="stall-detector", daemon=True).start()
 
     def end(self) -> None:
-        """Look no more."""
+        """Stop checking."""
         self._over.set()
 
     def may_precede(self, at_s: float) -> bool:
-        """Whether a key with this stamp may have been typed before the process woke."""
-        # After a stall the key may be here before the thread has had its turn.
+        """Whether a key with this timestamp may have been typed before the end of a stall."""
+        # After a stall the key may be processed before the thread gets to run.
         self._look()
         return at_s < self.woke_s + DRAIN_S
 

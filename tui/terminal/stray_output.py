@@ -1,7 +1,7 @@
-"""What libraries print past Textual, the C++ of DDS above all: kept off the screen, in a file.
+"""Output that libraries print past Textual, above all the C++ of DDS: kept in a file.
 
-While the screen runs, descriptors 1 and 2 lead to that file; its lines can be read here, to be
-shown among the logs.
+While the screen runs, descriptors 1 and 2 are redirected to that file; its lines can be read here,
+and are shown in the log.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ READ_BYTES = 16_384
 
 
 class StrayOutput:
-    """A context in which everything printed goes to `path`; an empty file is removed after.
+    """A context in which all output goes to `path`; an empty file is removed afterwards.
 
-    If there is such a file already, it stays, and `path` becomes another name.
+    An existing file of that name is kept, and `path` becomes another name.
     """
 
     def __init__(self, path: Path) -> None:
-        """Nothing is opened yet."""
+        """Set the path; nothing is opened yet."""
         self.path = path
         self._fd = -1
         self._saved: list[tuple[int, int]] = []
         self._read = 0
 
     def __enter__(self) -> Self:
-        """Lead 1 and 2 to the file."""
+        """Redirect 1 and 2 to the file."""
         self._fd = self._new_file()
         for number in (1, 2):
             self._saved.append((number, os.dup(number)))
@@ -48,7 +48,7 @@ class StrayOutput:
         return self
 
     def _new_file(self) -> int:
-        """Make the file; one of that name that is there belongs to somebody."""
+        """Create the file; an existing one of that name belongs to somebody else."""
         flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND
         named = self.path
         for number in count(2):
@@ -59,7 +59,7 @@ class StrayOutput:
 
     @property
     def terminal_fd(self) -> int:
-        """Where 1 led before."""
+        """A descriptor for where 1 led before."""
         return self._saved[0][1]
 
     def __exit__(
@@ -68,7 +68,7 @@ class StrayOutput:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Lead 1 and 2 back to where they led."""
+        """Restore 1 and 2."""
         for stream in (sys.__stdout__, sys.__stderr__):
             if stream is not None:
                 stream.flush()
@@ -81,12 +81,12 @@ class StrayOutput:
             self.path.unlink(missing_ok=True)
 
     def write(self, text: str) -> None:
-        """Add what the screen itself has to say; a full disk does not hinder it."""
+        """Add output of the screen itself; a full disk is ignored."""
         with contextlib.suppress(OSError):
             os.write(self._fd, text.encode("utf-8", "replace"))
 
     def new_lines(self) -> list[str]:
-        """Return what was printed since the last time, the newest lines if it was much."""
+        """Return what was printed since the last call; only the newest lines if there are many."""
         size = os.fstat(self._fd).st_size
         if size <= self._read:
             return []

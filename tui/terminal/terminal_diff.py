@@ -1,8 +1,9 @@
-"""Frames for the terminal without what it shows already: SSH is a slow line.
+"""Frames for the terminal without what it already shows, because SSH is a slow line.
 
 Textual redraws whole regions, and gives every piece of text its full style and a reset. Here the
-cells that the terminal shows are remembered, and only those that differ are sent, with only what
-changes of their style. What is not surely understood is sent as it is and forgotten.
+cells that the terminal shows are remembered, and only cells that differ are sent, with only the
+changes of their style. Sequences that are not fully understood are sent unchanged, and the cells
+they may affect are forgotten.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _TOKENS = re.compile(
 )
 _SYNC = re.compile(r"\x1b\[\?2026[hl]")
 _ODD = re.compile(r"\x1b\]|\x1b\[(?:[0-3]?[JK]|\d*[ABCDEFGSTLMPXd])")
-"""Sequences after which the cells remembered may not be those shown."""
+"""Sequences after which the remembered cells may differ from those shown."""
 _PLAIN_RANGES = (
     (0x20, 0x7E),
     (0xA0, 0xAC),
@@ -43,18 +44,18 @@ _PLAIN_RANGES = (
     (0x2800, 0x28FF),
 )
 _PLAIN = frozenset(chr(code) for first, last in _PLAIN_RANGES for code in range(first, last + 1))
-"""Characters of one cell on every terminal."""
+"""Characters that take one cell on every terminal."""
 
 
 class ScreenCell(NamedTuple):
-    """What one cell shows: a character and its SGR parameters."""
+    """The content of one cell: a character and its SGR parameters."""
 
     char: str
     sgr: str
 
 
 class Look(NamedTuple):
-    """SGR parameters taken apart."""
+    """SGR parameters, parsed."""
 
     attributes: tuple[str, ...]
     foreground: str
@@ -62,26 +63,26 @@ class Look(NamedTuple):
 
 
 class TerminalDiff:
-    """Knows what the terminal shows; `changes` returns what has to be sent to make it show more."""
+    """Knows what the terminal shows; `changes` returns what has to be sent to update it."""
 
     def __init__(self) -> None:
-        """Know nothing yet."""
+        """Start with an unknown content."""
         self._width = self._height = 0
         self._rows: list[list[ScreenCell | None]] = []
         self._at: tuple[int, int] | None = None
-        """Column and row of the terminal's cursor, None if not known."""
+        """Column and row of the terminal's cursor, None if unknown."""
         self._sgr: str | None = None
-        """The terminal's style, None if not known."""
+        """The terminal's style, None if unknown."""
         self._out: list[str] = []
 
     def forget(self, width: int, height: int) -> None:
-        """Know nothing any more of a terminal of this size."""
+        """Forget the content of a terminal, which has this size."""
         self._width, self._height = width, height
         self._rows = [[None] * width for _row in range(height)]
         self._at = self._sgr = None
 
     def changes(self, frame: str) -> str:
-        """Return the least that makes the terminal show what `frame` would."""
+        """Return the shortest output that makes the terminal show `frame`."""
         if _SYNC.fullmatch(frame):
             return frame
         if _ODD.search(frame):
@@ -109,7 +110,7 @@ class TerminalDiff:
         return "".join(self._out)
 
     def _other(self, sequence: str) -> None:
-        """Pass on what is no drawing; modes are changed in the terminal's own style."""
+        """Pass on what does not draw; modes are changed in the terminal's default style."""
         if self._sgr != "":
             self._out.append("\x1b[0m")
             self._sgr = ""
@@ -118,7 +119,7 @@ class TerminalDiff:
             self.forget(self._width, self._height)
 
     def _text(self, x: int, y: int, text: str, sgr: str) -> int:
-        """Send those cells of `text` that differ; return the column after it."""
+        """Send the cells of `text` that differ; return the column after it."""
         if not (0 <= y < self._height and _PLAIN.issuperset(text) and x + len(text) <= self._width):
             return self._unsure(x, y, text, sgr)
         row = self._rows[y]
@@ -138,7 +139,7 @@ class TerminalDiff:
         return x + len(text)
 
     def _unsure(self, x: int, y: int, text: str, sgr: str) -> int:
-        """Send text of which it is not sure how many cells it takes, and forget them."""
+        """Send text whose width is uncertain, and forget its cells."""
         self._go(x, y)
         self._wear(sgr)
         self._out.append(text)
@@ -153,7 +154,7 @@ class TerminalDiff:
         self._wear(sgr)
         self._out.append(text)
         end = x + len(text)
-        # In the last column terminals differ about where the cursor is.
+        # After the last column, terminals differ in the position of the cursor.
         self._at = (end, y) if end < self._width else None
 
     def _go(self, x: int, y: int) -> None:

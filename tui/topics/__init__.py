@@ -1,6 +1,6 @@
-"""The tab of topics: the table, one topic live, its plot, and publishing.
+"""The Topics tab: the table, a live view of one topic, its plot, and publishing.
 
-The app makes its `screen.TopicsScreen`, the palette lists its `actions` and those of `publish`, and
-other screens lead to a topic by its `table.choose`. Nothing else here is for others: the tree of a
-message stands in `tui.echo`.
+The app creates `screen.TopicsScreen`, the palette lists `actions` and those of `publish`, and other
+screens link to a topic through `table.choose`. Nothing else here is meant for use elsewhere; the
+tree of a message is in `tui.echo`.
 """

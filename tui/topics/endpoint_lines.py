@@ -1,4 +1,4 @@
-"""Who is on a topic and by which quality of service, as lines: what does not fit comes first."""
+"""The endpoints of a topic with their QoS as lines, incompatible pairs first."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ WIDEST_NODE = 44
 
 @dataclass(frozen=True)
 class Pair:
-    """A publisher and a subscriber that the middleware does not join, and by which policy."""
+    """A publisher and a subscriber that the middleware does not connect, and by which policy."""
 
     publisher: EndpointInfo
     subscriber: EndpointInfo
@@ -39,7 +39,7 @@ class Pair:
 
 
 def misfits(row: TopicRow) -> list[Pair]:
-    """Every pair of one type that does not fit."""
+    """Return every incompatible pair of the same type."""
     return [
         Pair(publisher, subscriber, found)
         for publisher in row.published_by
@@ -50,7 +50,7 @@ def misfits(row: TopicRow) -> list[Pair]:
 
 
 def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
-    """The topic's endpoints within so many cells: what to mend, publishers, subscribers."""
+    """Return the topic's endpoints in this width: what to fix, publishers, subscribers."""
     pairs = misfits(row)
     disagree = len(_types(row)) > 1
     columns = columns_for(width - MARK)
@@ -78,7 +78,7 @@ def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
 
 
 def _column(policy: str) -> str:
-    """Return the column that shows the policy: the lease stands beside the kind."""
+    """Return the column that shows the policy: the lease is shown beside the kind."""
     return LIVELINESS if policy == LEASE else policy
 
 
@@ -102,7 +102,7 @@ def _types_lines(row: TopicRow, width: int) -> Iterator[Line]:
 
 
 def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
-    # A node with two endpoints alike makes two pairs that read the same.
+    # If a node has two identical endpoints, its pairs produce the same text.
     told = list(dict.fromkeys(pair_words(pair.mismatch.facts()) for pair in pairs))
     lines: list[Line] = []
     for words in told[:MOST_PAIRS]:
@@ -157,7 +157,7 @@ def _notes(row: TopicRow, width: int) -> Iterator[Line]:
 def _wrapped(
     mark: str, text: str, width: int, look: str = "", *, indent: int = MARK
 ) -> Iterator[Line]:
-    """A mark and a text folded beside it; the mark carries the look where there is one."""
+    """Yield a mark and a wrapped text beside it; if there is a mark, it carries the look."""
     room = max(8, width - indent)
     for place, part in enumerate(textwrap.wrap(text, room)):
         head = Ink((mark if not place else "").ljust(indent), look if mark else "")
@@ -166,17 +166,17 @@ def _wrapped(
 
 @dataclass(frozen=True)
 class EndpointColumn:
-    """One column; `id` is the policy's name where it is one."""
+    """One column; `id` is the name of the policy if it shows one."""
 
     id: str
     title: str
-    """The words of the policies are those of ROS in every language: they are what one types."""
+    """The names of the policies are those of ROS in every language, because users type them."""
     width: int
     text: Callable[[EndpointInfo], str]
 
 
 def history_text(end: EndpointInfo) -> str:
-    """`keep_last 10`, `keep_all`, or what is known of it."""
+    """`keep_last 10`, `keep_all`, or whatever is known of it."""
     if end.history == "keep_last" and end.depth:
         return f"{end.history} {end.depth}"
     if not end.history and end.depth:
@@ -185,12 +185,12 @@ def history_text(end: EndpointInfo) -> str:
 
 
 def time_text(seconds: float | None) -> str:
-    """A time that was asked for or offered, or that none was."""
+    """Return a time that was requested or offered, or say that there is none."""
     return _("none") if seconds is None else seconds_text(seconds)
 
 
 def liveliness_text(end: EndpointInfo) -> str:
-    """The kind, and for how long without a sign of life it is taken for alive."""
+    """Return the kind, and how long without a sign of life it still counts as alive."""
     if not end.liveliness:
         return UNKNOWN
     lease = "" if end.lease_s is None else f" {seconds_text(end.lease_s)}"
@@ -206,11 +206,11 @@ POLICIES = (
     EndpointColumn("lifespan", "lifespan", 8, lambda end: time_text(end.lifespan_s)),
     EndpointColumn("liveliness", "liveliness", 22, liveliness_text),
 )
-"""In the order of the screen; the last go first when room is short."""
+"""In the order on the screen; the last ones are dropped first when room is short."""
 
 
 def columns_for(width: int) -> tuple[EndpointColumn, ...]:
-    """The columns that fit into so many cells, one blank between them; the node takes the rest."""
+    """Return the columns that fit, with one blank between them; the node takes the rest."""
     kept = list(POLICIES)
     while kept and NODE.width + sum(column.width + 1 for column in kept) > width:
         kept.pop()
@@ -219,5 +219,5 @@ def columns_for(width: int) -> tuple[EndpointColumn, ...]:
 
 
 def left_over(columns: Sequence[EndpointColumn]) -> tuple[EndpointColumn, ...]:
-    """The policies that have no column."""
+    """Return the policies without a column."""
     return POLICIES[len(columns) - 1 :]

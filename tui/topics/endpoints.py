@@ -1,4 +1,4 @@
-"""Everyone on a topic with its quality of service, to be scrolled."""
+"""All endpoints of a topic with their QoS, in a scrollable view."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class TopicEndpoints(ScrollView, can_focus=True):
-    """Shows publishers and subscribers of a topic, and first of all which do not fit."""
+    """Shows publishers and subscribers of a topic, and before them what is incompatible."""
 
     ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {
@@ -50,7 +50,7 @@ class TopicEndpoints(ScrollView, can_focus=True):
         self._lines: list[Line] = []
 
     def show(self, row: TopicRow | None) -> None:
-        """Show who is on this topic; folded anew only if that has changed."""
+        """Show the endpoints of this topic; wrapped again only if they have changed."""
         other = row is None or self._row is None or row.name != self._row.name
         self._row = row
         shown = (
@@ -66,23 +66,23 @@ class TopicEndpoints(ScrollView, can_focus=True):
 
     @property
     def text(self) -> str:
-        """All that is shown, folded as it is."""
+        """The whole text as wrapped now."""
         return "\n".join("".join(ink.text for ink in line).rstrip() for line in self._lines)
 
     def relabel(self) -> None:
-        """Say it anew, after the language changed."""
+        """Redraw in the current language."""
         self._fold()
 
     def on_resize(self) -> None:
-        """Fold to the new width."""
+        """Wrap to the new width."""
         self._fold()
 
     def watch_show_vertical_scrollbar(self) -> None:
-        """Make room for the scroll bar, or use what it has left."""
+        """Wrap with or without the scroll bar."""
         self._fold()
 
     def on_show(self) -> None:
-        """Fold what was shown while nobody saw it."""
+        """Wrap what was set while the widget was hidden."""
         self._fold()
 
     def render_line(self, y: int) -> Strip:

@@ -1,4 +1,4 @@
-"""Images of a topic: decoded as they come, and those that are late by then left out."""
+"""Images of a topic: decoded as they arrive, skipping those that are outdated by then."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LONGEST = 80
 
 
 def carries_images(row: TopicRow | None) -> bool:
-    """Whether messages of this topic are images."""
+    """Whether the messages of this topic are images."""
     return row is not None and not {IMAGE, COMPRESSED}.isdisjoint(row.type_names)
 
 
@@ -40,21 +40,21 @@ class TopicPictures:
         is_wanted: Callable[[Sample], bool],
         row: Callable[[], TopicRow | None],
     ) -> None:
-        """`is_wanted` tells, when an image has been decoded, whether it is still to be shown.
+        """Pass `is_wanted`, which says after decoding whether an image is still to be shown.
 
-        `row` is the topic as it is then.
+        `row` returns the current row of the topic.
         """
         self._detail = detail
         self._is_wanted = is_wanted
         self._row = row
         self._waiting: Sample | None = None
-        """The newest of those that came while another was decoded."""
+        """The newest image that arrived while another was being decoded."""
         self._decoding = False
 
     def show(self, sample: Sample) -> None:
-        """Show this image, a compressed one when it has been decoded."""
+        """Show this image; a compressed one after decoding it."""
         if sample.type_name == IMAGE:
-            # A millisecond: less than to go to another thread and back.
+            # It takes a millisecond: less than switching to another thread and back.
             try:
                 self._put(read_picture(IMAGE, sample.value, self._detail.picture.wanted))
             except ImageError as error:
@@ -66,7 +66,7 @@ class TopicPictures:
             self._detail.run_worker(self._decode(), group="pictures")
 
     async def _decode(self) -> None:
-        """Decode the newest image there is, until there is none."""
+        """Decode the newest image until none is waiting."""
         try:
             while self._waiting is not None:
                 sample, self._waiting = self._waiting, None

@@ -1,4 +1,4 @@
-"""Plotting from the topics: which numbers of messages are plotted, and where the plot stands."""
+"""Plotting on the Topics screen: which numbers are plotted, and where the plot is shown."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ class PlotPlace(Enum):
 
     NONE = "none"
     BESIDE = "beside"
-    """Below the message, or the table."""
+    """Below the message, or below the table."""
     ALONE = "alone"
     """In place of table and message."""
 
 
 class Plotting:
-    """Takes numbers of the message that is shown into a plot, and gives it its place.
+    """Adds numbers of the current message to a plot, and decides where it is shown.
 
-    The place is the classes `-plot` and `-plot-alone` of the screen, for its style sheet.
+    The place is expressed by the classes `-plot` and `-plot-alone` of the screen, for its style
+    sheet.
     """
 
     def __init__(
@@ -49,7 +50,7 @@ class Plotting:
 
     @property
     def covers_all(self) -> bool:
-        """Whether the plot stands in place of table and message."""
+        """Whether the plot replaces table and message."""
         return self.place is PlotPlace.ALONE
 
     def show(self, place: PlotPlace) -> None:
@@ -62,7 +63,7 @@ class Plotting:
 
     @property
     def field_at_cursor(self) -> PlotField | None:
-        """The number in the message that the cursor stands on, None if it is none."""
+        """The number at the cursor, None if it is not one."""
         echo = self._detail.echo
         topic, path, message = self._table.chosen, echo.at_cursor, echo.message
         if topic is None or path is None or message is None:
@@ -71,7 +72,7 @@ class Plotting:
         return None if field.number(message) is None else field
 
     def toggle_field(self) -> bool:
-        """Plot the number at the cursor, or plot it no more; tell whether it is plotted now."""
+        """Plot the number at the cursor, or remove it; return whether it is plotted now."""
         field = self.field_at_cursor
         if field is None:
             self._warn(_("Put the cursor on a number first: Tab goes to the message."))
@@ -83,18 +84,18 @@ class Plotting:
 
     @property
     def paused(self) -> bool:
-        """Whether the message or the plot is held still."""
+        """Whether the message or the plot is paused."""
         plot = self.plot.paused and self.place is not PlotPlace.NONE
         return plot or self._detail.echo.paused
 
     def toggle_pause(self) -> None:
-        """Hold message and plot still, or go on with both."""
+        """Pause message and plot, or resume both."""
         paused = not self.paused
         self._detail.echo.pause(paused)
         self.plot.pause(paused and self.place is not PlotPlace.NONE)
 
     def mark_fields(self) -> None:
-        """Write the letters of the plot into the message."""
+        """Show the letters of the plot in the message."""
         self._detail.echo.mark(self.plot.marks(self._table.chosen or ""))
 
     def _warn(self, words: str) -> None:

@@ -1,4 +1,4 @@
-"""A topic in sentences: what it is doing, and who is on it."""
+"""A topic in sentences: its activity, and its endpoints."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OURSELVES = "Deck"
 
 
 def figures(row: TopicRow, size_bytes: int | None) -> list[str]:
-    """Rate, bandwidth, age, jitter, latency, losses and size; why there are none if so."""
+    """Rate, bandwidth, age, jitter, latency, losses and size, or why there are none."""
     if not row.measured:
         parts = [_("not measured: Deck is not subscribed")]
     elif row.trouble is Trouble.QUIET and row.age_s is not None:
@@ -45,7 +45,7 @@ def figures(row: TopicRow, size_bytes: int | None) -> list[str]:
 
 
 def packed(parts: Sequence[str], width: int) -> list[str]:
-    """The parts in lines of at most so many cells, each line as full as can be."""
+    """The parts in lines of at most `width` cells, each line as full as possible."""
     lines: list[str] = []
     for part in parts:
         if lines and cell_len(lines[-1]) + len(BETWEEN) + cell_len(part) <= width:
@@ -56,7 +56,7 @@ def packed(parts: Sequence[str], width: int) -> list[str]:
 
 
 def size_text(size_bytes: int) -> str:
-    """A size with three figures and its unit."""
+    """A size with three significant digits and its unit."""
     if size_bytes < KILO:
         return _("{n} B").format(n=size_bytes)
     if size_bytes < KILO * KILO:
@@ -65,7 +65,7 @@ def size_text(size_bytes: int) -> str:
 
 
 def ends(row: TopicRow) -> str:
-    """Who publishes and who listens, by their names where they are known."""
+    """Who publishes and who subscribes, by name where known."""
     publishers = names(row.published_by, counted=True)
     if not publishers and (row.publishers or not row.own_publishers):
         publishers = ngettext("{n} publisher", "{n} publishers", row.publishers).format(

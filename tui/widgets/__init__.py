@@ -1,6 +1,6 @@
-"""Widgets that two screens or more share: plain data in by methods, Textual messages out.
+"""Widgets used by several screens: they take plain data through methods and post messages.
 
-And the words that go with them (`words`, `trouble`, `node_words`). Every screen and panel may
-import these; they know no screen and no app; of the rest only who takes faults and the pace of
-pictures. What one screen alone uses stands in its folder.
+The texts that go with them are in `words`, `trouble` and `node_words`. Every screen and panel may
+import these; they know no screen and no app, and of the other folders only the fault handler and
+the pace of pictures. A widget used by only one screen is in the folder of that screen.
 """

@@ -1,6 +1,6 @@
-"""A panel drawn from values: only the cells that changed are drawn again.
+"""A panel drawn from values: only cells that have changed are redrawn.
 
-It shows why there is nothing to draw, and greys what is no longer true.
+It shows why there is nothing to draw, and greys out values that are no longer current.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from tui.widgets.trouble import no_data_words, trouble_words
 from tui.widgets.words import word_strips
 
 _ONE_CELL_EACH = re.compile("[ -~\u0400-\u0482\u2500-\u25ff\u2800-\u28ff]*")
-"""Text whose characters need not be measured one by one."""
+"""Text whose characters need not be measured individually."""
 LOOKS = ("muted", "good", "warn", "bad", "stop", "accent", "second", "strong", "alert")
 
 
 class Ink(NamedTuple):
-    """A text and how it looks: one of `LOOKS`, or plain. Only `alert` is not greyed when stale."""
+    """A text and its look: one of `LOOKS`, or plain. Only `alert` is not greyed out when stale."""
 
     text: str
     look: str = ""
@@ -40,7 +40,7 @@ Line = list[Ink]
 
 
 class Instead(NamedTuple):
-    """Words in place of values, where messages come that say nothing of them."""
+    """Words in place of values, when messages arrive but do not contain them."""
 
     headline: str
     detail: str
@@ -69,7 +69,7 @@ class Drawing(OneStyle, Widget):
     """
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Begin with nothing to draw."""
+        """Start with nothing to draw."""
         super().__init__(id=id, classes=classes)
         self._lines: list[Line] = []
         self._trouble: Trouble | None = None
@@ -78,7 +78,7 @@ class Drawing(OneStyle, Widget):
         self._instead: Instead | None = None
         self._styles: dict[str, Style] = {}
         self._drawn_in = Size(0, 0)
-        """For which size the lines were drawn."""
+        """The size for which the lines were drawn."""
         self._fault = ""
         """Why the values cannot be drawn, empty if they can."""
 
@@ -88,38 +88,38 @@ class Drawing(OneStyle, Widget):
         raise NotImplementedError
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw the values into so many cells; lines that are missing stay blank."""
+        """Draw the values into this many cells; missing lines stay blank."""
         raise NotImplementedError
 
     def show_trouble(
         self, trouble: Trouble | None, detail: str = "", age_s: float | None = None
     ) -> None:
-        """Tell why nothing comes (None: all is well), and the age of the newest message."""
-        # An age that nobody is told of is no reason to draw.
+        """Say why nothing arrives (None: all is well), and the age of the newest message."""
+        # An age that is not shown is no reason to redraw.
         state = (trouble, detail, None if trouble is None else age_s)
         if state != (self._trouble, self._detail, self._age_s):
             self._trouble, self._detail, self._age_s = state
             self.redraw()
 
     def show_instead(self, words: Instead | None) -> None:
-        """Say these words in place of values, which are no longer true; none: show values again."""
+        """Show these words in place of outdated values; if empty, show values again."""
         if words != self._instead:
             self._instead = words
             self.redraw()
 
     @property
     def draws(self) -> bool:
-        """Whether values are drawn, and no words in place of them."""
+        """Whether values are drawn, rather than words in place of them."""
         return self.has_value and self._instead is None
 
     @property
     def stale(self) -> bool:
-        """Whether the values drawn are no longer those of the moment."""
+        """Whether the values drawn are no longer current."""
         return self._trouble is not None and self.has_value
 
     @property
     def stale_words(self) -> str:
-        """For how long nothing has come, or why; empty while all is well."""
+        """For how long nothing has arrived, or why; empty while all is well."""
         if self._trouble is None:
             return ""
         if self._age_s is not None:
@@ -127,13 +127,13 @@ class Drawing(OneStyle, Widget):
         return trouble_words(self._trouble)
 
     def redraw(self) -> None:
-        """Draw what has changed."""
+        """Redraw what has changed."""
         width, height = self.size
         if not self.is_mounted or width < 1 or height < 1:
             return
         had, self._lines = self._lines, self._drawn(width, height)
         if not had or not self._lines:
-            # Words stood there, or will.
+            # There were words in place of values, or will be.
             self.refresh()
             return
         regions = [
@@ -151,25 +151,25 @@ class Drawing(OneStyle, Widget):
             return []
         try:
             lines = self.draw(width, height)[:height]
-        except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+        except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
             self._fault = bear(self, error)
             return []
         return [_greyed(line) for line in lines] if self.stale else lines
 
     def on_resize(self) -> None:
-        """Draw at the new size."""
+        """Redraw at the new size."""
         width, height = self.size
         self._lines = self._drawn(width, height) if width and height else []
         self.refresh()
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         self.on_resize()
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Some lines, all in the styles of this moment: Textual works one out in 0.2 ms.
+        """Some lines, with styles computed once for all of them: Textual takes 0.2 ms for one.
 
-        It does not tell of every new size, either, when several layouts come at once.
+        Also handles a new size, which Textual does not always report if several layouts coincide.
         """
         self._styles.clear()
         if self._drawn_in != self.size:
@@ -177,7 +177,7 @@ class Drawing(OneStyle, Widget):
         return super().render_lines(crop)
 
     def render_line(self, y: int) -> Strip:
-        """One line: of the drawing, or of words in place of it."""
+        """One line of the drawing, or of the words in place of it."""
         width = self.size.width
         if self._fault or not self.draws:
             return self._words(y, width)
@@ -238,19 +238,19 @@ def _cells(line: Line, width: int) -> list[tuple[str, str]]:
 
 
 def cells_of(line: Line) -> int:
-    """Cells that a line takes."""
+    """Width of a line in cells."""
     return sum(cell_len(ink.text) for ink in line)
 
 
 def fit(text: str, width: int) -> str:
-    """The text in exactly so many cells, an ellipsis at its end where it is cut."""
+    """The text in exactly `width` cells, with an ellipsis at the end if it was cut."""
     if cell_len(text) > width > 0:
         return set_cell_size(text, width - 1) + "…"
     return set_cell_size(text, max(0, width))
 
 
 def beside(left: Line, right: Line, width: int) -> Line:
-    """Two lines at the two ends of one; the left one gives way where there is no room."""
+    """Two texts at the two ends of a line; the left one is cut if there is not enough room."""
     taken = cells_of(right)
     room = max(0, width - taken - 1)
     line: Line = []

@@ -1,4 +1,4 @@
-"""A line to type into that never holds what it does not show."""
+"""An input line that never contains anything it does not show."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from text.plain import plain
 
 
 class Field(Input):
-    """An `Input` whose value is what stands there, typed, pasted or set: that is what is sent.
+    """An `Input` whose value is exactly what it shows, whether typed, pasted or set.
 
-    A value that is more than plain text has to be put there, and read, in a form that is plain.
+    A value that is more than plain text has to be set, and read, in an escaped form.
     """
 
-    # A blink is bytes over the line twice a second, for as long as somebody thinks.
+    # A blinking cursor would send bytes twice a second for as long as the user thinks.
     cursor_blink = reactive(False, init=False)
 
     def validate_value(self, value: str) -> str:
-        """Make visible what would be hidden, or obeyed by the terminal."""
+        """Escape what would be invisible, or interpreted by the terminal."""
         return plain(value)

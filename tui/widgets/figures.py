@@ -6,14 +6,14 @@ from text.figures import figure, whole
 from text.i18n import _
 
 UNKNOWN = "–"
-"""Stands where there is no figure."""
+"""Shown if there is no figure."""
 WHOLE_FROM = 100
 MILLI = 1e-3
 MICRO = 1e-6
 
 
 def seconds_text(seconds: float | None) -> str:
-    """A short time with three figures and its unit: `12 µs`, `1.2 ms`, `350 ms`, `2.5 s`."""
+    """A short time with two or three digits and a unit: `12 µs`, `1.2 ms`, `350 ms`, `2.5 s`."""
     if seconds is None:
         return UNKNOWN
     size = abs(seconds)
@@ -25,7 +25,7 @@ def seconds_text(seconds: float | None) -> str:
 
 
 def count_text(count: int | None) -> str:
-    """A count that fits into five cells."""
+    """A count in at most five cells."""
     if count is None:
         return UNKNOWN
     if count < 100_000:

@@ -1,6 +1,6 @@
-"""A picture as rows of half-block characters: two pixels a cell, upper and lower.
+"""A picture as rows of half-block characters: two pixels in each cell, upper and lower.
 
-Imports numpy: whoever stands on the first screen imports this when there is a picture.
+This imports numpy, so widgets on the first screen import it only when there is a picture.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ Pixels: TypeAlias = "NDArray[np.uint8]"
 UPPER_HALF = "▀"
 FULL_DEPTH = 8
 JUMP = 4
-"""Cells between two changes in a row that cost less to draw than to jump over."""
+"""A run of unchanged cells this short is cheaper to redraw than to skip."""
 
 
 def fitting_size(width: int, height: int, columns: int, rows: int) -> tuple[int, int]:
-    """Width and height in pixels of the largest picture of this shape within the cells given.
+    """Width and height in pixels of the largest picture of this shape within the given cells.
 
     A cell is about twice as high as wide, so half of one is about square. The height is even.
     """
@@ -37,7 +37,7 @@ def fitting_size(width: int, height: int, columns: int, rows: int) -> tuple[int,
 
 
 def coarser(picture: Pixels, bits: int) -> Pixels:
-    """The picture with so many bits a channel, black staying black and white white."""
+    """The picture with this many bits in each channel; black stays black and white stays white."""
     if bits >= FULL_DEPTH:
         return picture
     levels = (1 << bits) - 1
@@ -47,9 +47,9 @@ def coarser(picture: Pixels, bits: int) -> Pixels:
 
 
 def steadied(before: Pixels, fresh: Pixels, bits: int) -> Pixels:
-    """The fresh picture, coarser, with the pixels of the one before where they hardly differ.
+    """The new picture, coarser, keeping pixels of the previous one where they hardly differ.
 
-    A pixel on the edge between two steps of colour must not flicker with the camera's noise.
+    A pixel between two levels of colour must not flicker with the camera's noise.
     """
     moved = np.abs(fresh.astype(np.int16) - before) > (256 >> bits)
     now: Pixels = np.where(moved.any(axis=2, keepdims=True), coarser(fresh, bits), before)
@@ -57,9 +57,9 @@ def steadied(before: Pixels, fresh: Pixels, bits: int) -> Pixels:
 
 
 def changed_spans(before: Pixels, after: Pixels) -> list[tuple[int, int, int]]:
-    """Where two pictures of one shape differ, as (row of cells, first column, columns).
+    """Where two pictures of the same shape differ, as (row of cells, first column, columns).
 
-    Differences that lie close together in a row are one span: to move the cursor costs bytes too.
+    Differences that are close together in a row form one span: moving the cursor costs bytes too.
     """
     differ = (before != after).any(axis=2)
     cells = differ[0::2] | differ[1::2]

@@ -1,4 +1,4 @@
-"""A camera picture in the terminal, cheap enough to be live over a slow line."""
+"""A camera picture in the terminal, efficient enough to be live over a slow line."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
     from tui.widgets.half_blocks import Pixels
 
 CAPTION_FROM = 4
-"""Rows from which on one of them is given to the caption."""
+"""Number of rows from which on one of them is used for the caption."""
 SCALE_FROM = 8
-"""Rows from which on one of them is given to a scale, if there is one."""
+"""Number of rows from which on one of them is used for a scale, if there is one."""
 WIDEST_SCALE = 48
 UNPLACED = (200, 60)
-"""Columns and rows to count with while there are none."""
+"""Columns and rows to assume before the widget has a size."""
 
 
 class ImageScale(NamedTuple):
-    """What the colours of a picture stand for: from the first to the last."""
+    """The meaning of the colours of a picture, from the first to the last."""
 
     first: str
     last: str
@@ -47,21 +47,21 @@ class ImageScale(NamedTuple):
 
 
 class ShownPicture(NamedTuple):
-    """What is asked to be shown."""
+    """A picture to be shown."""
 
     rgb: Pixels
     caption: str
     scale: ImageScale | None
     hz: str
-    """How many come a second; empty if that is not known."""
+    """How many arrive a second; empty if unknown."""
 
 
 class ImageView(OneStyle, Widget):
     """Shows an RGB picture in half-blocks, or words where there is none.
 
-    Only cells whose colour changed visibly are drawn again. `bits` is the depth of a channel:
-    fewer bits, fewer bytes to the terminal. A picture that takes the place of another waits until
-    the line to the terminal is free for it; of those that come meanwhile only the newest is shown.
+    Only cells whose colour has changed visibly are redrawn. `bits` is the depth of a channel: fewer
+    bits mean fewer bytes to the terminal. A picture that replaces another one waits until the line
+    to the terminal is free; of those that arrive in the meantime only the newest is shown.
     """
 
     ALLOW_SELECT = False
@@ -74,7 +74,7 @@ class ImageView(OneStyle, Widget):
         self._bits = bits
         self._newest: ShownPicture | None = None
         self._waits = False
-        """Whether the newest picture is not drawn yet."""
+        """Whether the newest picture is still waiting to be drawn."""
         self._timer: Timer | None = None
         self._pace = PicturePace()
         self._shown: Pixels | None = None
@@ -86,10 +86,10 @@ class ImageView(OneStyle, Widget):
     def show(
         self, rgb: Pixels, caption: str = "", scale: ImageScale | None = None, hz: str = ""
     ) -> None:
-        """Show a picture of shape (height, width, 3) at any size, with a line of text under it.
+        """Show a picture of shape (height, width, 3) at any size, with a line of text below it.
 
-        A scale stands between picture and text, which ends with the rate.
-        Raises `ValueError` when the array has another shape.
+        A scale is shown between picture and text; the text ends with the rate. Raises `ValueError`
+        if the array has another shape.
         """
         if rgb.shape[2:] != (3,) or not rgb.size:
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
@@ -104,7 +104,7 @@ class ImageView(OneStyle, Widget):
             self._look_in(wait_s)
 
     def show_words(self, headline: str, detail: str = "") -> None:
-        """Show why there is no picture, in place of one."""
+        """Show why there is no picture, in its place."""
         if self._newest is None and (headline, detail) == (self._headline, self._detail):
             return
         self._newest = self._shown = None
@@ -115,41 +115,42 @@ class ImageView(OneStyle, Widget):
 
     @property
     def has_picture(self) -> bool:
-        """Whether a picture is shown now."""
+        """Whether a picture is shown."""
         return self._newest is not None
 
     @property
     def pixel_size(self) -> tuple[int, int]:
-        """Width and height in pixels that there is room for: no larger picture is of use."""
+        """Width and height in pixels of the available room: a larger picture is of no use."""
         width, height = self.size
         return width, 2 * max(0, height - self._caption_rows(height))
 
     def wanted(self, width: int, height: int) -> tuple[int, int]:
-        """Of a picture of this size, width and height of which each pixel that is shown is made.
+        """Width and height at which a picture of this size should be decoded.
 
-        Twice as many as are shown each way: a pixel on the screen is the mean of four.
+        Twice as many pixels as are shown in each direction: a pixel on the screen is the mean of
+        four.
         """
         from tui.widgets import half_blocks
 
         columns, rows = self.pixel_size[0], self.pixel_size[1] // 2
         if columns < 1 or rows < 1:
-            # It is not on the screen yet, and this may be the only picture that ever comes.
+            # It is not on the screen yet, and there may never be another picture.
             columns, rows = UNPLACED
         wide, high = half_blocks.fitting_size(width, height, columns, rows)
         return 2 * wide, 2 * high
 
     @property
     def caption(self) -> str:
-        """The line under the picture."""
+        """The line below the picture."""
         return self._caption
 
     @property
     def words(self) -> tuple[str, str]:
-        """Headline and detail shown in place of a picture, both empty when there is one."""
+        """Headline and detail shown in place of a picture, both empty if there is one."""
         return self._headline, self._detail
 
     def render_line(self, y: int) -> Strip:
-        """One line: of the picture, the caption, or words."""
+        """One line of the picture, the caption, or the words in their place."""
         width, height = self.size
         if self._shown is None:
             return self._words_strip(y, width, height)
@@ -180,7 +181,7 @@ class ImageView(OneStyle, Widget):
         self._timer = self.set_timer(wait_s, self._look_again)
 
     def _look_again(self) -> None:
-        """Draw the newest picture if it may go now."""
+        """Draw the newest picture if it may be sent now."""
         if self._newest is None or not self._waits:
             return
         if wait_s := self._bandwidth.wait_s():
@@ -239,7 +240,7 @@ class ImageView(OneStyle, Widget):
 
     def _set_scale(self, scale: ImageScale | None) -> None:
         if (scale is None) != (self._scale is None):
-            # There is a row more for the picture, or less.
+            # The picture gains or loses a row.
             self._shown = None
             self.refresh()
         elif scale and self._scale and scale[:2] != self._scale[:2]:

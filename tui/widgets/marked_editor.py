@@ -1,4 +1,4 @@
-"""A text field coloured by hand, with the places that are wrong underlined and marked."""
+"""A text field with its own colouring, and errors underlined and marked."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ MARGIN = 2
 """Cells that `TextArea` leaves between a line's number and its text."""
 
 LONGEST_COLOURED = 4096
-"""Characters of a line: a wrapped line is coloured anew for each of its rows on the screen."""
+"""Limit in characters of a line: a wrapped line is coloured again for each of its rows."""
 
 
 class TextPlace(NamedTuple):
-    """Where something is wrong, counted from 1."""
+    """The position of an error, counted from 1."""
 
     line: int
     column: int
@@ -43,21 +43,21 @@ class Token(NamedTuple):
     start: int
     end: int
     kind: str
-    """`key`, `string`, `number`, `word`, `mark`, `comment`, or `bad` for what does not belong."""
+    """`key`, `string`, `number`, `word`, `mark`, `comment`, or `bad` for what is not allowed."""
 
 
 class MarkedEditor(TextArea):
-    """Edits text line by line; Enter is a new line, and nothing here sends anything.
+    """Edits text line by line; Enter starts a new line, and nothing here sends anything.
 
-    Its text is all to be seen: what would be hidden, or obeyed by the terminal, comes in as an
-    escape, which means the same between double quotes, of YAML and of JSON.
+    All of its text is visible: characters that would be invisible, or interpreted by the terminal,
+    become escapes, which mean the same between double quotes in both YAML and JSON.
 
-    A subclass says what the tokens of a line are. Highlighting hangs on `get_line`, which is there
-    to be extended, and not on tree-sitter: it and a grammar are 2.5 MB of compiled code.
+    A subclass provides the tokens of a line. Highlighting is based on `get_line`, which is meant to
+    be overridden, rather than on tree-sitter, which with a grammar is 2.5 MB of compiled code.
     """
 
     class TooLong(Message):
-        """What was pasted would make the text longer than is taken; it was left out."""
+        """A paste was rejected because the text would become too long."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "marked-editor--key",
@@ -87,7 +87,7 @@ class MarkedEditor(TextArea):
     """
 
     longest: ClassVar[int] = 64 * 1024
-    """Characters that the text may have; a longer one would hold the whole screen up."""
+    """Maximum length of the text in characters; a longer one would block the whole screen."""
 
     def __init__(self, text: str = "", *, id: str | None = None) -> None:
         super().__init__(
@@ -99,35 +99,35 @@ class MarkedEditor(TextArea):
             compact=True,
         )
         self.indent_width = 2
-        # A blink is bytes over the line twice a second, for as long as the screen is open.
+        # A blinking cursor would send bytes twice a second for as long as the screen is open.
         self.cursor_blink = False
         self._places: tuple[TextPlace, ...] = ()
 
     def tokens_of(self, line: str) -> Iterable[Token]:
-        """Return the tokens of a line in order; never fails, whatever the line is."""
+        """Return the tokens of a line in order; accepts any text."""
         del line
         return ()
 
     def escaped(self, character: str) -> str:
-        """Return what stands for a character that must not be shown as it is."""
+        """Return the escape for a character that must not be shown as it is."""
         return json.dumps(character)[1:-1]
 
     def shown(self, text: str) -> str:
-        """Return a text as it stands in here, in its lines."""
+        """Return a text as it appears in this field, split into lines."""
         lines = text.replace("\r\n", "\n").replace("\r", "\n")
         return replaced(lines, lambda one: one if one in "\n\t" else self.escaped(one))
 
     def load_text(self, text: str) -> None:
-        """Begin anew with a text."""
+        """Replace the text and discard the history."""
         super().load_text(self.shown(text))
 
     def edit(self, edit: Edit) -> EditResult:
-        """Take what was typed, pasted or put here."""
+        """Take an edit, whether typed, pasted or set by the program."""
         edit.text = self.shown(edit.text)
         return super().edit(edit)
 
     def show_problems(self, places: Iterable[TextPlace]) -> None:
-        """Underline what stands at these places and mark their lines; none clears the marks."""
+        """Underline the text at these places and mark their lines; with none, clear the marks."""
         shown = tuple(places)
         if shown != self._places:
             self._places = shown
@@ -135,25 +135,25 @@ class MarkedEditor(TextArea):
             self.refresh()
 
     def go_to(self, place: TextPlace) -> None:
-        """Put the cursor to a place, as near as the text allows."""
+        """Move the cursor to a place, as near as the text allows."""
         row = max(0, min(place.line - 1, self.document.line_count - 1))
         column = max(0, min(place.column - 1, len(self.document.get_line(row))))
         self.move_cursor((row, column), center=True)
         self.focus()
 
     def replace_all(self, text: str) -> None:
-        """Put another text in place of this one, in a way that can be undone."""
+        """Replace the whole text in a way that can be undone."""
         self.replace(text, self.document.start, self.document.end)
         self.move_cursor((0, 0))
 
     def on_paste(self, event: Paste) -> None:
-        """Leave out what is too long."""
+        """Reject text that is too long."""
         if len(self.shown(event.text)) + len(self.text) > self.longest:
             event.prevent_default().stop()
             self.post_message(self.TooLong())
 
     def get_line(self, line_index: int) -> Text:
-        """The line with its tokens coloured."""
+        """Return the line with its tokens coloured."""
         source = self.document.get_line(line_index)
         line = Text(source, end="", no_wrap=True)
         for token in self.tokens_of(source) if len(source) <= LONGEST_COLOURED else ():
@@ -164,7 +164,7 @@ class MarkedEditor(TextArea):
         return line
 
     def render_line(self, y: int) -> Strip:
-        """The line with a mark between its number and its text where something is wrong in it."""
+        """The line, with a mark between its number and its text if it contains an error."""
         strip = super().render_line(y)
         if not self._places:
             return strip
@@ -179,7 +179,7 @@ class MarkedEditor(TextArea):
     def get_component_rich_style(
         self, *names: str, partial: bool = False, default: Style | None = None
     ) -> Style:
-        """The line of the cursor gets a background only: its tokens keep their colours."""
+        """Give the cursor's line only a background, so that its tokens keep their colours."""
         style = super().get_component_rich_style(*names, partial=partial, default=default)
         if "text-area--cursor-line" in names:
             return type(style)(bgcolor=style.bgcolor)

@@ -1,4 +1,4 @@
-"""The head of a detail: a name, and what is to be said of it in a few lines."""
+"""The head of a detail: a name, and a few lines of facts about it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ LONGEST = 300
 
 
 class NameHead(Static):
-    """The name, bold, and lines of facts below."""
+    """The name in bold, and lines of facts below it."""
 
     DEFAULT_CSS = """
     NameHead { width: 1fr; height: auto; max-height: 4; background: $panel; padding: 0 1; }
@@ -22,7 +22,7 @@ class NameHead(Static):
         self._said: tuple[str, ...] = ()
 
     def show(self, name: str, *facts: str) -> None:
-        """Show these, harmless, each fact in a line of its own."""
+        """Show the name and the facts, made harmless, each fact on its own line."""
         said = (name, *(fact for fact in facts if fact))
         if said != self._said:
             self._said = said

@@ -1,4 +1,4 @@
-"""A node that Deck has started in words: its state, why, and what it costs."""
+"""A node that Deck has started in words: its state, the reason, and its resource usage."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ STATES = {
     NodeState.BACKOFF: ("↻", N_("restarts"), "warn"),
     NodeState.FAILED: ("✗", N_("failed"), "bad"),
 }
-"""State to sign, word and meaning: never the colour alone."""
+"""Maps a state to sign, word and meaning: colour is never the only indication."""
 
 LATE = ("◔", N_("running"), "warn")
-"""One that runs, but is not ready though its time is up."""
+"""For a node that runs, but was not ready in time."""
 MINUTE_S, HOUR_S, DAY_S = 60, 3600, 86_400
 LONGEST_S = 1000.0 * DAY_S
-"""A longer time, or one before all, is no time that a node can have run."""
+"""A node cannot have run for longer than this, or for a negative time."""
 
 
 def state_words(node: NodeStatus) -> tuple[str, str, str]:
-    """Return sign, word and meaning of a node's state."""
+    """Return the sign, word and meaning of a node's state."""
     return LATE if node.late else STATES[node.state]
 
 
 def why(node: NodeStatus) -> str:
-    """Return why the node is in its state, or what is run if there is nothing to say."""
+    """Return why the node is in its state, or what it runs if there is no reason."""
     if node.detail:
         return plain(said(node.detail))
     if node.signal:
@@ -48,7 +48,7 @@ def why(node: NodeStatus) -> str:
 
 
 def duration(seconds: float | None) -> str:
-    """Return a time in the two greatest units, five cells at most: `7s`, `1m23`, `2h05`, `3d04`."""
+    """Return a time in its two largest units, at most five cells: `7s`, `1m23`, `2h05`, `3d04`."""
     if seconds is None:
         return ""
     if not 0 <= seconds < LONGEST_S:

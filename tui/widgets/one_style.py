@@ -1,4 +1,4 @@
-"""A widget's own style, worked out once for all lines of a drawing."""
+"""A widget's own style, computed once for all lines of a drawing."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ if TYPE_CHECKING:
     from textual.strip import Strip
     from textual.widget import Widget as Base
 else:
-    # Textual looks for a widget's CSS along the first base that is a widget.
+    # Textual looks for a widget's CSS along the first base class that is a widget.
     Base = object
 
 
 class OneStyle(Base):
-    """Mixed into a widget that draws line by line: Textual works out `rich_style` in 0.2 ms."""
+    """Mixin for a widget that draws line by line: computing `rich_style` takes Textual 0.2 ms."""
 
     __drawing = False
     __style: Style | None = None
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Some lines, all in the style of this moment."""
+        """Some lines, all in the current style."""
         self.__drawing = True
         try:
             return super().render_lines(crop)

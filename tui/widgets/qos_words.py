@@ -1,4 +1,4 @@
-"""Two endpoints that do not hear each other, in a sentence with both ways out."""
+"""Two incompatible endpoints, in a sentence with the two ways to fix them."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ _TIMES = {
         "{requested} or less, or let {subscriber} ask for none."
     ),
 }
-"""By the policy, and whether the publisher offers any such time."""
+"""By the policy, and whether the publisher offers such a time at all."""
 
 
 def pair_words(facts: Mapping[str, str]) -> str:
-    """Who does not hear whom, and the two ways out, from the facts of a `Trouble.QOS_MISMATCH`."""
+    """Who does not hear whom, and the two fixes, from the facts of a `Trouble.QOS_MISMATCH`."""
     policy, offered = facts["policy"], facts["offered"]
     template = _TIMES.get((policy, bool(offered)))
     if template is None:
@@ -56,7 +56,7 @@ def pair_words(facts: Mapping[str, str]) -> str:
 
 
 def misfit_words(facts: Mapping[str, str]) -> str:
-    """The first pair in a sentence, and how many more there are."""
+    """The first pair in a sentence, and the number of further ones."""
     words = pair_words(facts)
     more = int(facts.get("more", "0"))
     if not more:

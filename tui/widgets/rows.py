@@ -1,4 +1,4 @@
-"""A list of rows with a cursor that draws only the cells whose text has changed."""
+"""A list of rows with a cursor, which redraws only the cells whose text has changed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FAR = 1_000_000
 
 
 class Column(NamedTuple):
-    """A column as wide as `width` cells; 0 takes what the others leave."""
+    """A column of `width` cells; with 0 it takes the remaining width."""
 
     title: str
     width: int = 0
@@ -33,16 +33,16 @@ class Column(NamedTuple):
 
 
 class Cell(NamedTuple):
-    """A text, and what it means: `good`, `warn`, `bad`, `dim` or nothing."""
+    """A text and its meaning: `good`, `warn`, `bad`, `dim` or none."""
 
     text: str
     meaning: str = ""
 
 
 class Row(NamedTuple):
-    """A row with the name by which it is chosen; without one it is a heading.
+    """A row with the key by which it is chosen; without one it is a heading.
 
-    Where there are fewer cells than columns the last cell takes the room of those missing.
+    If there are fewer cells than columns, the last cell takes the room of the missing ones.
     """
 
     key: str
@@ -50,10 +50,10 @@ class Row(NamedTuple):
 
 
 class Rows(OneStyle, ScrollView, can_focus=True):
-    """Shows rows; one of them is chosen, and stays so while others change."""
+    """Shows rows; one of them is chosen, and stays chosen while others change."""
 
     class Highlighted(Message):
-        """Another row is the chosen one."""
+        """Another row was chosen."""
 
         def __init__(self, rows: Rows, key: str) -> None:
             super().__init__()
@@ -66,7 +66,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             return self.rows
 
     class Opened(Highlighted):
-        """Enter was pressed on the chosen row, or it was clicked twice."""
+        """Enter was pressed on the chosen row, or it was clicked a second time."""
 
     ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {
@@ -109,14 +109,14 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._columns: tuple[Column, ...] = ()
         self._widths: tuple[int, ...] = ()
         self._placed_in = 0
-        """The width that the columns share."""
+        """The width for which the columns were laid out."""
         self._rows: tuple[Row, ...] = ()
         self._chosen = ""
         self._moved = False
-        """Whether a person has chosen a row."""
+        """Whether the user has chosen a row."""
 
     def show(self, columns: Sequence[Column], rows: Sequence[Row]) -> None:
-        """Show these rows under these columns; texts are one line each, and harmless."""
+        """Show these rows in these columns; texts must be harmless and have no line breaks."""
         before, self._rows = self._rows, tuple(rows)
         if tuple(columns) != self._columns:
             self._columns = tuple(columns)
@@ -131,12 +131,12 @@ class Rows(OneStyle, ScrollView, can_focus=True):
 
     @property
     def chosen(self) -> str:
-        """Key of the chosen row, empty where there is none."""
+        """Key of the chosen row, empty if there is none."""
         return self._chosen
 
     @property
     def is_chosen_cut(self) -> bool:
-        """Whether the chosen row has a text that its column has no room for."""
+        """Whether a text of the chosen row does not fit into its column."""
         index = self._index(self._chosen)
         if index is None:
             return False
@@ -153,7 +153,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             self._choose(index)
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Some lines; Textual does not tell of every new size when several layouts come at once."""
+        """Some lines; Textual does not always report a new size if several layouts coincide."""
         if self._placed_in != self.scrollable_size.width:
             self._place()
         return super().render_lines(crop)
@@ -174,7 +174,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         return self._strip(row.cells, "▶ " if chosen else "  ", base, width, plain=chosen)
 
     def action_move(self, by: int) -> None:
-        """Choose the row so many below."""
+        """Choose the row this many below."""
         self._moved = True
         at = self._index(self._chosen)
         self._choose_near(max(0, min((at or 0) + by, len(self._rows) - 1)), -1 if by < 0 else 1)
@@ -184,12 +184,12 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self.action_move(pages * max(1, self.size.height - self._top - 1))
 
     def action_open(self) -> None:
-        """Tell that the chosen row is wanted."""
+        """Report that the chosen row was opened."""
         if self._chosen:
             self.post_message(self.Opened(self, self._chosen))
 
     def on_click(self, event: Click) -> None:
-        """Choose a row; twice opens it."""
+        """Choose a row; a second click opens it."""
         index = event.y - self._top + self.scroll_offset.y
         if event.y >= self._top and index < len(self._rows) and self._rows[index].key:
             self._moved = True
@@ -199,23 +199,23 @@ class Rows(OneStyle, ScrollView, can_focus=True):
                 self.action_open()
 
     def on_resize(self) -> None:
-        """Place the columns anew, and keep the chosen row in sight."""
+        """Lay out the columns again, and keep the chosen row in sight."""
         self._place()
         index = self._index(self._chosen)
         if index is not None:
-            # What was chosen while there was little room yet has scrolled off what stands above it.
+            # What was chosen while there was little room may have scrolled off the rows above it.
             self._bring_into_view(index, self.scroll_offset.y if self._moved else 0)
 
     def watch_show_vertical_scrollbar(self) -> None:
-        """Make room for the scroll bar, or use what it has left."""
+        """Lay out the columns with or without the scroll bar."""
         self._place()
 
     def on_focus(self) -> None:
-        """Draw the cursor as that of the focused widget."""
+        """Draw the cursor as focused."""
         self._refresh_row(self._index(self._chosen))
 
     def on_blur(self) -> None:
-        """Draw the cursor as that of a widget in the background."""
+        """Draw the cursor as unfocused."""
         self._refresh_row(self._index(self._chosen))
 
     def _place(self) -> None:
@@ -227,7 +227,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         return next((i for i, row in enumerate(self._rows) if row.key and row.key == key), None)
 
     def _choose_near(self, index: int, step: int = 1) -> None:
-        """Choose this row or, where it is a heading, the nearest that is none, `step` first."""
+        """Choose this row or, if it is a heading, the nearest row, in direction `step` first."""
         below, above = range(index, len(self._rows)), range(index, -1, -1) if self._rows else ()
         places = (*below, *above) if step > 0 else (*above, *below)
         found = next((place for place in places if self._rows[place].key), None)
@@ -246,14 +246,14 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._bring_into_view(index, self.scroll_offset.y)
 
     def _bring_into_view(self, index: int, top: int) -> None:
-        """Scroll as little as there is need for, if row `top` were the first in sight."""
+        """Scroll as little as needed, assuming that row `top` is the first in sight."""
         rows = max(1, self.size.height - self._top)
         target = min(index, max(top, index - rows + 1))
         if index < rows and not any(row.key for row in self._rows[:index]):
-            # What stands above the first row is its heading.
+            # The rows above the first one are its heading.
             target = 0
         if target != self.scroll_offset.y:
-            # Rows that have just come have no scroll bar yet, without which nothing would scroll.
+            # New rows have no scroll bar yet, and without it Textual would not scroll.
             self.scroll_to(y=target, animate=False, immediate=True, force=True)
 
     def _refresh_row(self, index: int | None) -> None:
@@ -277,7 +277,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
                 x += width + 1
 
     def _room_for(self, cells: int) -> tuple[int, ...]:
-        """Return the widths of a row of so many cells."""
+        """Return the widths of a row with this many cells."""
         if not cells or cells >= len(self._widths):
             return self._widths
         kept = self._widths[: cells - 1]
@@ -286,7 +286,8 @@ class Rows(OneStyle, ScrollView, can_focus=True):
     def _ink(self, name: str) -> Style:
         """Return the colour of a component, blended with the background, and its weight.
 
-        A partial style would lose how strong the colour is, and whether it is to be dark or light.
+        A partial style would not include the opacity, nor whether an automatic colour is dark or
+        light.
         """
         look = self.get_component_rich_style(name)
         return type(look)(color=look.color, bold=look.bold)
@@ -307,7 +308,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
 
 
 def _widths(columns: Sequence[Column], width: int) -> tuple[int, ...]:
-    """Share out `width` cells, one blank between columns."""
+    """Divide `width` cells among the columns, with one blank between them."""
     fixed = sum(column.width for column in columns) + max(0, len(columns) - 1)
     free = [column for column in columns if not column.width]
     spare = max(0, width - fixed)

@@ -1,4 +1,4 @@
-"""Why nothing is shown of a topic, in words, and the way out: four troubles, four messages."""
+"""Why a topic shows nothing, in words, and the fix: four troubles, four messages."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ _HEADLINES = {
 
 
 def trouble_words(trouble: Trouble, age_s: float | None = None) -> str:
-    """Headline for an empty panel; `age_s` is the age of the newest message, if one ever came."""
+    """The headline for an empty panel; `age_s` is the age of the newest message, if any."""
     if trouble is Trouble.QUIET and age_s is not None:
         return no_data_words(age_s)
     return _(_HEADLINES[trouble])
 
 
 def no_data_words(age_s: float) -> str:
-    """Say for how long nothing has come: whole seconds, minutes from two of them on."""
+    """Say for how long nothing has arrived: in seconds, from two minutes on in minutes."""
     if age_s < 120:
         return _("no data for {seconds} s").format(seconds=elapsed(age_s))
     return _("no data for {minutes} min").format(minutes=elapsed(age_s / 60))
 
 
 def advice(row: TopicRow) -> tuple[str, str]:
-    """Why nothing can be shown of the topic, and the way out; both empty if there is no trouble."""
+    """Why the topic cannot be shown, and the fix; both empty if there is no trouble."""
     if row.trouble is None:
         return "", _remark(row)
     if row.trouble is Trouble.QUIET and not row.publishers:
@@ -62,7 +62,7 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
     if trouble is Trouble.UNKNOWN_TYPE and "package" in facts:
         return _how_to_install(facts).format(**facts)
     if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
-        # The first frame does without.
+        # Not needed for the first frame.
         from tui.widgets.qos_words import misfit_words
 
         return misfit_words(facts)
@@ -97,7 +97,7 @@ def _remark(row: TopicRow) -> str:
 def names(endpoints: Sequence[EndpointInfo], *, counted: bool = False) -> str:
     """The nodes of these endpoints, each once, without the slash of the root namespace.
 
-    `counted`: with the number of its endpoints where there are several, as beside their sum.
+    `counted`: with the number of endpoints of each node that has several.
     """
     found = Counter(plain(end.node.removeprefix("/"), LONGEST) for end in endpoints)
     several = {name: f" ×{count}" for name, count in found.items() if counted and count > 1}

@@ -1,4 +1,4 @@
-"""Words in place of what cannot be shown: a headline and a detail, wrapped to the room there is."""
+"""Words in place of something that cannot be shown: a headline and a detail, wrapped."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def word_strips(
 
 
 def in_row(strip: Strip, left: int, width: int, base: Style) -> Strip:
-    """The strip so many cells from the left of a row of `width` cells."""
+    """The strip, this many cells from the left, in a row of `width` cells."""
     margin = [Segment(" " * left, base)] if left else []
     return Strip([*margin, *strip]).adjust_cell_length(width, base)
 
 
 def cut(segments: list[Segment], width: int, base: Style) -> Strip:
-    """A strip of exactly `width` cells; what does not fit is told by an ellipsis."""
+    """A strip of exactly `width` cells, with an ellipsis if it was cut."""
     strip = Strip(segments)
     if strip.cell_length <= width:
         return strip.adjust_cell_length(width, base)

@@ -1,4 +1,4 @@
-"""What a widget still works on ends before the widget goes."""
+"""Ends the workers of a widget before the widget is removed."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 
 class Working(DOMNode):
-    """Mixed, as the last base, into what has workers that come back to its children.
+    """Mixin, to be used as the last base, for a widget whose workers access its children.
 
-    Textual takes the children away first and cancels the workers of their parent after that. A
-    worker that came back in between would look for children that are gone, and end the program.
+    Textual removes the children first and cancels the workers of their parent afterwards. A worker
+    that continued in between would look for children that are gone, and end the program.
     """
 
     def _on_prune(self, _event: Prune) -> None:
-        """Give up, as long as the children are there."""
+        """Cancel the workers while the children still exist."""
         self.workers.cancel_node(self)

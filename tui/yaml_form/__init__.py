@@ -1,6 +1,6 @@
-"""A message filled in as YAML, with a verdict below it as one types, and the field for its type.
+"""A message entered as YAML and checked during typing, and the field for its type.
 
-Screens and dialogs put `form.YamlForm` and `type_field.TypeField` among their widgets, name the key
-of `actions.SubmitForm`, and say why something was not sent by `words.reason_words`. The rest is the
-form's own.
+Screens and dialogs use `form.YamlForm` and `type_field.TypeField` as widgets, show the key of
+`actions.SubmitForm`, and say why something was not sent with `words.reason_words`. Everything else
+is internal.
 """

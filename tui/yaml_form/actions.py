@@ -1,4 +1,4 @@
-"""What can be done in a form of YAML."""
+"""The actions of a YAML form."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from tui.actions.action import Action
 
 
 class FormTarget(Protocol):
-    """What these actions need of a form."""
+    """The part of a form that its actions use."""
 
     submits: bool
     submit_title: str
 
     def submit(self) -> None:
-        """Check, and tell that it was submitted."""
+        """Check the text, and report that it was submitted."""
 
 
 class SubmitForm(Action[FormTarget]):
-    """The message as it is filled in."""
+    """Submit the message."""
 
     id = "form.submit"
     key = "ctrl+s"
@@ -31,17 +31,17 @@ class SubmitForm(Action[FormTarget]):
 
     @classmethod
     def possible(cls, target: FormTarget) -> bool | None:
-        """Only where the form is what is submitted."""
+        """Only if the form itself is submitted."""
         return target.submits
 
     @classmethod
     def label(cls, target: FormTarget) -> str:
-        """By what becomes of it."""
+        """Named after what happens to the message."""
         return target.submit_title or cls.title
 
     @classmethod
     async def run(cls, target: FormTarget) -> None:
-        """Check and take it."""
+        """Check and submit it."""
         target.submit()
 
 

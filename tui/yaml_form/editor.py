@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class YamlEditor(MarkedEditor):
-    """Edits YAML; Enter begins the next line below the beginning of this one."""
+    """Edits YAML; Enter starts a new line with the indentation of the current one."""
 
     def escaped(self, character: str) -> str:
-        """Return the escape of YAML for a character."""
+        """Return the YAML escape for a character."""
         return escaped(character)
 
     def tokens_of(self, line: str) -> Iterable[Token]:

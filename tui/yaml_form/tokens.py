@@ -1,7 +1,7 @@
-"""The tokens of a line of YAML, for colouring it and for underlining one that is wrong.
+"""The tokens of a line of YAML, for colouring it and for underlining an error.
 
-A line is read alone: a text in quotes that spans two lines is coloured as if it ended, which harms
-nobody.
+Each line is read on its own: a quoted text that spans two lines is coloured as if it ended with the
+first, which does no harm.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _KEY_FOLLOWS = re.compile(r"\s*:(?=\s|$)")
 
 
 def tokens(line: str) -> Iterator[Token]:
-    """Yield the tokens of a line in order; never fails, whatever the line is."""
+    """Yield the tokens of a line in order; accepts any text."""
     for match in _TOKEN.finditer(line):
         yield Token(match.start(), match.end(), _kind(match, line))
 

@@ -1,4 +1,4 @@
-"""Where the name of a type is typed, with those that fit listed below."""
+"""A field for the name of a type, with matching names listed below it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from textual.events import DescendantBlur
 
 LISTED = 50
-"""More than that nobody walks through."""
+"""Nobody scrolls through more than that."""
 
 
 class TypeField(Vertical):
-    """A field of one line; while it has the focus, a list of what fits what was typed."""
+    """A one-line field; while it has the focus, it lists the types that match its text."""
 
     class TypeChosen(Message):
-        """A type was chosen: typed in full, or taken from the list."""
+        """A type was chosen: typed in full, or from the list."""
 
         def __init__(self, type_name: str) -> None:
             super().__init__()
@@ -58,12 +58,12 @@ class TypeField(Vertical):
 
     @property
     def field(self) -> Input:
-        """Where it is typed."""
+        """The input field."""
         return self.query_one(Input)
 
     @property
     def value(self) -> str:
-        """What stands there."""
+        """The text in it."""
         return self.field.value.strip()
 
     @property
@@ -72,7 +72,7 @@ class TypeField(Vertical):
         return self.has_class("-listing")
 
     def know(self, types: tuple[str, ...]) -> None:
-        """Complete by these from now on."""
+        """Use these types for completion."""
         self._types = types
         if self.field.has_focus:
             self._list()
@@ -88,7 +88,7 @@ class TypeField(Vertical):
         self.remove_class("-listing")
 
     def fitting(self) -> list[str]:
-        """Return the types that have every word typed, those whose name begins so first."""
+        """Return the types that contain every word typed, those that start with one first."""
         words = self.value.lower().split()
         found = [name for name in self._types if all(word in name.lower() for word in words)]
         first = words[0] if words else ""
@@ -101,7 +101,7 @@ class TypeField(Vertical):
         return sorted(found, key=rank)[:LISTED]
 
     def action_move(self, by: int) -> None:
-        """Go up or down in the list, which opens."""
+        """Move up or down in the list, opening it if necessary."""
         if not self.is_listing:
             self._list(everything=True)
             return
@@ -132,7 +132,7 @@ class TypeField(Vertical):
         self._choose(str(event.option.prompt))
 
     def on_descendant_blur(self, event: DescendantBlur) -> None:
-        """Nobody types here now; what stands there is taken."""
+        """Close the list and accept the text when the focus leaves."""
         del event
         self.close()
         if self.value and self.value != self._chosen:

@@ -1,1 +1,1 @@
-"""What can be done on every screen: the app's own actions, those of a recording and of a replay."""
+"""The actions of every screen: those of the app, of a recording and of a replay."""

@@ -1,4 +1,4 @@
-"""Recording what runs, from any screen."""
+"""Recording the session, from any screen."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class RecordToggle(Action["Host"]):
-    """Begin to record, or end it."""
+    """Start recording, or stop."""
 
     id = "recording.toggle"
     key = "f6"
@@ -22,22 +22,22 @@ class RecordToggle(Action["Host"]):
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
-        """Only while a robot is shown, not its recording."""
+        """Only while a robot is shown, not a recording of one."""
         return target.feed.link is not None and target.feed.replay is None
 
     @classmethod
     def label(cls, target: Host) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return N_("End recording") if target.recording.active else cls.title
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Begin, or end."""
+        """Start, or stop."""
         target.recording.toggle()
 
 
 class RecordWithoutImages(Action["Host"]):
-    """Begin to record all but pictures, which are most of what a robot with a camera says."""
+    """Start recording everything but images, which are most of the data if there is a camera."""
 
     id = "recording.without_images"
     key = "shift+f6"
@@ -48,12 +48,12 @@ class RecordWithoutImages(Action["Host"]):
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
-        """Only while nothing is recorded yet."""
+        """Only while nothing is being recorded."""
         return RecordToggle.possible(target) and not target.recording.active
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Begin."""
+        """Start."""
         target.recording.toggle(images=False)
 
 

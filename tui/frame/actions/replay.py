@@ -1,4 +1,4 @@
-"""What can be done to a recording that is played, on every screen."""
+"""The actions of a replay, on every screen."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SKIP_S = 5.0
 
 
 class ReplayAction(Action["Host"]):
-    """Something that needs a recording on the screen."""
+    """An action that needs a replay."""
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
@@ -24,14 +24,14 @@ class ReplayAction(Action["Host"]):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Do it."""
+        """Run it."""
         if target.feed.replay is not None:
             cls.do(target.feed.replay)
             target.replay_changed()
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Ask the replay for it."""
+        """Run it on the replay."""
         raise NotImplementedError
 
 
@@ -47,18 +47,18 @@ class PlayPause(ReplayAction):
 
     @classmethod
     def label(cls, target: Host) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         replay = target.feed.replay
         return N_("Play") if replay is not None and replay.state.paused else cls.title
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Pause, or go on."""
+        """Pause, or resume."""
         replay.toggle()
 
 
 class Step(ReplayAction):
-    """One message forward."""
+    """Play one message."""
 
     id = "replay.step"
     key = "full_stop,ю"
@@ -67,12 +67,12 @@ class Step(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Take one."""
+        """Play one."""
         replay.step()
 
 
 class Back(ReplayAction):
-    """A little back."""
+    """Jump back a little."""
 
     id = "replay.back"
     key = "shift+left"
@@ -86,7 +86,7 @@ class Back(ReplayAction):
 
 
 class Forward(ReplayAction):
-    """A little forward."""
+    """Jump ahead a little."""
 
     id = "replay.forward"
     key = "shift+right"
@@ -100,7 +100,7 @@ class Forward(ReplayAction):
 
 
 class SlowerReplay(ReplayAction):
-    """Slower."""
+    """Play more slowly."""
 
     id = "replay.slower"
     key = "minus,underscore"
@@ -109,12 +109,12 @@ class SlowerReplay(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Take the next lower rate."""
+        """Use the next lower rate."""
         replay.change_rate(faster=False)
 
 
 class FasterReplay(ReplayAction):
-    """Faster."""
+    """Play faster."""
 
     id = "replay.faster"
     key = "plus,equals_sign"
@@ -123,12 +123,12 @@ class FasterReplay(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Take the next higher rate."""
+        """Use the next higher rate."""
         replay.change_rate(faster=True)
 
 
 class Loop(ReplayAction):
-    """Again and again."""
+    """Repeat the recording."""
 
     id = "replay.loop"
     key = "L,Д"
@@ -137,7 +137,7 @@ class Loop(ReplayAction):
 
     @classmethod
     def do(cls, replay: Replay) -> None:
-        """Loop, or loop no more."""
+        """Turn repeating on or off."""
         replay.set_loop(not replay.state.loop)
 
 

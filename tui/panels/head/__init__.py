@@ -1,1 +1,1 @@
-"""The panel of the head: where it looks, and what it was told."""
+"""The Head panel: where the head looks, and where it was told to look."""

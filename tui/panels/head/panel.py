@@ -1,4 +1,4 @@
-"""Where the head looks, and what it was told by the LLM's commands."""
+"""Where the head looks, and what the LLM's commands told it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class HeadFeed(Panel):
         return {HEAD_STATE}
 
     def followed(self) -> set[str]:
-        """What came of the LLM's commands."""
+        """The topics with the outcome of LLM commands."""
         return {LLM_RESULT}
 
     def show(self, update: GraphUpdate) -> None:
@@ -66,10 +66,10 @@ class HeadFeed(Panel):
                 else:
                     drawing.answer(_("done") if said.get("sum") == 1 else _("refused"))
         except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
-            # Anybody may publish there; what is not ours is not shown.
+            # Anybody may publish there; messages in another format are ignored.
             return
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         super().words_changed()
         self.query_one(HeadPanel).words_changed()

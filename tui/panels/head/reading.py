@@ -1,4 +1,4 @@
-"""Where the head looks, out of a JointState."""
+"""Where the head looks, read from a JointState."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SAME_WITHIN_DEG = 0.5
 
 @dataclass(frozen=True)
 class HeadReading:
-    """Degrees, + is left and up."""
+    """Angles in degrees; positive is left and up."""
 
     pan_deg: float
     tilt_deg: float
@@ -34,11 +34,11 @@ class HeadReading:
 
     @property
     def is_known(self) -> bool:
-        """Whether both angles are: a head of servos has none before it was moved."""
+        """Whether both angles are known: servos have none before they are first moved."""
         return math.isfinite(self.pan_deg) and math.isfinite(self.tilt_deg)
 
     def near(self, other: HeadReading) -> bool:
-        """Whether the two are the same but for rounding."""
+        """Whether the two are the same except for rounding."""
         pan, tilt = self.pan_deg - other.pan_deg, self.tilt_deg - other.tilt_deg
         return abs(pan) < SAME_WITHIN_DEG and abs(tilt) < SAME_WITHIN_DEG
 
@@ -54,7 +54,7 @@ def _words(degrees: float, plus: str, minus: str) -> str:
 def head_in(value: Mapping[str, Any]) -> HeadReading | None:
     """Read a sensor_msgs/JointState in radians; None if it is not about the head.
 
-    A joint that is missing counts as not a number.
+    A missing joint is read as nan.
     """
     names = [str(name) for name in value.get("name", ())]
     if HEAD_PAN not in names and HEAD_TILT not in names:

@@ -1,4 +1,4 @@
-"""The head: where it looks, seen from above and from the side, and what it was told."""
+"""The head: where it looks, seen from above and from the side, and where it was told to look."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ DRAWN_FROM = (22, 6)
 
 
 class HeadPanel(Drawing):
-    """Shows a `Pose`, the pose that was commanded last, and the service's answer."""
+    """Shows a `Pose`, the last commanded pose, and the service's answer."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Begin with no reading."""
+        """Start without a reading."""
         super().__init__(id=id, classes=classes)
         self._pose: HeadReading | None = None
         self._told: HeadReading | None = None
@@ -28,7 +28,7 @@ class HeadPanel(Drawing):
         self._moving = False
 
     def show(self, pose: HeadReading) -> None:
-        """Show this pose; it moves while it differs from the one before."""
+        """Show this pose; the head counts as moving while it differs from the previous one."""
         before = self._pose if self._pose is not None and self._pose.is_known else None
         moving = before is not None and pose.is_known and not before.near(pose)
         if (pose, moving) != (self._pose, self._moving):
@@ -36,22 +36,22 @@ class HeadPanel(Drawing):
             self.redraw()
 
     def command(self, told: HeadReading) -> None:
-        """Mark where the head was told to look; its answer is not known yet."""
+        """Mark where the head was told to look; the answer is still unknown."""
         self._told, self._answer = told, ""
         self.redraw()
 
     def answer(self, words: str) -> None:
-        """Show what the service answered, in words."""
+        """Show the service's answer in words."""
         self._answer = plain(words, 200)
         self.redraw()
 
     @property
     def has_value(self) -> bool:
-        """Whether a reading ever came."""
+        """Whether there has been a reading."""
         return self._pose is not None
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """As much as there is room for."""
+        """Draw as much as fits."""
         pose = self._pose
         if pose is None:
             return []
@@ -70,7 +70,7 @@ class HeadPanel(Drawing):
         return [*caption, *self._views(pose, width, rows), *words]
 
     def _in_words(self, numbers: Line, state: Line, width: int) -> list[Line]:
-        """Where it looks and whether it moves; then what it was told, and the answer to it."""
+        """Where it looks and whether it is moving; then the command, and the answer to it."""
         told = self._told_lines(width)
         if cells_of(numbers) + cells_of(state) < width:
             return [beside(numbers, state, width), *told]
@@ -117,7 +117,7 @@ def _caption(width: int) -> Line:
 
 
 class Dial(NamedTuple):
-    """Half a circle of so many dots around a centre; `zero_deg` is where 0 lies, 90 is upwards."""
+    """Half a circle of dots around a centre; `zero_deg` is the direction of 0, 90 is upwards."""
 
     dots: Dots
     centre: Point
@@ -125,7 +125,7 @@ class Dial(NamedTuple):
     zero_deg: float
 
     def draw(self, degrees: float, told_deg: float | None, look: str) -> None:
-        """The scale, the needle, and a mark where the head was told to look."""
+        """Draw the scale, the needle, and a mark where the head was told to look."""
         for step in range(-90, 91, 15):
             self.dots.dot(*self._at(step, 1.0), "muted")
         if told_deg is not None and math.isfinite(told_deg):

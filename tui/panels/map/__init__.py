@@ -1,1 +1,1 @@
-"""The panel of the map: where the robot is and what is around it."""
+"""The Map panel: where the robot is, and what is around it."""

@@ -1,6 +1,7 @@
-"""A field of braille dots that many things are drawn on at once, two by four in every cell.
+"""A canvas of braille dots for many objects, with two by four dots in every cell.
 
-Like `tui.panels.dots`, in arrays: a room has thousands of dots, and is copied for every frame.
+Like `tui.panels.dots`, but with arrays: a room has thousands of dots, and is copied for every
+frame.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ class Canvas:
     """A grid of cells; a cell takes the look of the last thing drawn in it."""
 
     def __init__(self, columns: int, rows: int) -> None:
-        """So many cells, all blank."""
+        """Create a blank grid of this size, in cells."""
         self.columns, self.rows = columns, rows
         self.width, self.height = 2 * columns, 4 * rows
         self._on = np.zeros((self.height, self.width), dtype=np.bool_)
@@ -34,14 +35,14 @@ class Canvas:
         self._signs: dict[tuple[int, int], str] = {}
 
     def copy(self) -> Canvas:
-        """Another one that looks alike, to be drawn on."""
+        """Return a copy to be drawn on."""
         other = Canvas(self.columns, self.rows)
         other._on, other._looks = self._on.copy(), self._looks.copy()
         other._signs = dict(self._signs)
         return other
 
     def dots(self, x: NDArray[np.float64], y: NDArray[np.float64], look: str = "") -> None:
-        """Set dots, x to the right and y downwards; those outside are left out."""
+        """Set dots, x to the right and y downwards; those outside are ignored."""
         inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
         column, row = x[inside].astype(np.intp), y[inside].astype(np.intp)
         self._on[row, column] = True
@@ -50,7 +51,7 @@ class Canvas:
     def line(
         self, start: Point, end: Point, look: str = "", dash: tuple[int, int] = (1, 0)
     ) -> None:
-        """A straight line; `dash` is how many dots are set and how many left out in turn."""
+        """Draw a straight line; `dash` is how many dots are set and how many left out in turn."""
         clipped = self._clipped(start, end)
         if clipped is None:
             return
@@ -61,12 +62,12 @@ class Canvas:
         self.dots(x0 + (x1 - x0) * shares, y0 + (y1 - y0) * shares, look)
 
     def outline(self, corners: list[Point], look: str = "") -> None:
-        """A closed figure."""
+        """Draw a closed figure."""
         for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
             self.line(start, end, look)
 
     def fill(self, corners: list[Point], look: str = "") -> None:
-        """A closed convex figure with all dots whose middle is in it."""
+        """Set all dots whose centre is in a closed convex figure."""
         shape = np.array(corners)
         least = np.clip(np.floor(shape.min(axis=0)), 0, (self.width, self.height)).astype(int)
         most = np.clip(np.ceil(shape.max(axis=0)), 0, (self.width, self.height)).astype(int)
@@ -81,14 +82,14 @@ class Canvas:
         self.dots(x[inside], y[inside], look)
 
     def sign(self, place: Point, char: str, look: str = "") -> None:
-        """A character in place of the dots of a cell; one outside is left out."""
+        """Put a character in place of a cell's dots; one outside is ignored."""
         if 0 <= place[0] < self.width and 0 <= place[1] < self.height:
             row, column = int(place[1]) // 4, int(place[0]) // 2
             self._signs[row, column] = char
             self._looks[row, column] = _NUMBER[look]
 
     def lines(self) -> list[Line]:
-        """The canvas as lines of ink; neighbours that look alike share one."""
+        """Return the canvas as lines of ink; neighbours that look alike share one."""
         cells = self._on.reshape(self.rows, 4, self.columns, 2)
         bits = np.einsum("rycx,yx->rc", cells, _WEIGHTS)
         codes = np.where(bits > 0, bits + _BRAILLE, _BLANK).astype("<u2")
@@ -98,7 +99,7 @@ class Canvas:
         return [_line(codes[row], looks[row]) for row in range(self.rows)]
 
     def _clipped(self, start: Point, end: Point) -> tuple[Point, Point] | None:
-        """The part of a line within the canvas, after Liang and Barsky; None if there is none."""
+        """The part of a line within the canvas (Liang–Barsky); None if there is none."""
         first, last = 0.0, 1.0
         for begin, way, most in (
             (start[0], end[0] - start[0], self.width),

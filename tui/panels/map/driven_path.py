@@ -1,4 +1,4 @@
-"""The path that was driven: thinned to what can be seen, bounded in memory, torn at gaps."""
+"""The path driven so far: thinned to what is visible, limited in memory, broken at gaps."""
 
 from __future__ import annotations
 
@@ -9,31 +9,31 @@ if TYPE_CHECKING:
     from tui.panels.dots import Point
 
 LEAST_M = 0.02
-"""A shorter way is none yet."""
+"""Shorter distances are not added."""
 TORN_M = 0.6
-"""A longer one was not driven between two looks: the odometry began anew, or nobody looked."""
+"""A longer distance was not really driven: the odometry was reset, or nobody was looking."""
 MOST = 4000
 
 
 class DrivenPath:
-    """Points in the order in which they were driven, in pieces."""
+    """The points of the path in order, in pieces."""
 
     def __init__(self) -> None:
         self.pieces: list[list[Point]] = []
         self.length_m = 0.0
         self.revision = 0
-        """Changes when older points are no longer what they were."""
+        """Changes when older points have been changed."""
         self._least_m = LEAST_M
         self._points = 0
         self._corners: list[Point] = []
 
     @property
     def bounds(self) -> list[Point]:
-        """The corners of the least rectangle around all that was driven; none at first."""
+        """Opposite corners of the bounding box of the whole path; none at first."""
         return self._corners
 
     def add(self, x_m: float, y_m: float) -> bool:
-        """Go on to a place, and tell whether the path has changed."""
+        """Continue to a point; return whether the path has changed."""
         way_m = math.dist(self.pieces[-1][-1], (x_m, y_m)) if self.pieces else math.inf
         if way_m < self._least_m:
             return False
@@ -50,13 +50,13 @@ class DrivenPath:
         return True
 
     def clear(self) -> None:
-        """Nothing was driven."""
+        """Discard the path."""
         self.pieces, self.length_m, self._points = [], 0.0, 0
         self._least_m, self._corners = LEAST_M, []
         self.revision += 1
 
     def _thin(self) -> None:
-        """Let every second point go; pieces that were torn off long ago go first."""
+        """Drop every second point, and the oldest pieces."""
         self.pieces = [_halved(piece) for piece in self.pieces[-MOST // 4 :]]
         self._points = sum(map(len, self.pieces))
         self._least_m *= 2

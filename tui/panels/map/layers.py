@@ -1,4 +1,4 @@
-"""What stays from frame to frame: grid, room and path are drawn once, then only what is new."""
+"""What stays the same between frames: grid, room and path are drawn once, then only additions."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 class Layers:
-    """The canvas below all that moves."""
+    """The canvas below everything that moves."""
 
     def __init__(self) -> None:
         self._canvas = Canvas(1, 1)
         self._drawn: tuple[Viewport, Ground | None, DrivenPath, int] | None = None
         self._done = (0, 0)
-        """Pieces of the path, and points of the last of them, that have been drawn."""
+        """Number of pieces of the path that have been drawn, and of points in the last of them."""
 
     def canvas(self, view: Viewport, ground: Ground | None, trail: DrivenPath) -> Canvas:
-        """A copy with grid, room and path, to draw the rest on."""
+        """Return a copy with grid, room and path, to draw the rest on."""
         wanted = (view, ground, trail, trail.revision)
         if wanted != self._drawn:
             self._drawn, self._done = wanted, (0, 0)
@@ -38,7 +38,7 @@ class Layers:
         pieces, points = self._done
         for number in range(max(0, pieces - 1), len(trail.pieces)):
             piece = trail.pieces[number]
-            # The last point drawn is where the next line begins.
+            # The next line begins at the last point drawn.
             first = max(0, points - 1) if number == pieces - 1 else 0
             draw_path(self._canvas, view, piece[first:])
         self._done = len(trail.pieces), len(trail.pieces[-1]) if trail.pieces else 0

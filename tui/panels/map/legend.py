@@ -1,4 +1,4 @@
-"""The map in words: what its signs mean, and how long a metre is on it."""
+"""The legend of the map: what its signs mean, and how long a metre is on it."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ if TYPE_CHECKING:
     from tui.panels.sonar.words import Bounds
 
 BAR_CELLS = 12
-"""The scale bar is no longer."""
+"""Maximum length of the scale bar."""
 GAP = "  "
 
 
 class LegendEntry(NamedTuple):
-    """A line of the legend; where there is no room, those of a high rank are left out."""
+    """One line of the legend; where there is little room, those with a high rank are left out."""
 
     rank: int
     line: Line
@@ -48,7 +48,7 @@ class LegendEntry(NamedTuple):
 def entries(
     scene: Scene, view: Viewport, driven_m: float, remarks: Sequence[str]
 ) -> list[LegendEntry]:
-    """All there is to say, in the order in which it is read; `remarks` warn of something."""
+    """All entries in reading order; `remarks` are warnings."""
     said = [LegendEntry(0, [Ink(plain(words, 200), "alert")]) for words in remarks if words]
     said += _robot(scene.pose)
     if driven_m >= 0.05:
@@ -90,7 +90,7 @@ def _ray(place: str, metres: float, bounds: Bounds) -> Line:
 
 
 def scale_bar(view: Viewport) -> Line:
-    """A bar of a round number of metres, as long as these are on the map."""
+    """A bar for a round number of metres, as long as that is on the map."""
     metres = bar_length_m(view, BAR_CELLS)
     cells = max(1, round(metres * view.dots_per_m / 2))
     bar = "├" + "─" * (cells - 2) + "┤" if cells > 1 else "│"
@@ -98,13 +98,13 @@ def scale_bar(view: Viewport) -> Line:
 
 
 def column(said: Sequence[LegendEntry], width: int, height: int) -> list[Line]:
-    """Below each other, in exactly so many cells; what matters least is left out."""
+    """The entries below each other in exactly this space; the least important are left out."""
     lines = [beside(entry.line, [], width) for entry in _foremost(said, height)]
     return [*lines, *([[Ink(" " * width)]] * (height - len(lines)))]
 
 
 def rows(said: Sequence[LegendEntry], width: int, height: int) -> list[Line]:
-    """Beside each other in at most so many lines; what matters least is left out."""
+    """The entries side by side in at most `height` lines; the least important are left out."""
     for count in range(len(said), 0, -1):
         lines = _packed(_foremost(said, count), width)
         if len(lines) <= height:
@@ -114,7 +114,7 @@ def rows(said: Sequence[LegendEntry], width: int, height: int) -> list[Line]:
 
 
 def _foremost(said: Sequence[LegendEntry], count: int) -> list[LegendEntry]:
-    """So many of those that matter most, in the order in which they are read."""
+    """The `count` most important entries, in reading order."""
     kept = sorted(range(len(said)), key=lambda at: (said[at].rank, at))[:count]
     return [said[at] for at in sorted(kept)]
 

@@ -1,4 +1,4 @@
-"""What the map is drawn from, out of the messages: pose, goal and room. Any input is tolerated."""
+"""The data of the map, read from messages: pose, goal and room. Any input is tolerated."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 FARTHEST_M = 1e6
-"""A pose beyond it is no place."""
+"""A pose farther away than this is not valid."""
 OCCUPIED_FROM = 50
-"""Of 100, in a nav_msgs/OccupancyGrid."""
+"""The threshold of 100, in a nav_msgs/OccupancyGrid."""
 _MOST_CELLS = 4_000_000
-"""Of a larger room every second, third, ... cell is looked at: the screen must not wait for it."""
+"""In a larger room only every second, third, ... cell is read, to keep the screen responsive."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """A room as somebody has mapped it; each message makes a new one."""
+    """The map of a room; each message creates a new one."""
 
     cells: NDArray[np.int8]
     """Shape (rows, columns): -1 unknown, 0 free, 100 occupied."""
     cell_m: float
     origin: Pose
-    """Where the corner of the first cell is, and how its rows are turned."""
+    """Position of the corner of the first cell, and the rotation of the rows."""
     frame: str
     extent: Extent | None
-    """What is known of it, None if nothing is."""
+    """The known part, None if nothing is known."""
 
     def centres(
         self, rows: NDArray[np.float64], columns: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Where cells are, x and y in metres."""
+        """Positions of cells, x and y in metres."""
         along, up = (columns + 0.5) * self.cell_m, (rows + 0.5) * self.cell_m
         cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
         return self.origin.x_m + cos * along - sin * up, self.origin.y_m + sin * along + cos * up
 
     def occupied_at(self, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether something stands at places; nothing does outside."""
+        """Whether there is an obstacle at these positions; outside there is none."""
         east, north = x_m - self.origin.x_m, y_m - self.origin.y_m
         cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
         columns = np.floor((cos * east + sin * north) / self.cell_m)
@@ -60,7 +60,7 @@ class Ground:
 
 
 def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
-    """Read an Odometry or a PoseStamped: pose and frame; None if it is no place."""
+    """Read an Odometry or a PoseStamped: pose and frame; None if the position is not valid."""
     try:
         inner = value["pose"]
         inner = inner.get("pose", inner)
@@ -75,7 +75,7 @@ def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
 
 
 def goal_in(value: Mapping[str, Any]) -> Point | None:
-    """Read a PoseStamped that tells of a goal; None if there is none any more."""
+    """Read a PoseStamped with a goal; None if there is no goal any more."""
     found = pose_in(value)
     if found is None or not found[1]:
         return None
@@ -83,7 +83,7 @@ def goal_in(value: Mapping[str, Any]) -> Point | None:
 
 
 def ground_in(value: Mapping[str, Any]) -> Ground | None:
-    """Read an OccupancyGrid; None for one that makes no sense."""
+    """Read an OccupancyGrid; None for an invalid one."""
     try:
         info, frame = value["info"], str(value["header"]["frame_id"])
         rows, columns = int(info["height"]), int(info["width"])

@@ -24,44 +24,44 @@ if TYPE_CHECKING:
 FRONT, REAR = "front", "rear"
 BODY = Body()
 MAX_RANGE_M = SimulatedSonar().farthest_m
-"""Where a cone ends in which nothing was found."""
+"""The length of a cone in which nothing was detected."""
 LONGEST_RAY_M = 1e4
-"""A longer one is drawn so long: its end is beyond every edge."""
+"""A longer ray is drawn with this length: its end is outside every map."""
 CONE_RAD = 0.06
-"""Half of its angle; wider than the real one, to be seen as a cone."""
+"""Half of the angle of the cone; wider than the real one, so that it is recognisable."""
 BROKEN_M = 0.6
-"""Length of the broken ray of a sonar without a valid reading."""
+"""Length of the dashed ray of a sonar without a valid reading."""
 PATH, GOAL, ROBOT, TRUTH, WALL, GRID = "second", "good", "accent", "muted", "", "muted"
 GOAL_SIGN, HIT_SIGN, BLIND_SIGN, FREE_SIGN = "◎", "●", "?", "∠"
 _DRAWN_FROM = 8.0
-"""Dots; a shorter robot is drawn as a dart of a size that can be seen."""
+"""In dots; a smaller robot is drawn as a dart large enough to be seen."""
 _APART = 2.0
-"""Dots; a truth nearer to the robot would only blur it."""
+"""In dots; a true pose closer to the robot would only blur it."""
 _HULL_FROM = 20.0
-"""Dots; a longer robot has its outline around the dart."""
+"""In dots; a larger robot is drawn with its outline around the dart."""
 _HULL = ((-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
 _DART = ((1.0, 0.0), (-0.9, 1.0), (-0.45, 0.0), (-0.9, -1.0))
 _WIDER = 1.35
-"""A dart that stands for the whole robot is so much wider than the robot."""
+"""A dart that stands for the whole robot is wider than the robot by this factor."""
 _GRID_CELLS = 4
-"""The dots of the grid are at least so many cells apart."""
+"""Minimum distance between the dots of the grid, in cells."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """What moves: all of it but the room and the path."""
+    """Everything that moves, that is all but the room and the path."""
 
     pose: Pose
     truth: Pose | None = None
     goal: Point | None = None
     rays: dict[str, float] = field(default_factory=dict)
-    """`FRONT` and `REAR` to metres by REP-117."""
+    """`FRONT` and `REAR` to metres according to REP-117."""
     bounds: Bounds = COURSE
-    """What of these is near."""
+    """Which of these distances count as near."""
 
 
 def ray_origin(pose: Pose, place: str) -> tuple[dots.Point, float]:
-    """Where a sonar sits at the bumper, metres, and which way it looks."""
+    """Position of a sonar at the bumper in metres, and its direction."""
     offset_m = BODY.length_m - BODY.behind_m if place == FRONT else -BODY.behind_m
     x_m = pose.x_m + offset_m * math.cos(pose.heading_rad)
     y_m = pose.y_m + offset_m * math.sin(pose.heading_rad)
@@ -69,12 +69,12 @@ def ray_origin(pose: Pose, place: str) -> tuple[dots.Point, float]:
 
 
 def along(start: dots.Point, heading_rad: float, metres: float) -> dots.Point:
-    """The place so many metres away in a direction."""
+    """The point at this distance in a direction."""
     return start[0] + metres * math.cos(heading_rad), start[1] + metres * math.sin(heading_rad)
 
 
 def draw_grid(canvas: Canvas, view: Viewport, step_m: float) -> None:
-    """A dot at every crossing of a grid, one of them at the origin."""
+    """Draw a dot at every crossing of a grid, one of them at the origin."""
     if math.isinf(step_m):
         return
     across, up = canvas.width / view.dots_per_m, canvas.height / view.dots_per_m
@@ -87,7 +87,7 @@ def draw_grid(canvas: Canvas, view: Viewport, step_m: float) -> None:
 
 
 def grid_step_m(view: Viewport) -> float:
-    """The distance between the dots of the grid: 1 m, or 2, 5, 10, ... where that is too near."""
+    """The distance between the dots of the grid: 1 m, or 2, 5, 10, ... if that is too close."""
     for step_m in (digit * 10.0**power for power in range(8) for digit in (1, 2, 5)):
         if step_m * view.dots_per_m >= 2 * _GRID_CELLS:
             return step_m
@@ -95,7 +95,7 @@ def grid_step_m(view: Viewport) -> float:
 
 
 def draw_ground(canvas: Canvas, view: Viewport, ground: Ground) -> None:
-    """What stands in the room."""
+    """Draw the obstacles in the room."""
     if ground.cell_m * view.dots_per_m <= 1.0:
         rows, columns = np.nonzero(ground.cells >= OCCUPIED_FROM)
         x_m, y_m = ground.centres(rows.astype(np.float64), columns.astype(np.float64))
@@ -109,13 +109,13 @@ def draw_ground(canvas: Canvas, view: Viewport, ground: Ground) -> None:
 
 
 def draw_path(canvas: Canvas, view: Viewport, piece: list[dots.Point]) -> None:
-    """A piece of the path that was driven."""
+    """Draw a piece of the path."""
     for start, end in pairwise(piece):
         canvas.line(view.place(*start), view.place(*end), PATH)
 
 
 def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
-    """All that moves, the robot last."""
+    """Draw everything that moves, the robot last."""
     for place, metres in scene.rays.items():
         _draw_ray(canvas, view, scene.pose, place, metres, ink_of(metres, scene.bounds))
     if scene.goal is not None:
@@ -152,7 +152,7 @@ def _draw_ray(
 
 
 def _draw_robot(canvas: Canvas, view: Viewport, pose: Pose) -> None:
-    """A dart that points ahead, within the outline of the robot where that can be seen."""
+    """Draw a dart that points ahead, inside the outline of the robot if that is visible."""
     nose, left, notch, right = robot_corners(view, pose)
     canvas.fill([nose, left, notch], ROBOT)
     canvas.fill([nose, notch, right], ROBOT)
@@ -161,7 +161,7 @@ def _draw_robot(canvas: Canvas, view: Viewport, pose: Pose) -> None:
 
 
 def robot_corners(view: Viewport, pose: Pose) -> list[dots.Point]:
-    """Nose, left, notch and right of the dart; larger than life where it would be too small."""
+    """Nose, left, notch and right of the dart; larger than life if it would be too small."""
     life = _life_dots(view)
     size = max(1.0, _DRAWN_FROM / life)
     return _placed(view, pose, _DART, size, size if life >= _HULL_FROM else size * _WIDER)
@@ -174,7 +174,7 @@ def _life_dots(view: Viewport) -> float:
 def _placed(
     view: Viewport, pose: Pose, shape: tuple[dots.Point, ...], longer: float, wider: float
 ) -> list[dots.Point]:
-    """A shape in halves of the robot's length and width, about its middle, on the canvas."""
+    """Place a shape, given in halves of the robot's length and width about its centre."""
     middle_m = BODY.length_m / 2 - BODY.behind_m
     cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
     corners = []

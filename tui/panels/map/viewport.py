@@ -1,7 +1,7 @@
-"""Which part of the floor is shown, and where a place of it is on the canvas.
+"""Which part of the floor is shown, and where a point of it is on the canvas.
 
-Seen from above as on paper: x to the right, y upwards, so that a turn to the left is one to the
-left. A metre is as long across as it is upwards.
+Seen from above as on paper: x to the right and y upwards, so that a left turn appears as a left
+turn. A metre has the same length in both directions.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ BAR_M = (1, 2, 5)
 
 @dataclass(frozen=True)
 class Extent:
-    """A rectangle of the floor, metres."""
+    """A rectangle of the floor, in metres."""
 
     left_m: float
     right_m: float
@@ -27,7 +27,7 @@ class Extent:
     top_m: float
 
     def holding(self, *places: Point) -> Extent:
-        """Large enough for these places too."""
+        """Extend it to include these points."""
         across, up = [x for x, _y in places], [y for _x, y in places]
         return Extent(
             min([self.left_m, *across]),
@@ -37,11 +37,11 @@ class Extent:
         )
 
     def joined(self, other: Extent) -> Extent:
-        """Large enough for both."""
+        """Extend it to include both."""
         return self.holding((other.left_m, other.bottom_m), (other.right_m, other.top_m))
 
     def widened(self, margin_m: float) -> Extent:
-        """Larger by a margin on each side."""
+        """Extend it by a margin on each side."""
         return Extent(
             self.left_m - margin_m,
             self.right_m + margin_m,
@@ -50,7 +50,7 @@ class Extent:
         )
 
     def rounded(self) -> Extent:
-        """Outwards to steps of about a tenth of it: the view must not creep with the robot."""
+        """Round outwards to steps of about a tenth of it: the view must not move with the robot."""
         width_m, height_m = self.right_m - self.left_m, self.top_m - self.bottom_m
         step_m = 10.0 ** math.floor(math.log10(max(width_m, height_m, 1.0)))
         return Extent(
@@ -63,26 +63,26 @@ class Extent:
 
 @dataclass(frozen=True)
 class Viewport:
-    """An extent in the middle of so many dots."""
+    """An extent in the middle of a canvas with this many dots."""
 
     left_m: float
     top_m: float
-    """What is at the upper left corner of the first dot."""
+    """Coordinates of the upper left corner of the first dot."""
     dots_per_m: float
     columns: int
     rows: int
-    """Cells."""
+    """In cells."""
 
     def place(self, x_m: float, y_m: float) -> Point:
-        """Where a place of the floor is, in dots."""
+        """The position of a point of the floor, in dots."""
         return (x_m - self.left_m) * self.dots_per_m, (self.top_m - y_m) * self.dots_per_m
 
 
 def fitted(extent: Extent, columns: int, rows: int) -> Viewport:
-    """Show all of an extent as large as so many cells allow."""
+    """Show all of an extent as large as possible in this many cells."""
     width_m = max(1e-6, extent.right_m - extent.left_m)
     height_m = max(1e-6, extent.top_m - extent.bottom_m)
-    # The outermost dot belongs to what lies on the edge.
+    # Points on the edge are drawn in the outermost dot.
     scale = min((2 * columns - 1) / width_m, (4 * rows - 1) / height_m)
     return Viewport(
         (extent.left_m + extent.right_m) / 2 - columns / scale,
@@ -94,7 +94,7 @@ def fitted(extent: Extent, columns: int, rows: int) -> Viewport:
 
 
 def bar_length_m(field: Viewport, cells: int) -> float:
-    """The longest of 1, 2, 5, 10, ... metres, or parts, that so many cells have room for."""
+    """The longest of 1, 2, 5, 10, ... metres, or fractions, that fits into this many cells."""
     most_m = max(1, cells) * 2 / field.dots_per_m
     power = 10.0 ** math.floor(math.log10(most_m))
     return max(digit * power for digit in BAR_M if digit * power <= most_m * (1 + 1e-9))

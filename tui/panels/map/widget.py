@@ -1,4 +1,4 @@
-"""The map: room, robot, the path that it drove, what its sonars see, and where it drives to."""
+"""The map: room, robot, its path, what its sonars detect, and where it is driving to."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ if TYPE_CHECKING:
     from tui.panels.sonar.words import Bounds
 
 MOST_ROWS = 5
-"""Of the legend below the map."""
+"""Maximum number of lines of the legend below the map."""
 LEGEND = 28
-"""Cells of the legend beside the map."""
+"""Width of the legend beside the map."""
 SIDE_WORTH = 0.9
-"""A map so much smaller is given for a legend beside it, which says more."""
+"""A map may be smaller by this factor for a legend beside it, which says more."""
 FIELD_FROM = (16, 3)
-"""Columns and lines below which nothing is drawn, and only told."""
+"""Columns and lines below which the map is not drawn, and there are only words."""
 AROUND_M = 1.0
-"""Floor that is shown around what is known, without a room."""
+"""Without a room, the width of the floor shown around what is known."""
 MARGIN_M = 0.1
 FARTHEST_SEEN_M = 100.0
-"""No sonar sees farther: a wall beyond it is not made room for."""
+"""No sonar measures farther: a wall beyond it is not included in the map."""
 STEADY_M = 0.03
-"""A distance that changes by less has not changed: sonars tremble."""
+"""A smaller change of a distance is ignored: sonar readings fluctuate."""
 APART_M, APART_RAD = 0.05, math.radians(5)
-"""From here on the truth is shown beside what odometry believes."""
+"""Differences from which on the true pose is shown beside the odometry."""
 
 
 class RoomMap(Drawing):
-    """Takes values by `show_...`; `settle` draws them if that can be seen."""
+    """Takes values through `show_...`; `settle` draws them if the change is visible."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Begin with an empty floor."""
+        """Start with an empty floor."""
         super().__init__(id=id, classes=classes)
         self._scene: Scene | None = None
         self._truth: Pose | None = None
@@ -55,7 +55,7 @@ class RoomMap(Drawing):
         self._ground: Ground | None = None
         self._frame = ""
         self._seen: Extent | None = None
-        """What the rays have reached, as far as there is no room."""
+        """What the rays have reached while there is no room."""
         self._trail = DrivenPath()
         self._layers = Layers()
         self._view: Viewport | None = None
@@ -63,25 +63,25 @@ class RoomMap(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether it is known where the robot is."""
+        """Whether the position of the robot is known."""
         return self._scene is not None
 
     def show_pose(self, pose: Pose, frame: str = "") -> None:
-        """The robot is here."""
+        """Show the robot at this pose."""
         self._frame = frame
         self._trail.add(pose.x_m, pose.y_m)
         self._scene = Scene(pose)
 
     def show_truth(self, pose: Pose | None) -> None:
-        """The simulated robot is here indeed; None if nobody tells."""
+        """Show the true pose of the simulated robot; None if it is not published."""
         self._truth = pose
 
     def show_goal(self, goal: Point | None) -> None:
-        """It drives to this point; None if it drives to none."""
+        """Show the goal; None if there is none."""
         self._goal = goal
 
     def show_ray(self, place: str, metres: float | None) -> None:
-        """A sonar measures so much; None if there is no such sonar."""
+        """Show the reading of a sonar; None if there is no such sonar."""
         if metres is None:
             self._rays.pop(place, None)
             return
@@ -91,20 +91,20 @@ class RoomMap(Drawing):
             self._rays[place] = metres
 
     def show_bounds(self, bounds: Bounds) -> None:
-        """Show rays below these distances as near."""
+        """Show readings below these distances as near."""
         self._bounds = bounds
 
     def show_ground(self, ground: Ground) -> None:
-        """The room is like this."""
+        """Show this room."""
         self._ground = ground
 
     def forget_path(self) -> None:
-        """What was driven so far belongs to another time."""
+        """Discard the path so far."""
         self._trail.clear()
         self._seen = None
 
     def settle(self) -> None:
-        """Draw what has come, if a cell looks different for it."""
+        """Draw the new values if any cell changes."""
         if self._scene is None:
             return
         self._scene = Scene(
@@ -120,7 +120,7 @@ class RoomMap(Drawing):
             self.redraw()
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """The map with its legend beside or below it, whichever leaves it larger."""
+        """Draw the map with its legend beside or below it, whichever leaves the map larger."""
         scene = self._scene
         if scene is None:
             return []
@@ -151,14 +151,14 @@ class RoomMap(Drawing):
         return entries(scene, view, self._trail.length_m, remarks)
 
     def _other_frame(self) -> str:
-        """A room in another frame may lie elsewhere; the transform is not known here."""
+        """Warn about a room in another frame, which may be elsewhere; its transform is unknown."""
         ground = self._ground
         if ground is None or not ground.frame or ground.frame == self._frame:
             return ""
         return _("room in frame {frame}, not {own}").format(frame=ground.frame, own=self._frame)
 
     def _extent(self, scene: Scene) -> Extent:
-        """The room; or, where there is none, the floor that was driven and seen."""
+        """The room; without one, the floor driven on and measured so far."""
         x, y = scene.pose.x_m, scene.pose.y_m
         here = Extent(x, x, y, y).holding(*self._trail.bounds)
         if scene.goal is not None:
@@ -177,7 +177,7 @@ class RoomMap(Drawing):
         return known.widened(AROUND_M if self._seen is None else AROUND_M / 2).rounded()
 
     def _truth_apart(self, pose: Pose) -> Pose | None:
-        """The truth, where it differs from the pose."""
+        """The true pose, if it differs from the pose."""
         truth = self._truth
         if truth is None:
             return None
@@ -185,7 +185,7 @@ class RoomMap(Drawing):
         return truth if pose.distance_to(truth) >= APART_M or turned >= APART_RAD else None
 
     def _look(self, scene: Scene) -> object:
-        """What tells frames apart that look different."""
+        """A value that differs between frames that look different."""
         view = self._view
         if view is None:
             return scene
@@ -206,7 +206,7 @@ class RoomMap(Drawing):
 
 
 def _legend_rows(extent: Extent, width: int, height: int) -> int:
-    """Lines of the legend below the map: more than a few only where they cost the map nothing."""
+    """Lines of the legend below the map: more than a few only if the map does not get smaller."""
     few = 1 if height < 8 else 2 if height < 20 else 3
     largest = fitted(extent, width, max(1, height - few)).dots_per_m
     free = [

@@ -1,1 +1,1 @@
-"""The panel of the sonars: how far the next obstacle is."""
+"""The Sonar panel: the distance to the nearest obstacle."""

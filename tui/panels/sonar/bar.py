@@ -21,12 +21,12 @@ _INK = {Zone.FREE: "good", Zone.CLOSE: "warn", Zone.STOP: "bad", Zone.BLIND: "ba
 
 
 def ink_of(metres: float, bounds: Bounds) -> str:
-    """Look of a bar of this length."""
+    """The look of a bar of this length."""
     return _INK[zone_of(metres, bounds)]
 
 
 def bar(metres: float, width: int, bounds: Bounds) -> Line:
-    """A bar from 0 to `RANGE_M`; a stroke at each bound that it does not reach."""
+    """A bar from 0 to `RANGE_M`; with a stroke at each bound beyond its end."""
     if width < 1:
         return []
     look = ink_of(metres, bounds)
@@ -48,12 +48,12 @@ def bar(metres: float, width: int, bounds: Bounds) -> Line:
 
 
 def mark_cell(metres: float, width: int) -> int:
-    """The cell of the bar that this distance is in."""
+    """The cell of the bar for this distance."""
     return min(width - 1, int(width * metres / RANGE_M))
 
 
 def scale(width: int, bounds: Bounds) -> Line:
-    """Numbers under the strokes of the bar."""
+    """Numbers below the strokes of the bar."""
     cells = [" "] * width
     for metres, text in (
         (0.0, "0"),
@@ -81,7 +81,7 @@ def big(text: str, look: str) -> list[Line]:
 
 
 def trend(values: Iterable[float], width: int, height: int, bounds: Bounds) -> list[Line]:
-    """The newest values as columns, the newest at the right; `?` where there was no reading."""
+    """The newest values as columns, the newest on the right; `?` for an invalid reading."""
     shown = list(values)[-width:]
     lines: list[Line] = []
     for row in range(height - 1, -1, -1):

@@ -1,4 +1,4 @@
-"""Which distances are near, as the safety node that runs just now has it."""
+"""Which distances count as near, as reported by the safety node that is running."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def bounds_of(update: GraphUpdate, before: Bounds) -> Bounds:
-    """Return the bounds the safety node told of last, which were `before`.
+    """Return the last bounds that the safety node reported; they were `before`.
 
-    Those of the course where nobody tells any: a node of one's own, or none.
+    Those of the course if none are reported: with a learner's own node, or with none.
     """
     row = row_of(update, SAFETY_STATE)
     if row is None or not row.publishers:
@@ -32,6 +32,6 @@ def _told(gate: Gate) -> Bounds:
     if stop_below_m is None or not 0.0 < stop_below_m < math.inf:
         return COURSE
     if slow_m is not None and stop_below_m < slow_m < math.inf:
-        # Who is slowed ever more towards that distance stands when it is reached.
+        # The speed limit falls to zero towards that distance, so at it the robot stands.
         return Bounds(math.nextafter(stop_below_m, math.inf), slow_m)
     return Bounds(stop_below_m, max(stop_below_m, FREE_FROM_M))

@@ -1,4 +1,4 @@
-"""How far the next obstacle is, ahead and behind."""
+"""The distance to the nearest obstacle, ahead and behind."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TOPICS = {"front": SONAR_FRONT, "rear": SONAR_REAR}
 
 
 class SonarFeed(Panel):
-    """The front sonar, and the rear one where somebody publishes it."""
+    """The front sonar, and the rear one if somebody publishes it."""
 
     title = N_("Sonar")
     least = 2
@@ -38,11 +38,11 @@ class SonarFeed(Panel):
         yield SonarPanel()
 
     def watched(self) -> set[str]:
-        """Both sonars, and what counts as near."""
+        """Both sonars, and the bounds."""
         return {*TOPICS.values(), SAFETY_STATE}
 
     def kept(self) -> set[str]:
-        """Both sonars: the trend has no gap."""
+        """Both sonars, so that the trend has no gap."""
         return set(TOPICS.values())
 
     def show(self, update: GraphUpdate) -> None:
@@ -50,7 +50,7 @@ class SonarFeed(Panel):
         gauges = self.query_one(SonarPanel)
         rear = row_of(update, TOPICS["rear"])
         if rear is not None and rear.publishers:
-            # One that has fallen silent stays, and says so.
+            # One that has gone silent stays, with a remark.
             gauges.set_both(True)
         self._bounds = bounds_of(update, self._bounds)
         gauges.set_bounds(self._bounds)
@@ -64,6 +64,6 @@ class SonarFeed(Panel):
             gauges.show_trouble(place, *trouble_of(update, topic))
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         super().words_changed()
         self.query_one(SonarPanel).words_changed()

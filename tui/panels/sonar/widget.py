@@ -1,4 +1,4 @@
-"""The sonar gauge: how far the next obstacle is, what that means, and how it has been."""
+"""The sonar gauge: the distance to the nearest obstacle, what it means, and its trend."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 KEPT = 240
 BIG_FROM = 5
-"""Lines from which on the number is big."""
+"""Lines from which on the number is drawn large."""
 DIGIT_CELLS = 16
 
 
 class Sonar(Drawing):
-    """One sonar. From one line on: name, metres, word; then bar, trend, big number, scale."""
+    """One sonar: from one line on name, metres and word; then bar, trend, big number and scale."""
 
     def __init__(
         self,
@@ -50,18 +50,18 @@ class Sonar(Drawing):
         self.redraw()
 
     def set_bounds(self, bounds: Bounds) -> None:
-        """Say STOP and CLOSE below these distances from now on."""
+        """Show STOP and CLOSE below these distances from now on."""
         if bounds != self._bounds:
             self._bounds = bounds
             self.redraw()
 
     @property
     def has_value(self) -> bool:
-        """Whether a reading ever came."""
+        """Whether there has been a reading."""
         return bool(self._values)
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """As much as there is room for."""
+        """Draw as much as fits."""
         metres = self._values[-1]
         if height == 1:
             return [self._one_line(width)]
@@ -118,7 +118,7 @@ class Sonar(Drawing):
         return [*drawn, self._span(width)]
 
     def _span(self, width: int) -> Line:
-        """How far back the trend reaches."""
+        """The time span of the trend."""
         first = max(0, len(self._times) - width)
         seconds = self._times[-1] - self._times[first]
         words = _("last {seconds} s").format(seconds=whole(seconds))
@@ -126,7 +126,7 @@ class Sonar(Drawing):
 
 
 class SonarPanel(Container):
-    """The front sonar and, where there is one, the rear sonar."""
+    """The front sonar and, if there is one, the rear sonar."""
 
     DEFAULT_CSS = """
     SonarPanel {
@@ -139,7 +139,7 @@ class SonarPanel(Container):
     """
 
     def compose(self) -> ComposeResult:
-        """Front above, or left of, rear."""
+        """The front sonar above, or to the left of, the rear one."""
         yield Sonar(N_("front"), id="front")
         yield Sonar(N_("rear"), id="rear")
 
@@ -148,31 +148,31 @@ class SonarPanel(Container):
         self._sonar(place).show(metres, time_s)
 
     def show_instead(self, place: str, words: Instead | None) -> None:
-        """Say these words in place of the sonar at `front` or `rear`; none: show it again."""
+        """Show these words in place of the sonar at `front` or `rear`; if empty, show it again."""
         self._sonar(place).show_instead(words)
 
     def show_trouble(
         self, place: str, trouble: Trouble | None, detail: str = "", age_s: float | None = None
     ) -> None:
-        """Tell why nothing comes from the sonar at `front` or `rear`."""
+        """Say why there are no readings of the sonar at `front` or `rear`."""
         self._sonar(place).show_trouble(trouble, detail, age_s)
 
     def set_bounds(self, bounds: Bounds) -> None:
-        """Say STOP and CLOSE below these distances from now on."""
+        """Show STOP and CLOSE below these distances from now on."""
         for sonar in self.query(Sonar):
             sonar.set_bounds(bounds)
 
     def set_both(self, both: bool) -> None:
-        """Whether there is a rear sonar to be shown."""
+        """Set whether there is a rear sonar to be shown."""
         self.set_class(both, "-both")
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         for sonar in self.query(Sonar):
             sonar.words_changed()
 
     def on_resize(self, event: Resize) -> None:
-        """Side by side where that leaves more lines to each."""
+        """Place them side by side if that leaves more lines to each."""
         self.set_class(event.size.width >= 56 and event.size.height < 16, "-flat")
 
     def _sonar(self, place: str) -> Sonar:

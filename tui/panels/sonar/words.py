@@ -1,4 +1,4 @@
-"""What a distance means: free, close, stop, or no reading at all (REP-117)."""
+"""The meaning of a distance: free, close, stop, or no reading at all (REP-117)."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from text.figures import figure
 from text.i18n import N_, _
 
 FREE_FROM_M = 1.0
-"""ai_brain goes ahead from this distance on."""
+"""ai_brain drives ahead from this distance on."""
 RANGE_M = 3.0
-"""Right end of the bar."""
+"""The distance at the right end of the bar."""
 
 
 class Bounds(NamedTuple):
-    """Which distances are near, in metres; as in the course until the gate tells of its own."""
+    """Which distances count as near, in metres; those of the course until the gate reports any."""
 
     stop_below_m: float = 0.5
     """safety_stop holds the wheels below this distance."""
     free_from_m: float = FREE_FROM_M
-    """From here on nothing slows them."""
+    """From this distance on nothing slows the robot down."""
 
 
 COURSE = Bounds()
 
 
 class Zone(Enum):
-    """(word, look) of a distance."""
+    """The word and the look for a distance."""
 
     FREE = (N_("FREE"), "good")
     CLOSE = (N_("CLOSE"), "warn")
@@ -37,12 +37,12 @@ class Zone(Enum):
 
     @property
     def word(self) -> str:
-        """The word in the language spoken now."""
+        """The word in the current language."""
         return _(self.value[0])
 
     @property
     def look(self) -> str:
-        """How the word looks."""
+        """The look of the word."""
         return self.value[1]
 
 
@@ -56,7 +56,7 @@ def zone_of(metres: float, bounds: Bounds = COURSE) -> Zone:
 
 
 def number(metres: float) -> str:
-    """The distance with two decimals, or a sign for what is no number."""
+    """The distance with two decimals, or a sign if it is not a number."""
     if math.isnan(metres):
         return "---"
     if math.isinf(metres):
@@ -65,7 +65,7 @@ def number(metres: float) -> str:
 
 
 def remark(metres: float) -> str:
-    """What a value that is no distance means; empty for a distance."""
+    """The meaning of a value that is not a distance; empty for a distance."""
     if math.isnan(metres):
         return _("no valid reading")
     if math.isinf(metres):

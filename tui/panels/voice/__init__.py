@@ -1,1 +1,1 @@
-"""The panel of the voice: what human and robot say."""
+"""The Voice panel: what human and robot say."""

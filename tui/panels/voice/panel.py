@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 TYPE = "std_msgs/msg/ByteMultiArray"
 TOPICS: dict[str, Speaker] = {MICROPHONE: "human", SPEAKER: "robot"}
 SILENT_S = 2.0
-"""A driver that tells no level for so long has no microphone."""
+"""A driver that has reported no level for this long has no microphone."""
 
 
 class VoiceFeed(Panel):
-    """The talk so far."""
+    """The conversation so far."""
 
     title = N_("Voice")
     least = 2
@@ -40,15 +40,15 @@ class VoiceFeed(Panel):
         yield VoicePanel()
 
     def followed(self) -> set[str]:
-        """Microphone and loudspeaker, nothing missed."""
+        """All messages of microphone and loudspeaker."""
         return set(TOPICS)
 
     def watched(self) -> set[str]:
-        """How loud it is now."""
+        """The current level."""
         return {AUDIO_LEVEL}
 
     def show(self, update: GraphUpdate) -> None:
-        """Add what was said, in the order in which it came."""
+        """Add what was said, in order of arrival."""
         talk = self.query_one(VoicePanel)
         said = [sample for topic in TOPICS for sample in update.samples.get(topic, ())]
         for sample in sorted(said, key=lambda one: one.received_s):
@@ -61,7 +61,7 @@ class VoiceFeed(Panel):
         talk.show_trouble(*((None,) if instead else trouble_of(update, MICROPHONE)))
 
     def _of_another_type(self, update: GraphUpdate) -> Instead | None:
-        """Return what to say of the first topic that carries another type."""
+        """Return what to show for the first topic with messages of another type."""
         for topic in TOPICS:
             if topic in update.samples:
                 self._instead[topic] = other_type(newest(update, topic), TYPE)
@@ -81,11 +81,11 @@ class VoiceFeed(Panel):
             if teller.trouble is not None or (teller.age_s or 0.0) > SILENT_S:
                 talk.show_level(None, missing=True)
             return
-        # The course's own microphone tells no level.
+        # The course's own microphone does not report a level.
         there = microphone is not None and microphone.publishers > 0
         talk.show_level(None, missing=not there and talk.has_talk)
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         super().words_changed()
         self.query_one(VoicePanel).words_changed()

@@ -1,6 +1,6 @@
-"""The talk between human and robot: who said what when, the newest at the bottom.
+"""The conversation between human and robot: who said what and when, the newest at the bottom.
 
-Under it stands how loud the microphone is.
+Below it is the level of the microphone.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from tui.widgets.drawing import Drawing, Ink, Line, cells_of, fit
 QUIETEST_DB, LOUDEST_DB = -60.0, 0.0
 """Ends of the bar."""
 FAINT_DB, LOUD_DB, CUT_DB = -50.0, -12.0, -4.0
-"""Below: hardly a sound; from here on: loud; so loud that samples are cut off."""
+"""Below: barely a sound; from here on: loud; so loud that samples are clipped."""
 LEAST_BAR = 6
 WITH_NAME_FROM = 30
 
 
 def level_line(dbfs: float | None, width: int) -> Line:
-    """The level in dB below full scale in so many cells; None: there is no microphone."""
+    """The level in dB below full scale, in this many cells; None: there is no microphone."""
     if dbfs is None:
         return [Ink(fit(_("no microphone"), width).rstrip(), "alert")]
     number, look = _number(dbfs), _look(dbfs)
-    # The bar does not move when the number gets shorter.
+    # The bar must not move when the number gets shorter.
     aside = 1 + cell_len(_number(SILENCE_DBFS))
     lead = [Ink(_("microphone") + " ", "muted")] if width >= WITH_NAME_FROM else []
     room = width - aside - cells_of(lead)
     if room < LEAST_BAR:
         return [Ink(fit(number, width).rstrip(), look)]
-    # In this order not a number counts as the quietest.
+    # In this order nan counts as the quietest.
     heard_db = min(LOUDEST_DB, max(QUIETEST_DB, dbfs))
     share = (heard_db - QUIETEST_DB) / (LOUDEST_DB - QUIETEST_DB)
     full, part = divmod(round(8 * room * share), 8)
@@ -63,7 +63,7 @@ def _look(dbfs: float) -> str:
 Speaker = Literal["human", "robot"]
 KEPT = 200
 SAME_SOUND_S = 1.0
-"""Pieces of sound that follow each other this closely are one."""
+"""Pieces of sound that follow each other within this time are one sound."""
 WITH_TIME_FROM = 36
 LEAST_TEXT = 8
 
@@ -78,17 +78,17 @@ class Saying:
 
 
 class VoicePanel(Drawing):
-    """Shows messages of microphone (`human`) and loudspeaker (`robot`)."""
+    """Shows messages from the microphone (`human`) and to the loudspeaker (`robot`)."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Begin with silence."""
+        """Start empty."""
         super().__init__(id=id, classes=classes)
         self._sayings: deque[Saying] = deque(maxlen=KEPT)
         self._dbfs: float | None = None
         self._missing = False
 
     def hear(self, who: Speaker, data: bytes, time_s: float) -> None:
-        """Take a message of bytes at a unix time: UTF-8 text or 16-bit PCM, whatever it is."""
+        """Add a message of bytes with its Unix time: UTF-8 text, 16-bit PCM, or anything else."""
         saying = Saying(who, time_s, heard(data))
         last = next((one for one in reversed(self._sayings) if one.who == who), None)
         if last is not None and _one_sound(last, saying):
@@ -98,25 +98,25 @@ class VoicePanel(Drawing):
         self.redraw()
 
     def show_level(self, dbfs: float | None, *, missing: bool = False) -> None:
-        """Show how loud the microphone is, None: nobody tells; or that it is `missing`."""
+        """Show the level of the microphone, None if it is not reported; or that it is `missing`."""
         if (dbfs, missing) != (self._dbfs, self._missing):
             self._dbfs, self._missing = dbfs, missing
             self.redraw()
 
     def clear(self) -> None:
-        """Forget what was said."""
+        """Remove everything that was said."""
         self._sayings.clear()
         self._dbfs, self._missing = None, False
         self.refresh()
 
     @property
     def stale(self) -> bool:
-        """What was said stays said."""
+        """Never: past messages do not become outdated."""
         return False
 
     @property
     def has_value(self) -> bool:
-        """Whether anything was said, or could be heard."""
+        """Whether there is anything to show."""
         return bool(self._sayings) or self._dbfs is not None or self._missing
 
     @property
@@ -126,11 +126,11 @@ class VoicePanel(Drawing):
 
     @property
     def draws(self) -> bool:
-        """What was said is not hidden by words about what cannot be read."""
+        """Whether to draw: the conversation is not hidden by remarks about unreadable messages."""
         return self.has_talk or super().draws
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """As many of the newest as there is room for, and the level."""
+        """Draw as many of the newest messages as fit, and the level."""
         below = [level_line(self._dbfs, width)] if self._tells_level else []
         if not self._sayings:
             return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
@@ -163,7 +163,7 @@ class VoicePanel(Drawing):
         return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
 
     def _lead(self, saying: Saying, width: int) -> tuple[Line, int]:
-        """Who and when, and the cells that are left for what."""
+        """Speaker and time, and the cells that are left for the text."""
         names = {"human": _("human"), "robot": _("robot")}
         name = fit(names[saying.who], max(map(cell_len, names.values())))
         when = f"{clock(saying.time_s, 8)} " if width >= WITH_TIME_FROM else ""

@@ -1,1 +1,1 @@
-"""The panel of the wheels: how fast they turn, and how they are steered."""
+"""The Wheels panel: how fast the wheels turn, and how they are steered."""

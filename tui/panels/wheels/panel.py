@@ -1,4 +1,4 @@
-"""How fast the wheels turn; without a differential, how fast they would."""
+"""How fast the wheels turn or, without a differential, how fast they would."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ class WheelsFeed(Panel):
         super().__init__()
         self._joints = Joints(WHEEL_COMMANDS, (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL))
         self._instead: Instead | None = None
-        """Of the drive commands."""
+        """Shown instead of the drive commands."""
 
     def compose(self) -> ComposeResult:
         """The drawing."""
         yield WheelsPanel()
 
     def watched(self) -> set[str]:
-        """What the wheels are told, and what the chassis is told."""
+        """The commands to the wheels, and those to the chassis."""
         return {WHEEL_COMMANDS, DRIVE}
 
     def show(self, update: GraphUpdate) -> None:
@@ -66,13 +66,13 @@ class WheelsFeed(Panel):
         drawing.show_trouble(*trouble_of(update, topic))
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         super().words_changed()
         self.query_one(WheelsPanel).words_changed()
 
 
 def would_be(value: Mapping[str, Any]) -> WheelsReading | None:
-    """Return what an AckermannDriveStamped would make the wheels do; None if it is none."""
+    """Return what an AckermannDriveStamped would make the wheels do; None for an invalid one."""
     drive = value.get("drive")
     if not drive:
         return None

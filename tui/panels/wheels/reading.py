@@ -1,4 +1,4 @@
-"""What the wheels do, out of a JointState, and what that means."""
+"""The motion of the wheels, read from a JointState, and what it means."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from text.i18n import _
 STANDING_BELOW_M_S = 0.005
 EVEN_WITHIN_M_S = 0.003
 FARTHEST_RAD = math.pi
-"""A wheel that is said to be turned farther is not: a half turn is the most that an angle tells."""
+"""Larger angles are invalid: an angle cannot express more than half a turn."""
 
 
 @dataclass(frozen=True)
 class WheelsReading:
-    """Speeds of the rear wheels at their rims, and the angle of the front wheels, + is left."""
+    """Speeds of the rear wheels at the rim, and the angle of the front wheels, + is left."""
 
     left_m_s: float
     right_m_s: float
@@ -27,7 +27,7 @@ class WheelsReading:
 
     @property
     def radius_m(self) -> float:
-        """Turning radius, + to the left, inf when straight, nan where there is no circle."""
+        """Turning radius, positive to the left, inf when straight, nan if there is no circle."""
         try:
             return turning_radius(self.steering_rad)
         except ValueError:
@@ -35,7 +35,7 @@ class WheelsReading:
 
     @property
     def words(self) -> str:
-        """Which wheel is slower, or that they stand or turn alike."""
+        """Say which wheel is slower, or that they stand or turn alike."""
         left, right = abs(self.left_m_s), abs(self.right_m_s)
         if not (math.isfinite(left) and math.isfinite(right)):
             return _("not a number")
@@ -50,7 +50,7 @@ class WheelsReading:
 
 
 def can_be_turned_to(steering_rad: float) -> bool:
-    """Whether that can be the angle of a wheel: a finite one, of half a turn at most."""
+    """Whether this can be the angle of a wheel: finite, and at most half a turn."""
     return abs(steering_rad) <= FARTHEST_RAD
 
 
@@ -59,7 +59,7 @@ def wheels_in(
 ) -> WheelsReading | None:
     """Read a sensor_msgs/JointState; None if it is not about these wheels.
 
-    A joint that is missing counts as not a number.
+    A missing joint is read as nan.
     """
     names = [str(name) for name in value.get("name", ())]
     if REAR_LEFT_WHEEL not in names and REAR_RIGHT_WHEEL not in names:

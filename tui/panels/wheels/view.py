@@ -1,4 +1,4 @@
-"""The chassis from above, its front at the top: wheels turned as they are."""
+"""The chassis from above, its front at the top, with the wheels at their current angle."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tui.panels.wheels.reading import WheelsReading, can_be_turned_to
 from tui.widgets.drawing import Ink, Line
 
 WHEEL_M = (0.035, 0.085)
-"""Width and length of a wheel as drawn: a little larger than life."""
+"""Width and length of a wheel as drawn: slightly larger than life."""
 BODY_M = 0.085
 LENGTH_M = WHEELBASE_M + WHEEL_M[1] + 0.02
 WIDTH_M = TRACK_M + WHEEL_M[1]
@@ -18,7 +18,7 @@ HALF = "▄", "▀"
 
 
 def chassis(wheels: WheelsReading, columns: int, rows: int) -> list[Line]:
-    """Body, axles and four wheels in so many cells."""
+    """Draw body, axles and four wheels in this many cells."""
     dots = Dots(columns, rows)
     scale = min(dots.height / LENGTH_M, dots.width / WIDTH_M)
     middle, front = dots.width / 2, (dots.height - scale * WHEELBASE_M) / 2
@@ -40,7 +40,7 @@ def chassis(wheels: WheelsReading, columns: int, rows: int) -> list[Line]:
 
 
 def speed_bar(speed_m_s: float, most_m_s: float, rows: int, look: str) -> list[Line]:
-    """A bar two cells wide: upwards from the bottom when forward, downwards from the top else."""
+    """A bar two cells wide: from the bottom upwards when forward, else from the top downwards."""
     if not math.isfinite(speed_m_s):
         return [[Ink("??" if row == rows // 2 else "  ", "bad")] for row in range(rows)]
     halves = round(2 * rows * min(1.0, abs(speed_m_s) / most_m_s))

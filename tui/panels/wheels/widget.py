@@ -21,10 +21,10 @@ SIDE = 9
 
 
 class WheelsPanel(Drawing):
-    """Shows `Wheels`; from one line on in words, drawn from above where there is room."""
+    """Shows `Wheels`: in words from one line on, drawn from above if there is room."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Begin with no reading."""
+        """Start without a reading."""
         super().__init__(id=id, classes=classes)
         self._wheels: WheelsReading | None = None
 
@@ -36,11 +36,11 @@ class WheelsPanel(Drawing):
 
     @property
     def has_value(self) -> bool:
-        """Whether a reading ever came."""
+        """Whether there has been a reading."""
         return self._wheels is not None
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """As much as there is room for."""
+        """Draw as much as fits."""
         wheels = self._wheels
         if wheels is None:
             return []
@@ -110,7 +110,7 @@ def _number(value: float) -> float:
 
 
 def _side(name: str, speed: float, rows: int, look: str, *, right: bool) -> list[Line]:
-    """Name and speed of a wheel, at the height of the rear wheels."""
+    """Name and speed of a wheel, beside the rear wheels."""
     texts = [""] * rows
     words = speed_words(speed)
     texts[rows - 2] = name
@@ -122,7 +122,7 @@ def _side(name: str, speed: float, rows: int, look: str, *, right: bool) -> list
 
 
 def _level(speed: float, width: int, look: str) -> Line:
-    """A bar of full and half cells, a sign of the direction at its end."""
+    """A bar of full and half cells, with a sign for the direction at its end."""
     cells = round(max(0, width - 1) * min(1.0, abs(_number(speed)) / MOST_M_S))
     sign = "" if not cells else ("▶" if speed > 0 else "◀")
     return [Ink("━" * cells + sign, look)]
@@ -139,7 +139,7 @@ def speed_words(speed: float) -> str:
 
 
 def angle_words(steering_rad: float) -> str:
-    """`0.50 rad 29° left`, or that no wheel can be turned so far."""
+    """`0.50 rad 29° left`, or that no wheel can turn that far."""
     if not math.isfinite(steering_rad):
         return "---"
     if not can_be_turned_to(steering_rad):
@@ -151,7 +151,7 @@ def angle_words(steering_rad: float) -> str:
 
 
 def radius_words(radius_m: float) -> str:
-    """`R 0.46 m`, without a sign: the angle tells the side."""
+    """`R 0.46 m`, without a sign: the angle shows the side."""
     if math.isnan(radius_m):
         return "R ---"
     if math.isinf(radius_m):

@@ -1,1 +1,1 @@
-"""Numbers of messages against time, drawn in cells: `plot.TopicPlot`, of `field.PlotField`s."""
+"""Numbers of messages against time, drawn in cells: `plot.TopicPlot` shows `field.PlotField`s."""

@@ -1,4 +1,4 @@
-"""Axes with round numbers, which do not sway with every message."""
+"""Axes with round numbers, which do not change with every message."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 STEPS = (1.0, 2.0, 5.0, 10.0)
 TOO_WIDE = 3.0
-"""A range that is so many times narrower than the axis gets an axis of its own."""
+"""If the range is narrower than the axis by this factor, the axis is replaced."""
 LEAST_SPAN = 1e-9
 NEAR = 1e-6
 FINER = 4
-"""Steps of the ends in one of the ticks: no more than that is left blank above and below."""
+"""Number of steps of the ends in one tick, which limits the blank space above and below."""
 HUGE = 1e15
 TINIEST = 1e-290
-"""Below that there is nothing left to divide."""
+"""Smaller numbers cannot be divided any further."""
 PLACES_MOST = 6
 
 
@@ -28,13 +28,13 @@ class ValueAxis:
 
     @property
     def ticks(self) -> list[float]:
-        """Every tick from the lowest to the highest."""
+        """All ticks from the lowest to the highest."""
         first = math.ceil(self.low / self.step - NEAR)
         last = math.floor(self.high / self.step + NEAR)
         return [self.step * number for number in range(first, last + 1)]
 
     def label(self, value: float) -> str:
-        """A tick with as many decimals as its step has, an exponent where that would be long."""
+        """Return a tick with the decimals of its step, or with an exponent if that is long."""
         if abs(value) < self.step / 1e3:
             return "0"
         widest = max(abs(self.low), abs(self.high))
@@ -45,23 +45,23 @@ class ValueAxis:
 
 
 def decimals(step: float) -> int:
-    """Decimals that a number with this step needs."""
+    """Return the number of decimals for a number with this step."""
     return max(0, -math.floor(math.log10(step) + 1e-9))
 
 
 def round_step(span: float, ticks: int) -> float:
-    """The least step of 1, 2 or 5 times a power of ten of which `ticks` reach over the span."""
+    """Return the smallest step (1, 2 or 5 times a power of ten) that covers the span in `ticks`."""
     least = span / max(1, ticks)
     power = 10.0 ** math.floor(math.log10(least))
     return next(step * power for step in STEPS if step * power >= least * (1 - 1e-9))
 
 
 def axis_for(low: float, high: float, ticks: int) -> ValueAxis:
-    """An axis with about so many ticks on which all from `low` to `high` has its place."""
+    """Return an axis with about this many ticks that contains everything from `low` to `high`."""
     low, high = max(-HUGE, min(low, HUGE)), max(-HUGE, min(high, HUGE))
     span = high - low
     if span <= LEAST_SPAN * max(1.0, abs(low), abs(high)):
-        # A straight line stands in the middle, and its axis is of its own order of magnitude.
+        # A constant value is in the middle, with an axis of its own order of magnitude.
         half = 0.5 * 10.0 ** math.floor(math.log10(abs(low))) if abs(low) > TINIEST else 0.5
         low, high = low - half, high + half
         span = high - low
@@ -72,7 +72,7 @@ def axis_for(low: float, high: float, ticks: int) -> ValueAxis:
 
 
 def steadied(before: ValueAxis | None, low: float, high: float, ticks: int) -> ValueAxis:
-    """The axis as it was while it suits, else a new one: it grows at once and shrinks late."""
+    """Keep the axis while it suits, else make a new one: it grows at once and shrinks late."""
     if before is not None and before.low <= low and high <= before.high:
         span = max(high - low, LEAST_SPAN * max(1.0, abs(low), abs(high)))
         near = axis_for(low, high, ticks)

@@ -1,4 +1,4 @@
-"""A history as braille dots: a column of dots reaches from its least to its greatest number."""
+"""A history as braille dots: a column of dots spans its lowest to its highest number."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.ui
 
 
 def heights(values: Numbers, axis: ValueAxis, dots: int) -> Numbers:
-    """Rows of dots from the top, 0..dots-1, of numbers on this axis; nan stays nan."""
+    """Rows of dots from the top, 0..dots-1, for numbers on this axis; nan stays nan."""
     share = (axis.high - values) / (axis.high - axis.low)
     placed: Numbers = np.clip(np.rint(share * (dots - 1)), 0, dots - 1)
     return placed
 
 
 def curve(columns: HistoryDots, axis: ValueAxis, rows: int) -> Cells:
-    """The dots of a curve in so many rows of cells, two columns of dots a cell."""
+    """The dots of a curve in this many rows of cells, two columns of dots in each cell."""
     dots = rows * DOTS_DOWN
     top, bottom = _reach(columns, axis, dots)
     at = np.arange(dots)[:, None]
@@ -41,8 +41,8 @@ def curve(columns: HistoryDots, axis: ValueAxis, rows: int) -> Cells:
 
 
 def _reach(columns: HistoryDots, axis: ValueAxis, dots: int) -> tuple[Numbers, Numbers]:
-    """First and last row of each column of dots, with the lines between numbers; nan: none."""
-    # Lists: numpy takes longer than a loop for single numbers.
+    """First and last row of each column of dots, including the lines between numbers; nan: none."""
+    # Lists: numpy is slower than a loop for single numbers.
     top = heights(columns.high, axis, dots).tolist()
     bottom = heights(columns.low, axis, dots).tolist()
     last = heights(columns.last, axis, dots).tolist()
@@ -50,7 +50,7 @@ def _reach(columns: HistoryDots, axis: ValueAxis, dots: int) -> tuple[Numbers, N
     broken = columns.broken.tolist()
     for left, right in pairwise(seen):
         if not broken[right]:
-            # From the last number of the one to the nearest of the other.
+            # From the last number of one column to the nearest number of the next.
             end = min(max(last[left], top[right]), bottom[right])
             _join(top, bottom, (left, last[left]), (right, end))
     return np.array(top), np.array(bottom)
@@ -59,7 +59,7 @@ def _reach(columns: HistoryDots, axis: ValueAxis, dots: int) -> tuple[Numbers, N
 def _join(
     top: list[float], bottom: list[float], start: tuple[int, float], end: tuple[int, float]
 ) -> None:
-    """Draw a line: each column is as high as it has to be for no dot to stand alone."""
+    """Draw a line, making each column high enough to connect all dots."""
     (left, begin), (right, finish) = start, end
     slope = (finish - begin) / (right - left)
     one = begin

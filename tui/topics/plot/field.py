@@ -1,4 +1,4 @@
-"""A field of a topic that is plotted: its name, its number in a message, its curve in a plot."""
+"""A plotted field of a topic: its name, its number in a message, its curve in a plot."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LONGEST = 200
 
 
 class PlotField(NamedTuple):
-    """One number in the messages of one topic."""
+    """One number in the messages of a topic."""
 
     topic: str
     path: tuple[str | int, ...]
@@ -25,12 +25,12 @@ class PlotField(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The path as one writes it: `drive.speed`, `ranges[3]`."""
+        """The path as written by users: `drive.speed`, `ranges[3]`."""
         parts = [f"[{step}]" if isinstance(step, int) else f".{step}" for step in self.path]
         return plain("".join(parts).removeprefix("."), LONGEST)
 
     def number(self, message: Mapping[str, Value]) -> float | None:
-        """The field's number, nan and infinities too; None where there is none."""
+        """The field's number, including nan and infinities; None if there is none."""
         value: object = message
         for step in self.path:
             if isinstance(value, Mapping):
@@ -48,24 +48,24 @@ class PlotField(NamedTuple):
 
 @dataclass
 class Series:
-    """One field with its name in the picture, its look and its history."""
+    """One field with its letter in the plot, its look and its history."""
 
     field: PlotField
     letter: str
     look: str
     history: History
     is_number: bool = True
-    """Whether the newest message had a number there."""
+    """Whether the newest message had a number in this field."""
 
     def take(self, sample: Sample) -> None:
-        """Add the number of one message."""
+        """Add the number from one message."""
         number = self.field.number(sample.value)
         self.is_number = number is not None
         self.history.add(sample.received_s - sample.age_s, number)
 
 
 def as_number(value: object) -> float | None:
-    """A number or a truth value as a float; None for anything else."""
+    """A number or a boolean as a float; None for anything else."""
     if not isinstance(value, SupportsFloat) or hasattr(value, "__len__"):
         return None
     try:
@@ -75,5 +75,5 @@ def as_number(value: object) -> float | None:
 
 
 def _is_indexed(value: object) -> bool:
-    """Whether it is an array: of numbers (numpy) or of anything else, but no text."""
+    """Whether it is an array, of numbers (numpy) or of anything else except characters."""
     return hasattr(value, "__len__") and not isinstance(value, (str, bytes))

@@ -1,4 +1,4 @@
-"""Curves laid over each other in cells of braille, above dotted lines at the ticks."""
+"""Overlapping curves in braille cells, above dotted lines at the ticks."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ if TYPE_CHECKING:
 
 BLANK = 0x2800
 EVERY = 4
-"""Cells from one dot of a tick's line to the next."""
+"""Cells between two dots of the line of a tick."""
 
 
 class PlotGrid:
-    """So many cells; one takes the look of the last curve that was drawn through it."""
+    """A grid of cells; each takes the look of the last curve drawn through it."""
 
     def __init__(self, rows: int, columns: int, ticks: Iterable[int]) -> None:
-        """Begin with dotted lines in the rows of the ticks."""
+        """Start with dotted lines in the rows of the ticks."""
         self._bits = np.zeros((rows, columns), np.uint8)
         self._owners = np.zeros((rows, columns), np.int8)
-        """0: nobody or a tick's line; else the number of the curve."""
+        """0 for no curve, otherwise the number of the curve."""
         self._ticks = set(ticks)
 
     def draw(self, cells: Cells, number: int) -> None:
-        """Lay a curve over what is there; curves are numbered from 1."""
+        """Draw a curve over the existing ones; curves are numbered from 1."""
         self._bits |= cells
         self._owners[cells > 0] = number
 
     def lines(self, looks: Sequence[str]) -> list[Line]:
-        """The rows, neighbours that look alike as one; `looks` are those of the curves."""
+        """Return the rows, joining neighbours that look alike; `looks` are those of the curves."""
         return [self._line(row, ("muted", *looks)) for row in range(len(self._bits))]
 
     def _line(self, row: int, looks: Sequence[str]) -> Line:

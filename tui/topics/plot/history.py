@@ -1,4 +1,4 @@
-"""What a plotted field was over the last minutes, in a fixed amount of memory."""
+"""The values of a plotted field over the last minutes, in a fixed amount of memory."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ if TYPE_CHECKING:
 SLOT_S = 0.025
 """Finer than a dot of the shortest window on the widest terminal."""
 SLOTS = 12_288
-"""Five minutes and a little: a field takes a third of a megabyte, however fast its topic is."""
+"""A little over five minutes: a third of a megabyte for each field, whatever its rate."""
 QUIET_S = 3.0
 QUIET_PERIODS = 3.0
-"""After so long without a message the line is broken (the rule of the rates)."""
+"""After this many periods without a message the line is broken, as with the rates."""
 
 
 class HistoryDots(NamedTuple):
-    """A history seen through a window, by dots from left to right; nan where nothing came."""
+    """A history as seen in a window, in dots from left to right; nan if there was no number."""
 
     low: Numbers
     high: Numbers
     last: Numbers
     broken: NDArray[np.bool_]
-    """Whether the line does not reach this dot from the one with a number before it."""
+    """Whether the line is broken between this dot and the previous one with a number."""
 
 
 class History:
-    """The least, greatest and last number of each slot of time, and where the line is broken."""
+    """The lowest, highest and last number of each time slot, and where the line is broken."""
 
     def __init__(self) -> None:
         self._begin()
@@ -48,12 +48,12 @@ class History:
         self._period_s = math.inf
         self._gap = False
         self.last: float | None = None
-        """The newest number, finite or not; None before the first."""
+        """The newest number, finite or not; None before the first message."""
 
     def add(self, time_s: float, number: float | None) -> None:
-        """Take a number that came at this unix time; None: the message had none.
+        """Add a number received at this Unix time; None if the message had none.
 
-        One that is older than the newest is of a clock that was set back: all begins anew.
+        If time goes back, the clock was set back, and the history starts over.
         """
         slot = int(time_s / SLOT_S)
         if slot < self._newest - 1:
@@ -73,14 +73,14 @@ class History:
         self._last[at] = number
 
     def range(self, end_s: float, window_s: float) -> tuple[float, float] | None:
-        """The least and the greatest number in the window that ends at this time."""
+        """The lowest and the highest number in the window that ends at this time."""
         first, after = self._slots(end_s, window_s)
         low, high = self._part(self._low, first, after), self._part(self._high, first, after)
         seen = np.isfinite(low)
         return (float(low[seen].min()), float(high[seen].max())) if seen.any() else None
 
     def columns(self, end_s: float, window_s: float, count: int) -> HistoryDots:
-        """The window that ends at this time as so many dots."""
+        """The window that ends at this time, as `count` dots."""
         first, after = self._slots(end_s, window_s)
         width_s = window_s / count
         # Counted from the epoch: a dot keeps its slots while the window moves by whole dots.
@@ -107,7 +107,7 @@ class History:
         return after - min(SLOTS, int(window_s / SLOT_S)), after
 
     def _part(self, ring: NDArray[np.generic], first: int, after: int) -> NDArray[np.generic]:
-        """The slots from `first` to before `after`; nothing where they are too old or to come."""
+        """The slots from `first` to before `after`; blank if they are too old or in the future."""
         slots = np.arange(first, after)
         part = ring[slots % SLOTS]
         known = (slots <= self._newest) & (slots > self._newest - SLOTS)
@@ -115,7 +115,7 @@ class History:
         return np.where(known, part, blank)
 
     def _go_to(self, slot: int) -> None:
-        """Blank the slots between the newest and this one."""
+        """Clear the slots between the newest and this one."""
         if self._newest < 0:
             self._newest = slot
         steps = min(SLOTS, slot - self._newest)

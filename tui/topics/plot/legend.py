@@ -1,4 +1,4 @@
-"""What the letters of a plot stand for: field, newest number, least and greatest in the window."""
+"""The legend of a plot: field, newest number, and the lowest and highest in the window."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 FIGURE = 9
 LEAST_NAME = 18
 FIGURES = 5
-"""Figures that count."""
+"""Significant digits."""
 HUGE, TINY = 1e6, 1e-4
 
 
 def legend_lines(
     series: Sequence[Series], end_s: float, window_s: float, width: int, title: str
 ) -> list[Line]:
-    """A title and a line a field, in columns; without the range where room is short."""
+    """A title and a line for each field, in columns; without the range if there is little room."""
     titles = (_("last"), _("min"), _("max"))
     shown = 3 if width >= 2 + LEAST_NAME + 3 * (FIGURE + 1) else 1
     longest = max((cell_len(_name(one)) for one in series), default=0)
@@ -45,7 +45,7 @@ def legend_lines(
 
 
 def legend_in_short(series: Sequence[Series], width: int, title: str) -> list[Line]:
-    """The title and behind it field and newest number of each, two lines at most."""
+    """The title, then field and newest number of each, in at most two lines."""
     lines: list[Line] = [[Ink(fit(title, min(width, cell_len(title))), "strong")]]
     room = width - cell_len(title)
     for place, one in enumerate(series):
@@ -64,7 +64,7 @@ def legend_in_short(series: Sequence[Series], width: int, title: str) -> list[Li
 
 
 def number_text(number: float | None) -> str:
-    """A number with five figures that count, nan and infinities by their names."""
+    """A number with five significant digits; nan and infinities by name."""
     if number is None:
         return UNKNOWN
     if not math.isfinite(number):

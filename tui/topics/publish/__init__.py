@@ -1,1 +1,1 @@
-"""Publishing from the topics: `dialog.PublishDialog`, and `actions` for the palette."""
+"""Publishing from the Topics screen: `dialog.PublishDialog`, and `actions` for the palette."""

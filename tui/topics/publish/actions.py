@@ -1,4 +1,4 @@
-"""What the dialog that publishes messages can do."""
+"""The actions of the dialog that publishes messages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class PublishingTarget(Protocol):
-    """What these actions need of the dialog."""
+    """The part of the dialog that its actions use."""
 
     @property
     def is_publishing(self) -> bool:
@@ -20,26 +20,26 @@ class PublishingTarget(Protocol):
 
     @property
     def newest(self) -> Sample | None:
-        """The newest message of the topic that stands there."""
+        """The newest message of the topic that was entered."""
 
     def publish_once(self) -> None:
         """Publish the message."""
 
     def publish_at_rate(self) -> None:
-        """Publish the message again and again."""
+        """Publish the message periodically."""
 
     def stop_chosen(self) -> None:
-        """Publish the chosen one no more."""
+        """Stop the chosen publication."""
 
     def take_message(self) -> None:
         """Fill the form with the newest message."""
 
     def leave(self) -> None:
-        """Close the list of types if it is open, else the dialog."""
+        """Close the list of types if it is open, otherwise the dialog."""
 
 
 class PublishAction(Action[PublishingTarget]):
-    """Something that the dialog does; it comes before what a text field would take the key for."""
+    """An action of the dialog; its key takes precedence over a text field's."""
 
     priority = True
     palette = False
@@ -47,7 +47,7 @@ class PublishAction(Action[PublishingTarget]):
 
 
 class PublishMessage(PublishAction):
-    """The message, once."""
+    """Publish the message once."""
 
     id = "publish.once"
     key = "ctrl+s"
@@ -57,7 +57,7 @@ class PublishMessage(PublishAction):
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
-        """Publish."""
+        """Publish it."""
         target.publish_once()
 
 
@@ -71,12 +71,12 @@ class PublishAtRate(PublishAction):
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
-        """Begin."""
+        """Start publishing."""
         target.publish_at_rate()
 
 
 class StopPublication(PublishAction):
-    """Stop publishing it."""
+    """Stop a publication."""
 
     id = "publish.stop"
     key = "f12"
@@ -96,7 +96,7 @@ class StopPublication(PublishAction):
 
 
 class TakeMessage(PublishAction):
-    """What came, to be changed and sent."""
+    """Copy a received message, to be changed and sent."""
 
     id = "publish.take"
     key = "ctrl+t"
@@ -111,12 +111,12 @@ class TakeMessage(PublishAction):
 
     @classmethod
     async def run(cls, target: PublishingTarget) -> None:
-        """Take it."""
+        """Copy it."""
         target.take_message()
 
 
 class LeavePublish(PublishAction):
-    """Back to the topics."""
+    """Go back to the topics."""
 
     id = "publish.leave"
     key = "escape"

@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 
 LOOK_S = 0.25
 DONE_WITHIN_S = 8.0
-"""A new publisher may wait four seconds for its subscribers."""
+"""Time limit; a new publisher may wait four seconds for its subscribers."""
 LONGEST_ARRAY = 1000
-"""Elements of an array that are taken into the form."""
+"""Elements of an array that are copied into the form."""
 
 
 class PublishDialog(Dialog[None]):
@@ -56,7 +56,7 @@ class PublishDialog(Dialog[None]):
     """
 
     def __init__(self, row: TopicRow | None, sample: Callable[[], Sample | None]) -> None:
-        """Begin with the topic of `row`, a new one for None; `sample` is its newest message."""
+        """Start with the topic of `row`, or a new one for None; `sample` is its newest message."""
         super().__init__()
         self._row = row
         self._sample = sample
@@ -81,8 +81,8 @@ class PublishDialog(Dialog[None]):
             yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the chosen topic, and keep looking at what is published."""
-        # A tab would put its screen in this one's place, above the topics.
+        """Show the chosen topic, and update the list of publications regularly."""
+        # A tab would replace this screen and put its own above the topics.
         self.query_one(TitleBar).disabled = True
         self.redraw()
         self._look()
@@ -101,7 +101,7 @@ class PublishDialog(Dialog[None]):
 
     @property
     def rate(self) -> PublishRate:
-        """The rate, and what is said beside it."""
+        """The rate, and the remark beside it."""
         return self.query_one(PublishRate)
 
     @property
@@ -116,14 +116,14 @@ class PublishDialog(Dialog[None]):
 
     @property
     def newest(self) -> Sample | None:
-        """The newest message of the topic that stands here, if it is the chosen one."""
+        """The newest message of the topic that was entered, if it is the chosen one."""
         sample = self._sample()
         if sample is None or not self.is_mounted:
             return None
         return sample if sample.topic == self.target.topic else None
 
     def redraw(self) -> None:
-        """Say everything in the language spoken now."""
+        """Redraw in the current language."""
         dialog = self.query_one("#dialog")
         dialog.border_title = Content(self.title_words())
         stop = f"{self.deck.keys_of(EmergencyStop)[-1]} {_(EmergencyStop.title)}"
@@ -135,7 +135,7 @@ class PublishDialog(Dialog[None]):
         self._look()
 
     def publish_once(self) -> None:
-        """Publish the message, and say who got it."""
+        """Publish the message, and say how many received it."""
         ready = self._ready()
         if ready is not None:
             graph, topic, value = ready
@@ -144,7 +144,7 @@ class PublishDialog(Dialog[None]):
             self.run_worker(self._confirm_once(topic, future), group="publish")
 
     def publish_at_rate(self) -> None:
-        """Publish the message again and again, in place of an earlier one on the same topic."""
+        """Publish the message periodically, replacing an earlier publication on the same topic."""
         hz = self.rate.rate_hz()
         ready = None if hz is None else self._ready()
         if hz is not None and ready is not None:
@@ -154,7 +154,7 @@ class PublishDialog(Dialog[None]):
             self.run_worker(self._confirm_rate(topic, hz, before, future), group="publish")
 
     def stop_chosen(self) -> None:
-        """Publish the chosen one no more."""
+        """Stop the chosen publication."""
         number = self.query_one(PublicationList).chosen_number
         graph = self.deck.feed.graph
         if number is None or graph is None:
@@ -177,7 +177,7 @@ class PublishDialog(Dialog[None]):
             self.rate.tell(lambda: _("Filled in from the newest message."))
 
     def leave(self) -> None:
-        """Close the list of types if it is open, else the dialog."""
+        """Close the list of types if it is open, otherwise the dialog."""
         if self.target.type.is_listing:
             self.target.type.close()
         else:
@@ -185,7 +185,7 @@ class PublishDialog(Dialog[None]):
 
     @on(PublishTarget.TopicChanged)
     def _follow_topic(self) -> None:
-        """Take the type of a topic that is there."""
+        """Use the type of an existing topic."""
         row = self._known(self.target.topic)
         if row is not None and row.type_names and row.type_names[0] != self.form.type_name:
             self.target.type.set(row.type_names[0])
@@ -243,19 +243,19 @@ class PublishDialog(Dialog[None]):
         self._look()
 
     async def _outcome(self, future: Future[int]) -> int | None:
-        """Wait for what came of it; say why nothing did."""
+        """Wait for the result; if there is none, say why."""
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), DONE_WITHIN_S)
         except asyncio.TimeoutError:
             words = _("ROS did not accept it within {n} s").format(n=decimal(f"{DONE_WITHIN_S:g}"))
             self.rate.tell(lambda: words, "bad")
-        except Exception as error:  # noqa: BLE001 - whatever it was, it is told
+        except Exception as error:  # noqa: BLE001 - any failure is reported
             reason = reason_words(error)
             self.rate.tell(lambda: _("Not sent: {reason}").format(reason=reason), "bad")
         return None
 
     def _ready(self) -> tuple[GraphLink, str, Mapping[str, Value]] | None:
-        """Return graph, topic and message, or say what is missing and go there."""
+        """Return graph, topic and message, or say what is missing and focus it."""
         graph = self.deck.feed.graph
         topic = self.target.topic
         if graph is None:
@@ -280,7 +280,7 @@ class PublishDialog(Dialog[None]):
         return next((row for row in rows if row.name == topic), None)
 
     def _look(self) -> None:
-        """Show what is published now, and whether the robot is held."""
+        """Update the list of publications, and whether the robot is held."""
         update = self.deck.feed.update
         publications = () if update is None else update.publications
         if publications != self._listed:

@@ -17,7 +17,7 @@ MOST_LINES = 5
 
 
 class PublicationList(Rows):
-    """One row each; Enter stops the chosen one. There is nothing to see while there is none."""
+    """One row for each; Enter stops the chosen one. It is hidden while there is none."""
 
     DEFAULT_CSS = """
     PublicationList { display: none; border-top: solid $panel; }
@@ -39,12 +39,12 @@ class PublicationList(Rows):
         )
         self.show(columns, [_row(one) for one in publications])
         self.set_class(bool(publications), "-some")
-        # The header and the line above it come on top of the rows.
+        # The header and the line above it are in addition to the rows.
         self.styles.height = min(MOST_LINES, len(publications)) + 2
 
     @property
     def chosen_number(self) -> int | None:
-        """Deck's number of the chosen one."""
+        """Number of the chosen publication."""
         return int(self.chosen) if self._shown and self.chosen else None
 
 

@@ -1,4 +1,4 @@
-"""The rate of a publication, and beside it what came of the last key."""
+"""The rate of a publication, and beside it the result of the last action."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LONGEST = 300
 
 
 class PublishRate(Horizontal):
-    """A field for the rate; right of it a sentence in the language spoken now."""
+    """A field for the rate, and on its right a remark in the current language."""
 
     class RateDone(Message):
         """Enter was pressed in the field."""
@@ -46,7 +46,7 @@ class PublishRate(Horizontal):
         self._look = ""
 
     def compose(self) -> ComposeResult:
-        """All in one line."""
+        """Everything in one line."""
         yield Static(id="rate-label", markup=False)
         yield Field("10", id="rate-hz", compact=True, select_on_focus=False)
         yield Static(id="rate-unit", markup=False)
@@ -54,21 +54,21 @@ class PublishRate(Horizontal):
 
     @property
     def field(self) -> Input:
-        """Where the rate is typed."""
+        """The input of the rate."""
         return self.query_one(Input)
 
     @property
     def said(self) -> str:
-        """What came of the last key."""
+        """The remark."""
         return str(self.query_one("#rate-said", Static).content)
 
     @property
     def says_bad(self) -> bool:
-        """Whether that was bad news."""
+        """Whether the remark reports a failure."""
         return self._look == "bad"
 
     def rate_hz(self) -> float | None:
-        """Return the rate; None, after saying what it may be, for what is none."""
+        """Return the rate; if it is invalid, say what is allowed and return None."""
         try:
             hz = float(self.field.value.replace(",", "."))
         except ValueError:
@@ -80,7 +80,7 @@ class PublishRate(Horizontal):
         return None
 
     def tell(self, words: Callable[[], str], look: str = "") -> None:
-        """Say this, `good`, `bad` or neither; `words` are asked for anew in another language."""
+        """Show a remark as `good`, `bad` or neither; `words` is called again in a new language."""
         self._words, self._look = words, look
         shown = self.query_one("#rate-said", Static)
         shown.set_class(look == "good", "-good")
@@ -88,7 +88,7 @@ class PublishRate(Horizontal):
         shown.update(plain(words(), LONGEST))
 
     def relabel(self) -> None:
-        """Say everything in the language spoken now."""
+        """Redraw in the current language."""
         self.query_one("#rate-label", Static).update(_("Rate"))
         self.query_one("#rate-unit", Static).update(_("Hz"))
         self.tell(self._words, self._look)

@@ -1,4 +1,4 @@
-"""Where a message goes: the topic and its type."""
+"""The destination of a message: the topic and its type."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ TOPIC = re.compile(r"/[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
 
 
 class PublishTarget(Vertical, Working):
-    """Two lines; the types that are installed complete the second."""
+    """Two lines; the second is completed from the installed types."""
 
     class TopicChanged(Message):
-        """Another name of a topic stands there."""
+        """Another topic name was entered."""
 
     class TopicDone(Message):
-        """Enter was pressed behind the name."""
+        """Enter was pressed in the field of the name."""
 
     DEFAULT_CSS = """
     PublishTarget {
@@ -51,32 +51,32 @@ class PublishTarget(Vertical, Working):
             yield TypeField()
 
     def on_mount(self) -> None:
-        """Learn which types there are."""
+        """Read the installed types."""
         self.run_worker(self._learn_types(), group="types")
 
     @property
     def field(self) -> Input:
-        """Where the topic is typed."""
+        """The input of the topic."""
         return self.query_one("#target-topic", Input)
 
     @property
     def type(self) -> TypeField:
-        """Where the type is typed."""
+        """The input of the type."""
         return self.query_one(TypeField)
 
     @property
     def topic(self) -> str:
-        """The topic that stands there, a relative name below the root."""
+        """The topic that was entered; a relative name is below the root."""
         name = self.field.value.strip()
         return name if not name or name.startswith(("/", "~")) else f"/{name}"
 
     @property
     def is_name(self) -> bool:
-        """Whether a topic may be called so."""
+        """Whether it is a valid topic name."""
         return TOPIC.fullmatch(self.topic) is not None
 
     def relabel(self) -> None:
-        """Say everything in the language spoken now."""
+        """Redraw in the current language."""
         self.query_one("#target-topic-label", Static).update(_("Topic"))
         self.query_one("#target-type-label", Static).update(_("Type"))
         self.field.placeholder = _("/name of a topic that is there, or of a new one")

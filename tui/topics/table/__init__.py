@@ -1,1 +1,1 @@
-"""Every topic in a table: `table.TopicsTable`, its columns and their texts, its order."""
+"""All topics in a table: `table.TopicsTable`, its columns and their texts, its order."""

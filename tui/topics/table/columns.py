@@ -1,4 +1,4 @@
-"""The columns of the table of topics: what each says, and which go when room is short."""
+"""The columns of the table of topics: their texts, and which are dropped when room is short."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _TROUBLES = {
 
 @dataclass(frozen=True)
 class TopicColumn:
-    """One column; a `width` of 0 shares what is left."""
+    """One column; a `width` of 0 shares the remaining width."""
 
     id: str
     title: str
@@ -38,13 +38,13 @@ class TopicColumn:
     sort_key: Callable[[TopicRow], SortKey]
     right: bool = False
     falling: bool = False
-    """Whether the greatest comes first when it is sorted by."""
+    """Whether the highest value comes first when sorting by it."""
     least: int = 0
     """Width below which it is left out."""
 
 
 def hz_text(hz: float | None) -> str:
-    """A rate with three figures."""
+    """A rate with three significant digits."""
     if hz is None:
         return UNKNOWN
     if hz >= WHOLE_FROM:
@@ -53,7 +53,7 @@ def hz_text(hz: float | None) -> str:
 
 
 def bandwidth_text(bytes_per_s: float | None) -> str:
-    """A bandwidth with three figures and its unit."""
+    """A bandwidth with three significant digits and its unit."""
     if bytes_per_s is None:
         return UNKNOWN
     value, step = bytes_per_s, 0
@@ -64,7 +64,7 @@ def bandwidth_text(bytes_per_s: float | None) -> str:
 
 
 def age_text(age_s: float | None) -> str:
-    """An age in whole seconds, minutes or hours: it is drawn again only when that changes."""
+    """An age in whole seconds, minutes or hours, so that it is redrawn only when those change."""
     if age_s is None:
         return UNKNOWN
     if age_s < SOON_S:
@@ -82,7 +82,7 @@ def type_text(row: TopicRow) -> str:
 
 
 def needs_mending(row: TopicRow) -> bool:
-    """Tell whether something is wrong; most that is quiet speaks only when there is news."""
+    """Return whether something is wrong; mere silence is usually not."""
     return row.trouble in _TROUBLES
 
 
@@ -201,26 +201,26 @@ COLUMNS = (
         _state_key,
     ),
 )
-"""In the order of the screen."""
+"""In the order on the screen."""
 
 _EXTRA = frozenset({"jitter", "latency", "lost"})
-"""All or none of them, where there is room to spare: they stand above the message too."""
+"""All or none of them, if there is room to spare: they are shown above the message too."""
 LONG_NAME, COMFORT = 30, 8
-"""Cells of a name, and beyond the least of a type, that come before the extra columns."""
+"""Cells of a name, and of a type beyond its minimum, that come before the extra columns."""
 _GIVEN_UP = ("type", "subscribers", "publishers", "bandwidth", "age", "state", "hz")
-"""What goes first when room is short."""
+"""The order in which columns are dropped when room is short."""
 
 
 @dataclass(frozen=True)
 class PlacedColumn:
-    """A column where it stands in a row."""
+    """A column at its place in a row."""
 
     column: TopicColumn
     x: int
     width: int
 
     def fitted(self, text: str) -> str:
-        """The text made as wide as the column, cut with an ellipsis."""
+        """The text padded to the width of the column, or cut with an ellipsis."""
         blank = self.width - cell_len(text)
         if blank < 0:
             return set_cell_size(text, max(0, self.width - 1)) + "…"
@@ -228,10 +228,10 @@ class PlacedColumn:
 
 
 def placed(width: int, longest_name: int = 0) -> tuple[PlacedColumn, ...]:
-    """The columns that fit into so many cells, with their gaps.
+    """The columns that fit into this width, with their gaps.
 
-    What is left beyond the narrowest columns goes to the names until the longest is whole, and
-    then to the types; where these are left out, all of it goes to the names.
+    The room beyond the minimum widths goes to the names until the longest fits, and then to the
+    types; if there is no column for types, all of it goes to the names.
     """
     kept = list(COLUMNS)
     names = max(0, min(longest_name, LONG_NAME) - COLUMNS[0].least)
@@ -262,5 +262,5 @@ def _least(columns: list[TopicColumn]) -> int:
 
 
 def _gap(column: TopicColumn) -> int:
-    """Cells after a column: two where figures on the right may be followed by a word."""
+    """Cells after a column: two where right-aligned figures may be followed by a word."""
     return 2 if column.id in {"age", "lost"} else 1

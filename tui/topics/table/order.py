@@ -1,4 +1,4 @@
-"""Which topics the table shows and in which order."""
+"""Which topics the table shows, and in which order."""
 
 from __future__ import annotations
 
@@ -17,39 +17,39 @@ _BY_ID = {column.id: column for column in COLUMNS}
 
 @dataclass(frozen=True)
 class TopicsOrder:
-    """What is sorted by, what is left out."""
+    """The column to sort by, and what is left out."""
 
     column_id: str = "name"
     reverse: bool = False
-    """Whether the order is not the column's own."""
+    """Whether the order is the reverse of the column's own."""
     words: str = ""
-    """Every one of them must be part of the topic's name or type."""
+    """All of them must occur in the topic's name or type."""
     housekeeping: bool = False
     """Whether topics of ROS itself are shown."""
 
     @property
     def column(self) -> TopicColumn:
-        """The column that is sorted by."""
+        """The column to sort by."""
         return _BY_ID[self.column_id]
 
     @property
     def falling(self) -> bool:
-        """Whether the greatest comes first."""
+        """Whether the highest value comes first."""
         return self.column.falling is not self.reverse
 
     def by(self, column_id: str) -> TopicsOrder:
-        """The order after this column was chosen: chosen again, it turns round."""
+        """The order after this column is chosen; choosing it again reverses the order."""
         if column_id == self.column_id:
             return replace(self, reverse=not self.reverse)
         return replace(self, column_id=column_id, reverse=False)
 
     def next_column(self, column_ids: list[str]) -> TopicsOrder:
-        """The order by the column after this one, of those that are shown."""
+        """The order by the next one of the columns that are shown."""
         at = column_ids.index(self.column_id) if self.column_id in column_ids else -1
         return replace(self, column_id=column_ids[(at + 1) % len(column_ids)], reverse=False)
 
     def arranged(self, rows: Iterable[TopicRow]) -> list[TopicRow]:
-        """The rows that are shown, in order; equal ones by name."""
+        """The rows to show, in order; equal ones are sorted by name."""
         words = self.words.casefold().split()
         shown = [row for row in rows if self._shows(row, words)]
         shown.sort(key=lambda row: row.name)
