@@ -1,4 +1,4 @@
-"""Time as the supervisor sees it, so that a test need not wait out a backoff of 30 s."""
+"""The supervisor's clock, replaceable so that a test need not wait out a backoff of 30 s."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ class Clock(Protocol):
         """Return monotonic seconds."""
 
     async def wait(self, event: asyncio.Event, within_s: float) -> bool:
-        """Wait for `event`, at most so long; return whether it came."""
+        """Wait for `event`, at most `within_s`; return whether it was set."""
 
 
 class MonotonicClock:
-    """The machine's own."""
+    """The machine's monotonic clock."""
 
     def now(self) -> float:
         """Return monotonic seconds."""
         return time.monotonic()
 
     async def wait(self, event: asyncio.Event, within_s: float) -> bool:
-        """Wait for `event`, at most so long; return whether it came."""
+        """Wait for `event`, at most `within_s`; return whether it was set."""
         try:
             await asyncio.wait_for(event.wait(), within_s)
         except asyncio.TimeoutError:

@@ -1,19 +1,19 @@
-"""What can go wrong in the launcher, as exceptions with sentences for people.
+"""What can go wrong in the launcher, as exceptions with readable messages.
 
 ::
 
-    LauncherError                   anything below; its text is fit to be shown as it is
-    ├── UsageError                  what was asked for cannot be right, nothing was started (exit 2)
-    │   ├── ProfileError            a profile that cannot be used; `.problems`, all of them
-    │   ├── ProfileNotFoundError    no profile of that name; `.near` has the likely ones
-    │   ├── DomainError             no ROS domain: not a number from 0 to 232
-    │   ├── DomainTakenError        another session is in the domain; `.free` is one without
+    LauncherError                   base of all; its text can be shown to the user as it is
+    ├── UsageError                  the request is invalid, nothing was started (exit 2)
+    │   ├── ProfileError            a profile that cannot be used; `.problems` has every problem
+    │   ├── ProfileNotFoundError    no profile of that name; `.near` has similar names
+    │   ├── DomainError             not a ROS domain, that is, a number from 0 to 232
+    │   ├── DomainTakenError        another session is in the domain; `.free` is an unused one
     │   └── UnknownNodeError        the running profile has no node of that name
-    ├── RunDirError                 no run or log directory, or it is not ours, or full (exit 2)
-    └── SessionError                about a running supervisor (exit 1)
-        ├── NotRunningError         none runs, or none of that name
-        ├── SeveralRunningError     more than one runs, choose by name; `.names` (exit 2)
-        ├── AlreadyRunningError     the same profile runs there already; `.session` (exit 2)
+    ├── RunDirError                 the run or log directory is missing, full or not ours (exit 2)
+    └── SessionError                an error that concerns a running supervisor (exit 1)
+        ├── NotRunningError         no session runs, or none of that name
+        ├── SeveralRunningError     more than one runs, choose one of `.names` (exit 2)
+        ├── AlreadyRunningError     the same nodes already run there; `.session` (exit 2)
         ├── StartError              the supervisor ended before it answered (exit 2)
         ├── ConnectionLostError     the supervisor has gone, or does not answer
         ├── SilentSupervisorError   it does not answer, and was left alone or killed
@@ -34,14 +34,14 @@ if TYPE_CHECKING:
 
 
 class LauncherError(Exception):
-    """Anything that the launcher refuses or fails at."""
+    """Any request that the launcher refuses or fails to carry out."""
 
     exit_code = 1
-    """What a command that ends by this error exits with."""
+    """Exit code of a command that ends with this error."""
 
 
 class UsageError(LauncherError):
-    """The request cannot be right; nothing was started."""
+    """The request is invalid; nothing was started."""
 
     exit_code = 2
 
@@ -50,27 +50,27 @@ class UsageError(LauncherError):
 class ProfileProblem:
     """One thing that is wrong in a profile.
 
-    `line` and `column` count from 1; 0 where there is no place to point at. `message` and `hint`
-    are `text.sentences.Words` wherever they come from this project.
+    `line` and `column` count from 1; they are 0 if there is no position to point at. `message` and
+    `hint` are `text.sentences.Words` wherever they come from this project.
     """
 
     file: str
     line: int
     column: int
     field: str
-    """Path of the field: `nodes.sonar_front.params.rate`; empty for the file as a whole."""
+    """Path of the field, such as `nodes.sonar_front.params.rate`; empty for the whole file."""
     message: str
     hint: str = ""
-    """The mend: what was probably meant, what to write."""
+    """How to fix it: what was probably meant, or what to write."""
 
     @property
     def where(self) -> str:
-        """`file:line:column`, as editors and terminals make it clickable."""
+        """`file:line:column`, which editors and terminals make clickable."""
         return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
 
     @property
     def words(self) -> Words:
-        """One line: where, which field, what is wrong, how to mend it."""
+        """One line: where, which field, what is wrong, how to fix it."""
         field = "{field}: " if self.field else ""
         hint = " ({hint})" if self.hint else ""
         values = {"field": self.field, "message": self.message, "hint": self.hint}
@@ -82,10 +82,10 @@ class ProfileProblem:
 
 
 class ProfileError(UsageError):
-    """A profile that cannot be used; every problem that was found, in order of place."""
+    """A profile that cannot be used; holds every problem found, in order of position."""
 
     def __init__(self, problems: Iterable[ProfileProblem]) -> None:
-        """Keep `problems`, of which there is at least one."""
+        """Keep `problems`; there must be at least one."""
         self.problems: tuple[ProfileProblem, ...] = tuple(problems)
         super().__init__(*(problem.words for problem in self.problems))
 
@@ -98,7 +98,7 @@ class ProfileNotFoundError(UsageError):
     """No profile of that name."""
 
     def __init__(self, name: str, near: Sequence[str] = ()) -> None:
-        """`near`: names that were probably meant."""
+        """`near`: names that may have been meant."""
         self.name = name
         self.near = tuple(near)
         if near:
@@ -120,9 +120,9 @@ class DomainTakenError(UsageError):
     def __init__(
         self, domain: int, sessions: Sequence[Words], free: int, *, can_share: bool
     ) -> None:
-        """`sessions`: what there is in it; `free`: a domain without any.
+        """`sessions`: those in the domain; `free`: a domain that has none.
 
-        `can_share`: whether both could be in it, and would only hear each other.
+        `can_share`: whether both could run in it, merely seeing each other's topics.
         """
         self.domain = domain
         self.sessions = tuple(sessions)
@@ -152,7 +152,7 @@ class UnknownNodeError(UsageError):
     """The running profile has no node of that name."""
 
     def __init__(self, name: str, known: Iterable[str]) -> None:
-        """`known`: the nodes that there are."""
+        """`known`: the names of the existing nodes."""
         self.name = name
         self.known = tuple(known)
         nodes = ", ".join(self.known)
@@ -160,20 +160,20 @@ class UnknownNodeError(UsageError):
 
 
 class RunDirError(LauncherError):
-    """The run or log directory cannot be made or written, or is somebody else's."""
+    """The run or log directory cannot be created or written, or belongs to another user."""
 
     exit_code = 2
 
 
 class SessionError(LauncherError):
-    """About a running supervisor."""
+    """An error that concerns a running supervisor."""
 
 
 class NotRunningError(SessionError):
-    """No session runs, or none of that name."""
+    """No session is running, or none of that name."""
 
     def __init__(self, name: str | None = None, running: Sequence[str] = ()) -> None:
-        """`name`: what was asked for; `running`: what there is."""
+        """`name`: the requested session; `running`: the names of those that run."""
         self.name = name
         if name is None:
             words = say("nothing runs in the background; `deck up PROFILE` starts a profile")
@@ -186,12 +186,12 @@ class NotRunningError(SessionError):
 
 
 class SeveralRunningError(SessionError):
-    """More than one runs: choose by name."""
+    """More than one session is running: choose one by name."""
 
     exit_code = 2
 
     def __init__(self, names: Sequence[str]) -> None:
-        """`names`: what runs."""
+        """`names`: those of the running sessions."""
         self.names = tuple(names)
         super().__init__(
             say("several profiles run, choose one by name: {names}", names=", ".join(names))
@@ -199,16 +199,16 @@ class SeveralRunningError(SessionError):
 
 
 class AlreadyRunningError(SessionError):
-    """The same nodes, or others that drive the same wheels, run already in that domain."""
+    """The same nodes, or others that drive the same wheels, already run in that domain."""
 
     exit_code = 2
 
     def __init__(
         self, session: SessionInfo, run_dir: str = "", down: str = "deck down", free: int = 0
     ) -> None:
-        """`session`: the one that runs; `run_dir`: its run directory if it is not ours.
+        """`session`: the running one; `run_dir`: its run directory if that is not ours.
 
-        `down`: what stops it; `free`: a domain in which there is no session.
+        `down`: the command that stops it; `free`: a domain without a session.
         """
         self.session = session
         self.free = free
@@ -246,7 +246,7 @@ class ConnectionLostError(SessionError):
 
 
 class SilentSupervisorError(SessionError):
-    """The supervisor does not answer; whoever asked has left it alone, or has killed it."""
+    """The supervisor does not answer; the client has left it alone, or has killed it."""
 
 
 class ProtocolError(SessionError):

@@ -1,4 +1,4 @@
-"""What a client of the supervisor receives: one plain class per kind of event."""
+"""The events that a client of the supervisor receives, one plain class for each kind."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ class LogEvent:
 
     lines: tuple[LogLine, ...]
     skipped: Mapping[str, int] = field(default_factory=dict)
-    """Node to how many of its lines this batch left out; the log file has them all."""
+    """Node to the number of its lines that this batch leaves out; the log file has them all."""
 
 
 @dataclass(frozen=True)
 class StraysEvent:
-    """What an earlier run left behind, as of now."""
+    """The processes that an earlier run left behind and that are still there."""
 
     strays: tuple[Stray, ...]
 
 
 @dataclass(frozen=True)
 class ClosedEvent:
-    """The session has ended, or the supervisor is gone; nothing comes after."""
+    """The session has ended, or the supervisor is gone; no event follows."""
 
     reason: str
 

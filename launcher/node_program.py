@@ -1,9 +1,9 @@
-"""Running a node's module or file, here in this process: `python node_program.py NODE ARGUMENTS`.
+"""Running a node's module or file in this process: `python node_program.py NODE ARGUMENTS`.
 
-Like `python -m MODULE` and `python FILE`, save for where modules are looked for: `-m` would look
-in the current folder first, and take whatever lies there for a part of Deck or of ROS. Here the
-current folder is no place at all. Deck's installation goes first for Deck's own nodes and last for
-others, since a `graph` or a `text` may be there that they mean.
+Like `python -m MODULE` and `python FILE`, except for the module search path: `-m` would look in the
+current folder first, and take whatever is there for a part of Deck or ROS. Here the current folder
+is not searched at all. Deck's installation comes first for Deck's own nodes and last for others,
+which may have a `graph` or `text` of their own.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from __future__ import annotations
 import os
 import sys
 
-TYPE_CHECKING = False  # That of `typing` would cost each start the import.
+TYPE_CHECKING = False  # Importing `typing` for this would slow down every start.
 if TYPE_CHECKING:
     from types import TracebackType
 
 OURS, _, _ = __file__.rpartition("/")
 INSTALLATION, _, _ = OURS.rpartition("/")
-"""Where the packages of Deck are."""
+"""The folder that Deck's packages are in."""
 
 
 def prepare(argv: tuple[str, ...]) -> None:
-    """Have this process look like the program of a node: `argv` begins with its module or file."""
+    """Make this process look like a node's program; `argv` begins with its module or file."""
     name = argv[0]
     places = [place for place in sys.path if place not in (INSTALLATION, "")]
     sys.path[:] = [INSTALLATION, *places] if is_ours(name) else [*places, INSTALLATION]
@@ -29,17 +29,17 @@ def prepare(argv: tuple[str, ...]) -> None:
         sys.path.insert(0, name.rpartition("/")[0])
     sys.excepthook = _report
     sys.orig_argv = [sys.executable, __file__, *argv]
-    # Packages of nodes see by it that one of them is being started, as under `python -m`.
+    # The `-m` tells the nodes' packages that one of their modules is being started.
     sys.argv = [name if "/" in name else "-m", *argv[1:]]
 
 
 def is_ours(name: str) -> bool:
-    """Whether a node's module or file is a module of Deck."""
+    """Whether a node's module or file is part of Deck."""
     return "/" not in name and name.partition(".")[0] in os.listdir(INSTALLATION)  # noqa: PTH208
 
 
 def run(name: str) -> None:
-    """Run a module or file as the program of this process, which is prepared for it."""
+    """Run a module or file as the program of this process; call `prepare` first."""
     import runpy
 
     if "/" in name:
@@ -65,7 +65,7 @@ def _is_ours(file: str) -> bool:
 
 
 if __name__ == "__main__":
-    # As a program, it is its own folder that Python looks in first.
+    # When this file is run as a program, Python searches the folder it is in first.
     sys.path[:] = [place for place in sys.path if place != OURS]
     _argv = tuple(sys.argv[1:])
     prepare(_argv)

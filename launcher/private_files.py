@@ -1,6 +1,6 @@
-"""Files and folders that only their user can open, whatever the umask is.
+"""Files and folders that only their owner can open, whatever the umask is.
 
-What was there before is never changed.
+Existing files and folders are never changed.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those above it that are missing; one that is there is left as it is.
+    """Make a folder and its missing parents; an existing folder is left as it is.
 
     Raises:
-        OSError: if there is something else, or it cannot be made.
+        OSError: if something else is there, or the folder cannot be made.
     """
     if path.is_dir():
         return
@@ -28,23 +28,23 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(mode=0o700)
     except FileExistsError:
-        if not path.is_dir():  # Else somebody made it meanwhile.
+        if not path.is_dir():  # Otherwise somebody made it in the meantime.
             raise
 
 
 def open_file(path: str | Path, flags: int, folder: int | None = None) -> int:
-    """Return a descriptor of a file, made with mode 0600 if `flags` say so; no link is followed.
+    """Return a descriptor of a file, created with mode 0600 if `flags` say so; follows no links.
 
-    `folder` is a descriptor of the folder that `path` is relative to.
+    `folder`: a descriptor of the folder that `path` is relative to.
     """
     return os.open(path, flags | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600, dir_fd=folder)
 
 
 def open_own_folder(path: Path) -> int:
-    """Return a descriptor of a folder of this user's.
+    """Return a descriptor of a folder that belongs to this user.
 
     Raises:
-        OSError: if there is none, or a link, or it is somebody else's.
+        OSError: if there is none, if it is a link, or if it belongs to another user.
     """
     descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | os.O_NOFOLLOW)
     if os.fstat(descriptor).st_uid != os.geteuid():
@@ -54,9 +54,9 @@ def open_own_folder(path: Path) -> int:
 
 
 def remove_files(path: Path, folder: int, names: list[str]) -> None:
-    """Remove these files from a folder, and the folder if nothing else is in it.
+    """Remove these files from a folder, then the folder if it is empty.
 
-    `folder` is a descriptor of what is, or was, at `path`.
+    `folder`: a descriptor of the folder that is, or was, at `path`.
     """
     for name in names:
         with contextlib.suppress(OSError):

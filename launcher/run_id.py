@@ -1,6 +1,6 @@
-"""The id of a run: it says when it began, and which process supervises it.
+"""The id of a run, which contains its start time and the identity of its supervisor process.
 
-It holds the number and the start of that process, so that nobody mistakes another for it.
+It has both the pid and the start time of that process, so that no other is mistaken for it.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 def new_run_id() -> str:
-    """Return an id for a run whose supervisor is this process; ids sort by time."""
+    """Return an id for a run supervised by this process; ids sort by time."""
     process = read_process(os.getpid())
     started = process.started_ticks if process else 0
     return f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{started}"
 
 
 def supervisor_of(run_id: str) -> int:
-    """Return the number of the process that supervises, or has supervised, this run; else 0."""
+    """Return the pid of the process that supervises, or supervised, this run; 0 if unknown."""
     return _process_of(run_id)[0]
 
 

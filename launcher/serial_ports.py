@@ -1,4 +1,4 @@
-"""The serial ports of this machine: what is plugged in, and under which permanent name."""
+"""The serial ports of this machine: the connected devices and their permanent names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BRIDGES = {
     "1a86:7523": "CH340",
     "0403:6001": "FTDI",
 }
-"""Chips that many devices have between USB and their serial line: the ids say no more than that."""
+"""USB-to-serial chips used in many devices: the ids identify only the chip, not the device."""
 
 
 @dataclass(frozen=True)
@@ -25,21 +25,21 @@ class SerialPort:
     """One port."""
 
     device: str
-    """What the kernel calls it today: `/dev/ttyACM0`."""
+    """Its current name in the kernel: `/dev/ttyACM0`."""
     name: str = ""
-    """The name that lasts, `device` where there is none."""
+    """The permanent name, or `device` if there is none."""
     usb: str = ""
-    """Vendor and product as `2e8a:0005`, empty if it is no USB device."""
+    """Vendor and product as `2e8a:0005`, empty if it is not a USB device."""
     description: str = ""
 
     @property
     def path(self) -> str:
-        """The name to open it by."""
+        """The path to open."""
         return self.name or self.device
 
     @property
     def kind(self) -> str:
-        """What it looks like by its USB ids, for people; empty if they tell nothing."""
+        """What its USB ids suggest it is, for display; empty if they suggest nothing."""
         if self.usb == PICO:
             return say("Pico with MicroPython")
         if self.usb in BRIDGES:
@@ -47,13 +47,13 @@ class SerialPort:
         return ""
 
     def __str__(self) -> str:
-        """Name it with all that helps to tell it from another."""
+        """Name it with everything that helps to distinguish it from others."""
         about = ", ".join(part for part in (self.usb, self.description) if part)
         return f"{self.path} ({about})" if about else self.path
 
 
 def serial_ports() -> list[SerialPort]:
-    """Return every port that something is behind, in the order of the kernel's names.
+    """Return every port with a device behind it, in the order of the kernel's names.
 
     Raises:
         ImportError: if pyserial is not installed.
@@ -69,13 +69,13 @@ def serial_ports() -> list[SerialPort]:
             "" if port.description in (None, "n/a") else str(port.description),
         )
         for port in sorted(list_ports.comports(), key=lambda port: str(port.device))
-        # Ports of the motherboard are told whether or not there is a socket for them.
+        # Ports of the motherboard are listed even if they have no connector.
         if port.hwid != "n/a"
     ]
 
 
 def lasting_names(folders: tuple[str, ...] = LASTING) -> dict[str, str]:
-    """Return {device: lasting name}; two equal adapters share one by-id name, which has but one."""
+    """Return {device: permanent name}; of two identical adapters only one gets their by-id name."""
     names: dict[str, str] = {}
     for folder in folders:
         for link in sorted(Path(folder).glob("*")):

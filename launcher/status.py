@@ -1,4 +1,4 @@
-"""What the supervisor tells its clients: plain data, the same on both ends of the socket.
+"""The data that the supervisor sends its clients: plain, and the same at both ends of the socket.
 
 Every duration is in seconds on the monotonic clock, every memory figure in bytes,
 every CPU figure in percent of one core.
@@ -10,23 +10,23 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 NOT_READY = "not ready"
-"""How the supervisor begins its words about a node whose time to become ready is up."""
+"""The start of the supervisor's message about a node that was not ready in time."""
 
 
 class NodeState(str, Enum):
-    """Where a node is in its life."""
+    """The state of a node in its life cycle."""
 
     WAITING = "waiting"
-    """Not started yet: a node it needs is not ready."""
+    """Not yet started: a node that it needs is not ready."""
     STARTING = "starting"
-    """Its process runs, its readiness condition does not hold yet."""
+    """Its process runs, but its readiness condition does not hold yet."""
     READY = "ready"
     """Its readiness condition holds."""
     RUNNING = "running"
     """Its process runs and it has no readiness condition to check."""
     STOPPING = "stopping"
     EXITED = "exited"
-    """Ended: by itself with code 0 and nothing left to do, or because somebody stopped it."""
+    """Ended: by itself with exit code 0 and nothing left to do, or stopped by the user."""
     BACKOFF = "backoff"
     """Ended and will be started again; `NodeStatus.detail` says when."""
     FAILED = "failed"
@@ -42,7 +42,7 @@ _ALIVE = frozenset({NodeState.STARTING, NodeState.READY, NodeState.RUNNING, Node
 
 
 class Severity(str, Enum):
-    """Severity of a log line, rcutils' five levels."""
+    """Severity of a log line: the five levels of rcutils."""
 
     DEBUG = "debug"
     INFO = "info"
@@ -52,7 +52,7 @@ class Severity(str, Enum):
 
     @property
     def rank(self) -> int:
-        """Position in the order of gravity, 0 for debug."""
+        """Position in the order of severity, 0 for debug."""
         return _RANKS[self]
 
 
@@ -64,51 +64,51 @@ class NodeStatus:
     """The current state of one node of the running profile."""
 
     name: str
-    """The key of the node in the profile, which is also its name in the ROS graph."""
+    """The node's key in the profile, which is also its name in the ROS graph."""
     command: str
-    """What is run, for people: `nodes.mock_sonar`, or the command line of an `exec:`."""
+    """The program, for display: `nodes.mock_sonar`, or the command line of an `exec:`."""
     state: NodeState
     detail: str = ""
-    """Why it is in this state, in words: what it waits for, how it ended."""
+    """Why it is in this state, in words: what it is waiting for, or how it ended."""
     pid: int | None = None
     uptime_s: float | None = None
     restarts: int = 0
-    """Starts by the restart policy since the profile was started."""
+    """Restarts by the restart policy since the profile was started."""
     exit_code: int | None = None
     signal: str | None = None
     """Name of the signal that ended it: `SIGKILL`."""
     cpu_percent: float | None = None
     memory_bytes: int | None = None
-    """Proportional set size of the node's whole process group."""
+    """Proportional set size of all the node's processes."""
     needs: tuple[str, ...] = ()
 
     @property
     def late(self) -> bool:
-        """Whether it runs, but its time to become ready is up."""
+        """Whether it runs but has not become ready in time."""
         return self.state is NodeState.RUNNING and self.detail.startswith(NOT_READY)
 
     @property
     def serves(self) -> bool:
-        """Whether those that need it may start: it runs, and is ready if it tells that."""
+        """Whether nodes that need it may start: it runs, and is ready if it has a condition."""
         return self.state in (NodeState.READY, NodeState.RUNNING) and not self.late
 
 
 @dataclass(frozen=True)
 class LogLine:
-    """One line that a node, or the supervisor about a node, has written."""
+    """One line written by a node, or by the supervisor about a node."""
 
     node: str
     seq: int
-    """Counts the lines of this node from 1 without a gap, so that a reader sees what it missed."""
+    """Counts this node's lines from 1 without gaps, so that a reader notices missing ones."""
     time_s: float
     """Unix time: the node's own stamp where the line has one, else the time of reading."""
     severity: Severity
     text: str
-    """Text without escape sequences, control characters shown as their pictures (U+2400)."""
+    """Text without escape sequences; control characters as their pictures (U+2400 on)."""
     logger: str = ""
     """Name of the ROS logger, empty for a plain line."""
     source: str = "stderr"
-    """`stdout`, `stderr`, or `deck` for the supervisor's own words about the node."""
+    """`stdout`, `stderr`, or `deck` for the supervisor's own lines about the node."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Who:
     tty: str = ""
     """`pts/3`, empty without a terminal."""
     host: str = ""
-    """The address they have logged in from by SSH, empty if they have not."""
+    """The address from which they logged in by SSH, empty if they did not."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class SessionInfo:
     profile: str
     """Path of the profile's file."""
     name: str
-    """File name without its ending: `09-brain`."""
+    """File name without its suffix: `09-brain`."""
     title: dict[str, str] = field(default_factory=dict)
     """Language code to title."""
     lesson: str = ""

@@ -1,5 +1,5 @@
-"""The launcher for those who use it: start a profile, attach to a session, ask and listen.
+"""The client side of the launcher: start a profile, attach to a session, control and follow it.
 
-From outside: `client` (launch, attach, running), `running` for which session is meant, `start` for
-one that is begun ahead, `log_history`.
+Other packages use `client` (launch, attach, running), `running` to find the session that a name
+means, `start` to start a supervisor in advance, and `log_history`.
 """

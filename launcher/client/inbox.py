@@ -1,4 +1,4 @@
-"""News from the supervisor that nobody has read yet: merged, and therefore bounded."""
+"""Events from the supervisor that have not been read yet: merged, and therefore bounded."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from launcher.status import LogLine, NodeStatus, Stray
 
 MAX_LINES = 10_000
-"""Lines that wait to be looked at; the oldest go, and are counted as skipped."""
+"""Most lines kept unread; beyond that the oldest are dropped and counted as skipped."""
 
 
 class Inbox:
-    """Filled as news arrives, emptied when somebody reads it."""
+    """Filled as events arrive, emptied when they are read."""
 
     def __init__(self) -> None:
         self._nodes: dict[str, NodeStatus] = {}
@@ -30,12 +30,12 @@ class Inbox:
         self._filled = asyncio.Event()
 
     def put_nodes(self, nodes: Iterable[NodeStatus]) -> None:
-        """Add statuses; a newer one of the same node takes the older one's place."""
+        """Add statuses; a newer one replaces the older one of the same node."""
         self._nodes.update((node.name, node) for node in nodes)
         self._filled.set()
 
     def put_lines(self, lines: Iterable[LogLine], skipped: Mapping[str, int]) -> None:
-        """Add log lines, and counts of those that were left out before them."""
+        """Add log lines, and the number of lines per node that were left out before them."""
         for name, count in skipped.items():
             self._skip(name, count)
         self._lines.extend(lines)
@@ -49,13 +49,13 @@ class Inbox:
         self._filled.set()
 
     def close(self, reason: str) -> None:
-        """Nothing comes after; the first reason given counts."""
+        """Mark the end: nothing follows. Of several reasons the first counts."""
         if self._closed is None:
             self._closed = ClosedEvent(reason)
         self._filled.set()
 
     async def events(self) -> AsyncIterator[Event]:
-        """Yield what has come, and wait for more, until it is closed."""
+        """Yield what has arrived, and wait for more, until the inbox is closed."""
         while True:
             await self._filled.wait()
             self._filled.clear()

@@ -11,17 +11,17 @@ if TYPE_CHECKING:
 
 
 def newer(event: LogEvent, known: Mapping[str, int]) -> LogEvent:
-    """Return the event without what is known already.
+    """Return the event without the lines that are already known.
 
     Args:
-        event: lines of nodes that count theirs without a gap, and how many were left out
-        known: node to the number of its newest line that is known, with all before it
+        event: lines, numbered without gaps per node, and how many were left out
+        known: node to the number of its newest known line; all earlier ones are known too
     """
     lines = tuple(line for line in event.lines if line.seq > known.get(line.node, 0))
     first: dict[str, int] = {}
     for line in lines:
         first.setdefault(line.node, line.seq)
-    # Left out were those right before the first; where there is none, all are known.
+    # The lines left out come right before the first one; if there is none, all are known.
     missing = {
         node: min(count, first.get(node, 0) - 1 - known[node]) if node in known else count
         for node, count in event.skipped.items()

@@ -1,5 +1,4 @@
 """The control socket: its protocol, and the supervisor's end.
 
-From outside: `protocol` and `socket` for the client, `server` for the supervisor; `feed` is the
-server's.
+The client uses `protocol` and `socket`, the supervisor `server`; `feed` belongs to the server.
 """

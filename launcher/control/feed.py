@@ -1,8 +1,8 @@
-"""What one client knows already, and what it is sent next.
+"""What one client already knows, and what it is sent next.
 
-A client is told what there is now, not all that has been: statuses replace each other, and of the
+A client is sent the current state, not its whole history: statuses replace each other, and of the
 lines since the last batch it gets the newest of each node, with a count of those left out. So a
-client that is slow costs nothing, and one that catches up is right at once.
+slow client costs nothing, and one that catches up is up to date at once.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ if TYPE_CHECKING:
     from launcher.status import NodeStatus
 
 MAX_LINES = 200
-"""Lines of one node in one batch."""
+"""Most lines of one node in one batch."""
 MAX_CHARS = 64 * 1024
-"""Length of the lines of one node in one batch, but for the first of them."""
+"""Most characters of one node's lines in one batch, not counting its first line."""
 
 
 class ClientFeed:
-    """The news for one client."""
+    """The updates for one client."""
 
     def __init__(self, rings: Mapping[str, LogRing]) -> None:
-        """Begin with lines that come from now on: older ones are history."""
+        """Begin with lines that are written from now on; older ones are history."""
         self._rings = rings
         self._seen = {name: ring.last_seq for name, ring in rings.items()}
         self._changed: dict[str, None] = {}
 
     def status_changed(self, names: Iterable[str]) -> None:
-        """These nodes are to be told of."""
+        """Mark the statuses of these nodes to be sent."""
         self._changed.update(dict.fromkeys(names))
 
     def status_news(self, statuses: Mapping[str, NodeStatus]) -> dict[str, Any] | None:
-        """Return the news of changed nodes, None if there are none."""
+        """Return the message about changed nodes, None if there are none."""
         if not self._changed:
             return None
         nodes = [pack_status(statuses[name]) for name in self._changed]
@@ -59,6 +59,6 @@ class ClientFeed:
                     skipped[name] = missed - len(lines)
         if not news:
             return None
-        # The order of a node's own lines is sacred, whatever they say of the time.
+        # A node's own lines always stay in order, whatever their time stamps say.
         batch = heapq.merge(*news, key=lambda line: line.time_s)
         return {"event": "log", "lines": [pack_line(line) for line in batch], "skipped": skipped}

@@ -1,9 +1,9 @@
 """The protocol of the control socket: one JSON object per line, both ways, versioned.
 
 The supervisor speaks first: `{"deck": VERSION, "session": ..., "nodes": [...], "strays": [...]}`.
-A client answers `{"deck": VERSION}`, then asks: `{"id": 1, "op": "start", "nodes": ["sonar"]}`,
-and hears `{"reply": 1, "result": ...}` or `{"reply": 1, "error": {...}}`, and in between news:
-`{"event": "status" | "log" | "strays" | "closed", ...}`.
+A client answers `{"deck": VERSION}`, then sends requests such as `{"id": 1, "op": "start", "nodes":
+["sonar"]}`. It receives `{"reply": 1, "result": ...}` or `{"reply": 1, "error": {...}}`, and in
+between events: `{"event": "status" | "log" | "strays" | "closed", ...}`.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ if TYPE_CHECKING:
 VERSION = 2
 
 MAX_REQUEST_BYTES = 1 << 20
-"""A longer line from a client is an error."""
+"""Longest line from a client; a longer one is an error."""
 MAX_MESSAGE_BYTES = 64 << 20
-"""A longer line from the supervisor cannot be."""
+"""Longest line that the supervisor can send."""
 MAX_HISTORY_LINES = 20_000
 MAX_HISTORY_CHARS = 8 << 20
-"""Of a longer history the newest lines are given."""
+"""Most characters of a history; of a longer one only the newest lines are sent."""
 
 
 def encode(message: Mapping[str, Any]) -> bytes:
-    """Return a message as its line; names of files may hold halves of characters."""
+    """Return a message as one line; file names in it may contain lone surrogates."""
     text = json.dumps(message, ensure_ascii=False, separators=(",", ":"))
     return text.encode("utf-8", "surrogatepass") + b"\n"
 
 
 def pack_text(text: str) -> Any:  # noqa: ANN401 - JSON
-    """Return a sentence so that it can be translated at the other end."""
+    """Return a sentence in a form that can be translated at the other end."""
     if isinstance(text, Words) and text.values:
         return [text.template, {key: _pack_value(value) for key, value in text.values.items()}]
     return str(text) if not isinstance(text, Words) else [text.template, {}]
@@ -49,7 +49,7 @@ def _pack_value(value: object) -> Any:  # noqa: ANN401 - JSON
 
 
 def unpack_text(packed: Any) -> str:  # noqa: ANN401 - JSON
-    """Return what `pack_text` was given."""
+    """Return the sentence that `pack_text` was given."""
     if isinstance(packed, str):
         return packed
     template, values = packed
@@ -66,7 +66,7 @@ def pack_status(status: NodeStatus) -> dict[str, Any]:
 
 
 def unpack_status(fields: dict[str, Any]) -> NodeStatus:
-    """Return what `pack_status` was given."""
+    """Return the status that `pack_status` was given."""
     return NodeStatus(
         **{
             **fields,
@@ -78,7 +78,7 @@ def unpack_status(fields: dict[str, Any]) -> NodeStatus:
 
 
 def pack_line(line: LogLine) -> list[Any]:
-    """Return a log line as JSON: short, for there are many."""
+    """Return a log line as JSON, in a short form because there are many."""
     text = pack_text(line.text) if isinstance(line.text, Words) else line.text
     return [line.node, line.seq, line.time_s, line.severity.rank, text, line.logger, line.source]
 
@@ -87,7 +87,7 @@ _BY_RANK = {severity.rank: severity for severity in Severity}
 
 
 def unpack_line(fields: list[Any]) -> LogLine:
-    """Return what `pack_line` was given."""
+    """Return the log line that `pack_line` was given."""
     node, seq, time_s, rank, text, logger, source = fields
     return LogLine(node, seq, time_s, _BY_RANK[rank], unpack_text(text), logger, source)
 
@@ -98,7 +98,7 @@ def pack_session(session: SessionInfo) -> dict[str, Any]:
 
 
 def unpack_session(fields: dict[str, Any]) -> SessionInfo:
-    """Return what `pack_session` was given."""
+    """Return the session that `pack_session` was given."""
     discovery = fields["discovery"]
     return SessionInfo(
         **{
@@ -116,10 +116,10 @@ def pack_stray(stray: Stray) -> dict[str, Any]:
 
 
 def unpack_stray(fields: dict[str, Any]) -> Stray:
-    """Return what `pack_stray` was given.
+    """Return the stray that `pack_stray` was given.
 
     Raises:
-        TypeError, ValueError: if that was something else.
+        TypeError, ValueError: if it is anything else.
     """
     return Stray(
         pid=int(fields["pid"]),

@@ -35,30 +35,31 @@ if TYPE_CHECKING:
 
 LOG_PERIOD_S = 0.1
 STATUS_DELAY_S = 0.01
-"""Changes at the same moment are told at once."""
+"""Changes within this time are sent together."""
 MAX_UNSENT_BYTES = 1 << 20
-"""A client with so much unsent is told nothing more for now."""
+"""Unsent bytes beyond which a client is sent nothing more for now."""
 STUCK_S = 30.0
-"""A client that has taken nothing for so long is let go of."""
+"""A client that has read nothing for this long is disconnected."""
 MAX_CLIENTS = 64
 MAX_SILENT = 128
-"""Connections that have not greeted yet; of more, the oldest are let go of.
+"""Most connections without a greeting yet; beyond that the oldest are closed.
 
-So many cannot come before the one that has greeted at once is heard: asyncio takes 100 at a time.
+A client that greets at once is heard before this many others can connect: asyncio accepts 100 at a
+time.
 """
 GREETED_WITHIN_S = 10.0
 MAX_REQUESTS = 100
-"""Requests of one client that are served at the same time."""
+"""Most requests of one client that are served at the same time."""
 
 
 class Controlled(Protocol):
-    """What can be asked of the supervisor."""
+    """The operations that the supervisor offers to clients."""
 
     info: SessionInfo
     strays: tuple[Stray, ...]
 
     def statuses(self) -> Mapping[str, NodeStatus]:
-        """Return every node as of now."""
+        """Return the current status of every node."""
 
     def rings(self) -> Mapping[str, LogRing]:
         """Return every node's log."""
@@ -76,14 +77,14 @@ class Controlled(Protocol):
         """Restart nodes; raises `UnknownNodeError`."""
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
-        """End what an earlier run has left."""
+        """End these processes that an earlier run left behind."""
 
     def shut_down(self, asked_by: int, *, now: bool) -> None:
-        """Begin to stop everything, and then the supervisor, because this process asks for it."""
+        """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""
 
 
 class BadRequestError(Exception):
-    """A client's request makes no sense; the text says why."""
+    """A client's request is invalid; the text says why."""
 
 
 class ControlServer:
@@ -92,7 +93,7 @@ class ControlServer:
     def __init__(self, controlled: Controlled) -> None:
         self._controlled = controlled
         self._clients: dict[_Client, None] = {}
-        """In the order in which they came."""
+        """In the order in which they connected."""
         self._server: asyncio.AbstractServer | None = None
         self._loop = asyncio.get_running_loop()
         self._status_timer: asyncio.TimerHandle | None = None
@@ -100,7 +101,7 @@ class ControlServer:
         self._last_log = float("-inf")
 
     async def serve(self, listening: socket.socket) -> None:
-        """Accept clients here from now on, and nowhere else; those that there are stay."""
+        """Accept clients on this socket only from now on; existing connections stay."""
         if self._server is not None:
             self._server.close()
         self._server = await asyncio.start_unix_server(
@@ -108,26 +109,26 @@ class ControlServer:
         )
 
     def status_changed(self, name: str) -> None:
-        """A node's status has changed."""
+        """Note that a node's status has changed."""
         for client in self._clients:
             client.feed.status_changed([name])
         if self._status_timer is None and self._clients:
             self._status_timer = self._loop.call_later(STATUS_DELAY_S, self._tell_statuses)
 
     def lines_came(self) -> None:
-        """There are new log lines."""
+        """Note that there are new log lines."""
         if self._log_timer is None and self._clients:
             wait = max(self._last_log + LOG_PERIOD_S - self._loop.time(), STATUS_DELAY_S)
             self._log_timer = self._loop.call_later(wait, self._tell_lines)
 
     def strays_changed(self) -> None:
-        """The strays have changed."""
+        """Note that the strays have changed."""
         news = {"event": "strays", "strays": [pack_stray(one) for one in self._controlled.strays]}
         for client in self._clients:
             client.tell(news)
 
     async def close(self, reason: str) -> None:
-        """Tell every client how it ended, and let go of them."""
+        """Tell every client how the session ended, and disconnect."""
         if self._server is not None:
             self._server.close()
         self._tell_statuses()
@@ -185,7 +186,7 @@ class ControlServer:
             writer.close()
 
     def _has_room(self) -> bool:
-        """Whether one more may come; those who say nothing make way."""
+        """Whether one more client may connect; connections without a greeting make way."""
         silent = [client for client in self._clients if not client.greeted]
         if len(self._clients) - len(silent) >= MAX_CLIENTS:
             return False
@@ -217,7 +218,7 @@ class ControlServer:
                 client.refuse(None, "bad_request", str(error))
                 if not client.greeted:
                     return
-            # Who does not take answers need not ask more.
+            # A client that does not read its answers need not send more requests.
             await client.writer.drain()
 
     async def _serve(self, client: _Client, request: dict[str, Any]) -> None:
@@ -231,11 +232,11 @@ class ControlServer:
         except BadRequestError as error:
             client.refuse(request_id, "bad_request", str(error))
         except Exception as error:
-            # A fault of ours, to be found in the supervisor's log; who asked must not wait for it.
+            # A bug of ours, traced in the supervisor's log; the client must not wait for ever.
             client.refuse(request_id, "fault", f"{type(error).__name__}: {error}")
             raise
         else:
-            # Whoever hears that it is done finds it done.
+            # A client that reads the reply must already have the resulting status.
             client.tell(client.feed.status_news(self._controlled.statuses()))
             client.tell({"reply": request_id, "result": result})
 
@@ -283,14 +284,14 @@ class _Client:
         self.feed = feed
         self.task: asyncio.Task[Any] | None = None
         self.pid = 0
-        """Its process."""
+        """The client's process number."""
         self.greeted = False
         self._requests: set[asyncio.Task[None]] = set()
         self._now = now
         self._behind_since: float | None = None
 
     def begin(self, serving: Coroutine[Any, Any, None]) -> None:
-        """Serve a request beside the others: one that stops a node takes its time."""
+        """Serve a request alongside the others: stopping a node takes time."""
         if len(self._requests) >= MAX_REQUESTS:
             serving.close()
             raise BadRequestError(say("too many requests at once"))
@@ -299,7 +300,7 @@ class _Client:
         task.add_done_callback(self._requests.discard)
 
     def takes_more(self) -> bool:
-        """Whether to tell it more now; lets go of it if it has been stuck for too long."""
+        """Whether to send it more now; disconnects it if it has been stuck for too long."""
         if self.writer.transport.get_write_buffer_size() < MAX_UNSENT_BYTES:
             self._behind_since = None
             return True
@@ -316,13 +317,13 @@ class _Client:
             self.writer.write(encode(message))
 
     def refuse(self, request_id: object, kind: str, message: str, **more: object) -> None:
-        """Say that a request was not served, and why."""
+        """Reply that a request was not served, and why."""
         error = {"kind": kind, "message": message, **more}
         self.tell({"reply": request_id, "error": error})
 
 
 def _peer(writer: asyncio.StreamWriter) -> tuple[int, int]:
-    """Return process and user at the other end of a connection."""
+    """Return the process and user at the other end of a connection."""
     credentials = struct.Struct("3i")
     connection = writer.get_extra_info("socket")
     packed = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, credentials.size)

@@ -1,7 +1,7 @@
-"""The Unix socket of a session, in a folder whose path may be of any length.
+"""The Unix socket of a session, in a folder whose path may have any length.
 
-A socket's own path is limited to 107 bytes; here it is addressed through an open descriptor of
-its folder, which is short.
+The path of a socket is limited to 107 bytes, so it is addressed through an open descriptor of its
+folder, which gives a short path.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ def listen(folder: Path) -> socket.socket:
 
 
 def connect(folder: Path) -> socket.socket:
-    """Return a connection to the session in `folder`; raises OSError if nobody takes it."""
+    """Return a connection to the session in `folder`; raises OSError if nobody accepts it."""
     client = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
-        # One that is stopped, with others in the queue before us, would be waited for for ever.
+        # If the server is suspended and its queue is full, connecting would block for ever.
         client.setsockopt(
             socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", TAKEN_WITHIN_S, 0)
         )

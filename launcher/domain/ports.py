@@ -1,7 +1,7 @@
-"""Who else of this machine is in a ROS domain, as far as its UDP ports tell.
+"""Other users of this machine who are in a ROS domain, as far as its UDP ports show.
 
-DDS takes its ports by the domain (RTPS 2.2, 9.6.1.1): 250 from 7400 + 250 * domain on. The kernel
-shows whose they are, also where nothing else of another user's processes can be seen.
+DDS derives its ports from the domain (RTPS 2.2, 9.6.1.1): 250 of them, from 7400 + 250 * domain on.
+The kernel shows who owns them, even where nothing else of another user's processes is visible.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _TABLES = ("/proc/net/udp", "/proc/net/udp6")
 
 
 def other_users(domain: int, us: int | None = None) -> tuple[str, ...]:
-    """Return the names of other users than `us`, by default this one, with ports of the domain."""
+    """Return the names of users other than `us` (default: this one) with ports of the domain."""
     ours = os.getuid() if us is None else us
     found: set[int] = set()
     for table in _TABLES:
@@ -33,7 +33,7 @@ def other_users(domain: int, us: int | None = None) -> tuple[str, ...]:
 
 
 def owners(lines: Iterable[str], domain: int) -> set[int]:
-    """Return the users who have ports of this domain, by lines of /proc/net/udp."""
+    """Return the uids that own ports of this domain, from lines of /proc/net/udp."""
     first = _FIRST_PORT + _PORTS_OF_A_DOMAIN * domain
     found = set()
     for line in lines:

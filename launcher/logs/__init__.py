@@ -1,5 +1,5 @@
-"""What nodes write: read from their pipes, cut into lines, kept, and put into files.
+"""The output of nodes: read from their pipes, split into lines, kept in memory, written to files.
 
-From outside: `session_log` for a whole session, `reader` for a pipe, `ring`, `files` and `folder`;
-how a line is read, `lines`, `rcutils` and `text`, is its own.
+Other packages use `session_log` for a whole session, `reader` for a pipe, `ring`, `files` and
+`folder`; the parsing of lines (`lines`, `rcutils`, `text`) is internal.
 """

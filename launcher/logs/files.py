@@ -19,7 +19,7 @@ MAX_FILE_BYTES = 8 << 20
 MAX_OLD_FILES = 3
 """`sonar.log.1` is the newest of them."""
 MAX_QUEUED_BYTES = 32 << 20
-"""What may wait for a slow disk; beyond it bytes are left out, with a line that counts them."""
+"""Most bytes queued for a slow disk; beyond that bytes are dropped, and a line counts them."""
 
 
 class LogFiles:
@@ -37,7 +37,7 @@ class LogFiles:
         self._thread: threading.Thread | None = None
 
     def write(self, node: str, data: bytes) -> None:
-        """Append to a node's file, soon; never waits."""
+        """Queue data to be appended to a node's file; never blocks."""
         if self._thread is None:
             self._thread = threading.Thread(target=self._run, name="log-files", daemon=True)
             self._thread.start()
@@ -52,7 +52,7 @@ class LogFiles:
         self._queue.put((node, data))
 
     def close(self, within_s: float = 3.0) -> None:
-        """Write what is queued, as far as that goes in time."""
+        """Write what is queued, as far as time allows."""
         if self._thread is not None:
             self._queue.put(None)
             self._thread.join(within_s)

@@ -1,7 +1,7 @@
-"""The folder of one run's logs: created and marked, and later removed by its mark.
+"""The log folder of one run: created with a mark, and later removed on the strength of that mark.
 
-The mark tells which files Deck writes there. Nothing else is ever removed: neither a folder that
-has no mark, nor what a person has put beside the logs.
+The mark lists the files that Deck writes there. Nothing else is ever removed: neither a folder
+without a mark, nor files that somebody has put beside the logs.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 MARK = ".deck-run"
 KEPT_RUNS = 10
-"""Runs of one profile whose logs are kept."""
+"""Number of runs of one profile whose logs are kept."""
 _LONGEST_MARK = 1 << 20
 
 
 def make_log_folder(folder: Path, logs: Iterable[str]) -> None:
-    """Make the folder of a run, whose id is its name, for logs of these names.
+    """Make the folder of a run, named after its id, for logs of these names.
 
     Raises:
-        OSError: if it cannot be made, or is there already.
+        OSError: if it cannot be made, or already exists.
     """
     make_folder(folder.parent)
     folder.mkdir(mode=0o700)
@@ -40,11 +40,11 @@ def make_log_folder(folder: Path, logs: Iterable[str]) -> None:
 
 
 def prune_runs(folder: Path, keep: int = KEPT_RUNS) -> None:
-    """Remove Deck's logs of all but the newest runs of a profile; those that run now are kept.
+    """Remove Deck's logs of all but the newest runs of a profile; current runs are kept.
 
     Args:
-        folder: holds one folder a run, whose names sort by time.
-        keep: how many to keep besides.
+        folder: holds one folder per run; their names sort by time.
+        keep: how many to keep besides the current runs.
     """
     with contextlib.suppress(OSError):
         runs = [entry.name for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False)]
@@ -77,7 +77,7 @@ def _remove(run: Path) -> None:
 
 
 def _marked_logs(run_id: str, folder: int) -> list[str] | None:
-    """Return the names of the logs that this run has written here; None if there is no mark."""
+    """Return the names of the logs that this run wrote here; None if there is no mark."""
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
         descriptor = open_file(MARK, os.O_RDONLY | os.O_NONBLOCK, folder)
         with os.fdopen(descriptor, encoding="utf-8") as file:

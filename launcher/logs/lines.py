@@ -1,22 +1,22 @@
-"""Bytes of a pipe to lines: in any pieces, of any length, with progress bars that redraw."""
+"""Splitting the bytes of a pipe into lines: any chunks, any length, redrawn progress bars."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 MAX_LINE_BYTES = 32 * 1024
-"""A longer line is cut; the log file has the whole of it."""
+"""A longer line is cut; the log file has all of it."""
 
 _ERASE = b"\x1b[K"
 _NO_LETTERS = bytes(code for code in range(128) if not chr(code).isalpha())
 
 IDLE_S = 1.0
-"""A line without an end that has stood for so long is shown: a prompt, a progress."""
+"""An unfinished line is shown after this time: it is a prompt or a progress bar."""
 
 
 @dataclass(frozen=True)
 class RawLine:
-    """One line as its process wrote it, without its end."""
+    """One line as its process wrote it, without the line end."""
 
     data: bytes
     lost: int = 0
@@ -24,10 +24,11 @@ class RawLine:
 
 
 class LineAssembler:
-    """The lines of one stream; at most `MAX_LINE_BYTES` twice and a chunk are ever held.
+    """The lines of one stream; holds at most twice `MAX_LINE_BYTES` and one chunk.
 
-    A carriage return begins its line anew. What stood before it is a line of its own, unless it
-    is the same words with other numbers: of a progress the newest state is enough.
+    A carriage return starts the line again. The text before it becomes a line of its own, unless
+    the text after it has the same words with other numbers: of a progress bar the newest state is
+    enough.
     """
 
     def __init__(self) -> None:
@@ -35,16 +36,16 @@ class LineAssembler:
         self._lost = 0
         self._waits_since = 0.0
         self._state: RawLine | None = None
-        """What stood before the newest carriage return."""
+        """The text before the newest carriage return."""
         self._words = ""
 
     @property
     def unfinished(self) -> bool:
-        """Whether there is a line that has not ended yet."""
+        """Whether there is an unfinished line."""
         return bool(self._rest) or self._state is not None
 
     def feed(self, chunk: bytes, now: float) -> list[RawLine]:
-        """Take what was read at `now`, return the lines that it completes."""
+        """Take a chunk that was read at `now`; return the lines that it completes."""
         if self._state is None:
             self._waits_since = now
         *ended, self._rest = (self._rest + chunk).split(b"\n")
@@ -57,9 +58,9 @@ class LineAssembler:
         return done
 
     def flush(self, now: float, *, at_end: bool = False) -> list[RawLine]:
-        """Return the unfinished line if it has stood for `IDLE_S`, or if the stream is `at_end`.
+        """Return the unfinished line if it is older than `IDLE_S`, or if the stream is `at_end`.
 
-        What is written to it later comes as a line of its own.
+        Text that is added to it later becomes a line of its own.
         """
         if not self.unfinished or (now - self._waits_since < IDLE_S and not at_end):
             return []
@@ -68,7 +69,7 @@ class LineAssembler:
             line, self._rest = self._rest, b""
             return self._ended(line)
         if self._state is not None:
-            # What follows it may be half of the next state.
+            # The text after it may be half of the next state.
             state, self._state = self._state, None
             return [state]
         keep = len(self._rest) - _half_character(self._rest)
@@ -76,7 +77,7 @@ class LineAssembler:
         return [self._line(line)] if line else []
 
     def _ended(self, line: bytes) -> list[RawLine]:
-        """Return a line that has ended, after those that carriage returns made of it."""
+        """Return a finished line, preceded by those that carriage returns split off from it."""
         if self._state is None and b"\r" not in line:
             return [self._line(line)]
         states = line.split(b"\r")
@@ -85,7 +86,7 @@ class LineAssembler:
         return [*done, last or self._line(states[-1])]
 
     def _rewritten(self, states: list[bytes]) -> list[RawLine]:
-        """Take what a line was, one after the other; return those that no progress follows."""
+        """Take the successive states of a line; return those that are not replaced as progress."""
         done: list[RawLine] = []
         for state in states:
             if state.replace(_ERASE, b"").strip():
@@ -104,7 +105,7 @@ class LineAssembler:
 
 
 def _words(state: bytes) -> str:
-    """Return the letters alone: numbers, bars and blanks are what a progress changes."""
+    """Return the letters only: a progress bar changes numbers, bars and blanks."""
     if state.isascii():
         return state.translate(None, _NO_LETTERS).decode()
     return "".join(filter(str.isalpha, state.decode(errors="replace")))

@@ -1,8 +1,8 @@
-"""What a log line says of itself: severity, time and logger.
+"""Parsing a log line: its severity, time and logger.
 
-The format is rcutils' default, `[{severity}] [{time}] [{name}]: {message}`. The lines after it
-that have none belong to the same message as long as they come at once; Python's tracebacks are
-errors to their last line; other programs' usual words for severity are understood.
+The format is the default of rcutils, `[{severity}] [{time}] [{name}]: {message}`. Following lines
+without this prefix belong to the same message if they arrive at once; Python tracebacks are errors
+up to their last line; the usual severity words of other programs are understood.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ _BETWEEN_TRACEBACKS = ("During handling of the above", "The above exception was 
 
 AT_ONCE_S = 0.05
 LATEST_S = 4102444800.0
-"""The year 2100: a stamp beyond it is no wall clock's."""
+"""The year 2100: a later stamp is not from a wall clock."""
 EARLIEST_S = 946684800.0
-"""The year 2000: a stamp before it is that of a simulation."""
+"""The year 2000: an earlier stamp is from a simulation."""
 
 
 @dataclass(frozen=True)
 class Parsed:
-    """One line, understood."""
+    """One parsed line."""
 
     severity: Severity
     text: str
@@ -48,7 +48,7 @@ class Parsed:
 
 
 class SeverityParser:
-    """Understands the lines of one stream, one after the other."""
+    """Parses the lines of one stream, one after the other."""
 
     def __init__(self) -> None:
         self._message: tuple[Severity, str] | None = None
@@ -56,9 +56,9 @@ class SeverityParser:
         self._in_traceback = False
 
     def parse(self, text: str, read_at: float, suggested: Severity | None = None) -> Parsed:
-        """Understand a line that was read at unix time `read_at`.
+        """Parse a line that was read at unix time `read_at`.
 
-        `suggested` is the severity that its colour suggests.
+        `suggested`: the severity that its colour suggests.
         """
         late = read_at - self._read_at > AT_ONCE_S
         self._read_at = read_at
@@ -81,7 +81,7 @@ class SeverityParser:
             self._in_traceback = True
             return Severity.ERROR, ""
         if self._in_traceback:
-            # The first line that is not indented names the exception and is the last.
+            # The first line that is not indented names the exception and ends the traceback.
             self._in_traceback = not text.strip() or text.startswith((" ", *_BETWEEN_TRACEBACKS))
             if not self._in_traceback:
                 self._message = (Severity.ERROR, "")

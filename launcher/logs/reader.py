@@ -1,4 +1,4 @@
-"""Reading a node's pipe: as soon as there is something, and never waiting for anything."""
+"""Reading a node's pipe as soon as there is data, without ever blocking."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 CHUNK = 64 * 1024
 PIPE_BYTES = 256 * 1024
-"""Room in the pipe for what a node writes while the supervisor is busy with another."""
+"""Pipe capacity: room for what a node writes while the supervisor is busy with another."""
 _MAX_DRAIN = 4 << 20
 
 
@@ -29,7 +29,7 @@ class PipeReader:
         on_bytes: Callable[[bytes], None],
         on_lines: Callable[[list[RawLine]], None],
     ) -> None:
-        """`fd` is this object's to close; `on_bytes` gets all there is, cut between lines."""
+        """`fd` is closed by this object; `on_bytes` gets all data, in pieces that end lines."""
         self._fd = fd
         self._on_bytes = on_bytes
         self._on_lines = on_lines
@@ -41,13 +41,13 @@ class PipeReader:
         self._loop.add_reader(fd, self._read)
 
     def drain(self) -> None:
-        """Read what is there already: its writer has ended."""
+        """Read what is left in the pipe: its writer has ended."""
         for _chunk in range(_MAX_DRAIN // CHUNK):
             if not self._read():
                 return
 
     def close(self) -> None:
-        """Read what is there, and stop reading."""
+        """Read what is left in the pipe, then stop reading."""
         self.drain()
         self._end()
 
@@ -72,7 +72,7 @@ class PipeReader:
         return True
 
     def _keep(self, chunk: bytes) -> None:
-        """Hand whole lines to the file: the node's other stream is written there too."""
+        """Pass whole lines to the file: the node's other stream goes to the same file."""
         end = chunk.rfind(b"\n") + 1
         if end or len(self._held) > CHUNK:
             end = end or len(chunk)
@@ -106,8 +106,9 @@ class PipeReader:
 
 
 def node_pipe() -> tuple[int, int]:
-    """Return a pipe for a node's output: our end, and the node's."""
+    """Return a pipe for a node's output: our end and the node's end."""
     read, write = os.pipe()
-    with contextlib.suppress(OSError):  # Ordinary users may have used up their share.
+    # The user may have used up the pipe memory that one user is allowed.
+    with contextlib.suppress(OSError):
         fcntl.fcntl(write, getattr(fcntl, "F_SETPIPE_SZ", 1031), PIPE_BYTES)
     return read, write

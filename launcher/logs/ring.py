@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 MAX_LINES = 5000
 MAX_BYTES = 4 << 20
 LINE_COST = 300
-"""Bytes that a line takes beside its text: the object and its numbers."""
+"""Bytes that a line takes in addition to its text: the object and its numbers."""
 
 
 class LogRing:
     """Lines in the order of their `seq`, which counts from 1 without a gap."""
 
     def __init__(self, max_lines: int = MAX_LINES, max_bytes: int = MAX_BYTES) -> None:
-        """`max_bytes` counts what lines take in memory, near enough."""
+        """`max_bytes` limits, approximately, the memory that the lines take."""
         self._lines: deque[LogLine] = deque()
         self._max_lines = max_lines
         self._max_bytes = max_bytes
@@ -30,7 +30,7 @@ class LogRing:
         return len(self._lines)
 
     def append(self, line: LogLine) -> None:
-        """Add the next line; the oldest go when there is no room."""
+        """Add the next line; the oldest ones are dropped when there is no room."""
         self._lines.append(line)
         self.last_seq = line.seq
         self._bytes += len(line.text) + LINE_COST

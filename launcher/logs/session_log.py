@@ -1,4 +1,4 @@
-"""The logs of one session: what every node has written, and what the supervisor says of it."""
+"""The logs of one session: the nodes' output, and the supervisor's own lines about them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from launcher.logs.lines import RawLine
 
 DECK = "deck"
-"""Whose lines those are that the supervisor says of itself, and their `source`."""
+"""The node name under which the supervisor logs about itself, and the `source` of its lines."""
 
 
 class SessionLog:
     """Rings and files of all nodes."""
 
     def __init__(self, nodes: Iterable[str], files: LogFiles, on_line: Callable[[], None]) -> None:
-        """`on_line` is called whenever there is something new."""
+        """`on_line` is called whenever there is a new line."""
         self.rings = {name: LogRing() for name in (DECK, *nodes)}
         self._files = files
         self._on_line = on_line
@@ -43,7 +43,7 @@ class SessionLog:
         return PipeReader(fd, lambda data: self._files.write(node, data), take)
 
     def say(self, node: str, severity: Severity, words: str) -> None:
-        """Add a line of the supervisor's own about a node, or about itself (`DECK`)."""
+        """Add a line from the supervisor about a node, or about itself (`DECK`)."""
         now = time.time()
         ring = self.rings[node]
         ring.append(LogLine(node, ring.last_seq + 1, now, severity, words, "", DECK))
@@ -52,16 +52,16 @@ class SessionLog:
         self._on_line()
 
     def last_words(self, node: str) -> str:
-        """Return the last line of the node's own that tells why it ended, empty if there is none.
+        """Return the node's own last line that tells why it ended, empty if there is none.
 
-        The last error of its newest lines, else its last line.
+        That is the last error among its newest lines, else its last line.
         """
         lines = [line for line in self.rings[node].newest(200) if line.source != DECK and line.text]
         errors = [line for line in lines if line.severity.rank >= Severity.ERROR.rank]
         return (errors or lines)[-1].text if lines else ""
 
     def newest(self, node: str | None, limit: int) -> list[LogLine]:
-        """Return the newest lines of one node, or of all in the order of time; oldest first."""
+        """Return the newest lines of one node, or of all nodes in order of time; oldest first."""
         if node is not None:
             return self.rings[node].newest(limit)
         newest = [ring.newest(limit) for ring in self.rings.values()]

@@ -1,9 +1,9 @@
-"""Bytes of a line to text that can be shown anywhere: no control sequence survives.
+"""Turning the bytes of a line into text that is safe to show: no control sequence survives.
 
-Colours are dropped (they tell the severity of a line that tells it no other way), and so is
-"erase to the end of the line" of progress bars. Every other escape sequence stays, visible: its
-escape character becomes the picture of it, as all control characters do. A line ends what it
-began: no sequence, finished or not, reaches into the next.
+Colours are dropped (they give the severity of a line that has no other sign of it), and so is the
+"erase to end of line" of progress bars. Every other escape sequence stays and becomes visible: its
+escape character is replaced by a picture character, as all control characters are. No sequence,
+finished or not, reaches into the next line.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Processes: found in the kernel's table, tied together, signalled, ended, cleaned up after.
+"""Processes: finding them in the kernel's table, tying their lives, signals, stopping, cleanup.
 
-Tools for all of the launcher, each module by itself: none of them knows of nodes or profiles.
+Independent modules for the whole launcher; none of them knows about nodes or profiles.
 """

@@ -1,4 +1,4 @@
-"""How a process ended, and who waits for it: the supervisor's children and those it adopted."""
+"""How processes end, and waiting for it: the supervisor's children and those it adopted."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ class Exit:
 
     code: int | None
     signal: str | None = None
-    """Its name: `SIGKILL`."""
+    """The name of the signal: `SIGKILL`."""
 
     @classmethod
     def from_wait_status(cls, status: int) -> Exit:
-        """Read what waitpid(2) gives."""
+        """Read a status from waitpid(2)."""
         if os.WIFSIGNALED(status):
             return cls(None, signal_name(os.WTERMSIG(status)))
         return cls(os.WEXITSTATUS(status))
 
     @property
     def clean(self) -> bool:
-        """Whether it ended by itself and said that all was well."""
+        """Whether it ended by itself with exit code 0."""
         return self.code == 0
 
 
 def signal_name(number: int) -> str:
-    """Return `SIGINT` for 2; real-time signals have numbers only."""
+    """Return `SIGINT` for 2; real-time signals only have numbers."""
     try:
         return signal.Signals(number).name
     except ValueError:
@@ -40,26 +40,26 @@ def signal_name(number: int) -> str:
 
 
 class Reaper:
-    """Collects every child that ends, the adopted orphans too, and tells whoever waits for one.
+    """Reaps every child that ends, adopted orphans included, and informs whoever waits for it.
 
-    A child is its number and its start: the number alone may be another's by the time it is
-    asked for.
+    A child is identified by its number and its start: the number alone may have been reused by the
+    time somebody asks.
     """
 
     _FORGOTTEN = 256
-    """Ends kept for children that nobody has asked for yet."""
+    """How many ends are kept of children that nobody has asked about yet."""
 
     def __init__(self) -> None:
         self._awaited: dict[tuple[int, int], asyncio.Future[Exit]] = {}
         self._early: dict[tuple[int, int], Exit] = {}
 
     def install(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Collect from now on."""
+        """Start reaping."""
         loop.add_signal_handler(signal.SIGCHLD, self.collect)
         self.collect()
 
     def collect(self) -> None:
-        """Collect every child that has ended."""
+        """Reap every child that has ended."""
         while True:
             try:
                 ended = os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
@@ -67,14 +67,14 @@ class Reaper:
                 return
             if ended is None:
                 return
-            # Until it is reaped it keeps its number, and /proc tells of it.
+            # Until it is reaped it keeps its number and its entry in /proc.
             process = read_process(ended.si_pid)
             _pid, status = os.waitpid(ended.si_pid, 0)
             started_ticks = process.started_ticks if process else 0
             self._ended((ended.si_pid, started_ticks), Exit.from_wait_status(status))
 
     def exit_of(self, pid: int, started_ticks: int) -> asyncio.Future[Exit]:
-        """Return the future end of a child; ask once for each."""
+        """Return a future for the end of a child; call it once for each."""
         future: asyncio.Future[Exit] = asyncio.get_running_loop().create_future()
         key = (pid, started_ticks)
         if key in self._early:

@@ -1,4 +1,4 @@
-"""Which processes belong to which node: its group, its session, and whatever has left both."""
+"""Which processes belong to which node: its group, its session, and those that left both."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from launcher.processes.table import Process
 
 _SETTLED_TICKS = 3 * TICKS_PER_S
-"""A process this old has its marks, if it gets any: it has exec'd, or has been named."""
+"""By this age a process has its marks, if it gets any: it has exec'd or set its title."""
 
 _NOBODY = ""
 
@@ -23,29 +23,29 @@ class Members:
     """Finds the processes of a run's nodes."""
 
     def __init__(self, run_id: str) -> None:
-        """`run_id`: what their environment carries as `RUN_MARK`."""
+        """`run_id`: the value of `RUN_MARK` in their environment."""
         self._run_id = run_id
         self._leaders: dict[int, str] = {}
-        """Of a node: its process, hence its group and session too."""
+        """Leader to node: the number of a node's process, and thus of its group and session."""
         self._starts: dict[int, int] = {}
-        """Of each leader, by which it is told from who has its number later."""
+        """The start of each leader, which distinguishes it from a later process with its number."""
         self._names: set[str] = set()
         self._known: dict[tuple[int, int], str] = {}
-        """Process number and start to the node it belongs to, or to `_NOBODY`."""
+        """Number and start of a process to the node it belongs to, or to `_NOBODY`."""
 
     def add(self, name: str, leader: Identified) -> None:
-        """A node has been started: `leader` is its process, group and session."""
+        """Add a node that was started; `leader` is the leader of its group and session."""
         self._leaders[leader.pid] = name
         self._starts[leader.pid] = leader.started_ticks
         self._names.add(name)
 
     def remove(self, leader: int) -> None:
-        """Nothing is left of the group of this leader."""
+        """Remove a leader of whose group nothing is left."""
         self._leaders.pop(leader, None)
         self._starts.pop(leader, None)
 
     def scan(self) -> dict[str, list[Process]]:
-        """Return the living processes of each node, those that only wait to be reaped left out."""
+        """Return the living processes of each node, without zombies."""
         everybody = {process.pid: process for process in processes()}
         self._forget_replaced(everybody)
         table = {pid: process for pid, process in everybody.items() if not process.zombie}
@@ -67,9 +67,9 @@ class Members:
         return found
 
     def _forget_replaced(self, everybody: Mapping[int, Process]) -> None:
-        """Forget leaders whose number is another's now, and thereby the group's and session's.
+        """Forget leaders whose number now belongs to another process, group and session.
 
-        As long as there is a group or a session of a number, the kernel gives it to nobody.
+        The kernel does not reuse a number as long as a group or session has it.
         """
         for leader, started_ticks in tuple(self._starts.items()):
             process = everybody.get(leader)
@@ -97,6 +97,6 @@ class Members:
 
 
 def is_marked(process: Process, run_id: str) -> bool:
-    """Whether the environment of a process says that it is of this run."""
+    """Whether a process is marked in its environment as one of this run."""
     marks = read_marks(process.pid)
     return marks is not None and marks.get(RUN_MARK) == run_id

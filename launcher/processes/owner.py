@@ -1,4 +1,4 @@
-"""Who a process belongs to, for people: user, terminal, and where they have come from."""
+"""The owner of a process, in words: user, terminal, and where they have logged in from."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _VT_MAJOR = 4
 
 
 def who_words(who: Who) -> Words:
-    """Say who it is in a few words."""
+    """Describe a user in a few words."""
     if who.tty and who.host:
         return say("{user} on {tty} from {host} (pid {pid})", **vars(who))
     if who.tty:
@@ -29,9 +29,9 @@ def who_words(who: Who) -> Words:
 
 
 def who_runs(pid: int) -> Who:
-    """Return whose process this is, with what cannot be found out left empty."""
+    """Return the owner of a process; fields that cannot be found out are empty."""
     try:
-        with open(f"/proc/{pid}/stat", "rb") as file:  # noqa: PTH123 - as all of /proc is read
+        with open(f"/proc/{pid}/stat", "rb") as file:  # noqa: PTH123 - like all reads of /proc
             tty = _terminal(int(stat_fields(file.read())[4]))
             user = user_name(os.fstat(file.fileno()).st_uid)
     except OSError:
@@ -41,7 +41,7 @@ def who_runs(pid: int) -> Who:
 
 
 def _terminal(device: int) -> str:
-    """Return the name of a terminal by its number, tty(4) and pts(4)."""
+    """Return the name of a terminal from its device number, see tty(4) and pts(4)."""
     major, minor = os.major(device), os.minor(device)
     if major in _PTS_MAJORS:
         return f"pts/{(major - _PTS_MAJORS.start) * 256 + minor}"
@@ -49,7 +49,7 @@ def _terminal(device: int) -> str:
 
 
 def user_name(uid: int) -> str:
-    """Return what a user is called, the number if he has no name here."""
+    """Return a user's name, or the uid if there is no name for it."""
     try:
         return pwd.getpwuid(uid).pw_name
     except KeyError:

@@ -1,20 +1,21 @@
 """Ports of killed nodes, kept from being used again.
 
-A participant of Fast DDS listens for data on a port in shared memory. If its process is killed, the
-next one takes the same number and makes the memory anew; but who has already talked to the dead one
-goes on writing into the old memory, for Fast DDS misses the death of a listener that was just at
-work. The newcomer then never hears of them (seen with Fast DDS 2.14; Fast-DDS pull request 4728 and
-issue 5469 tell of it).
+A Fast DDS participant listens for data on a port in shared memory. If its process is killed, the
+next participant takes the same number and creates the memory again. Participants that have already
+talked to the dead one keep writing into the old memory, because Fast DDS does not notice the death
+of a listener that was busy at that moment. The new participant then never receives anything from
+them (seen with Fast DDS 2.14; see Fast-DDS pull request 4728 and issue 5469).
 
-The number comes from that of the participant: the first whose UDP port for discovery is free, and
-that port is the one before the port for data (RTPS 2.5, 9.6.2.3). So that one is bound. To bind the
-UDP port for data itself, or to keep the lock of the one in shared memory, does not do: the first
-leaves newcomers on the same shared memory, by the second they log errors of Fast DDS once somebody
-else has removed it.
+The port number follows from the participant id: the first id whose UDP port for discovery is free.
+That port is the one before the data port (RTPS 2.5, 9.6.2.3), so we bind it. Binding the UDP data
+port itself, or holding the lock of the shared memory port, does not help: in the first case new
+participants still use the same shared memory, in the second Fast DDS logs errors in them once
+somebody else has removed the port.
 
-Where a file of another user lies at a port in shared memory, Fast DDS goes two ports up, and up
-again, until it can have one: then the number tells nothing, and the next one with the same number
-has the port of the dead one. So nobody gets a number whose port is another user's.
+Where a file of another user occupies a port in shared memory, Fast DDS tries two ports further up,
+again and again, until it finds one it can use. Then the participant id no longer determines the
+port, and the next participant with the same id gets the port of the dead one. So no participant is
+given an id whose port belongs to another user.
 """
 
 from __future__ import annotations
@@ -32,16 +33,16 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FIRST = 7400
-"""Of all domains. Below are ports for the news of which nodes there are; what a newcomer misses of
-these is not to be prevented in this way, and of little weight: names of nodes."""
+"""The lowest UDP port of all domains. Lower ports in shared memory announce nodes; what newcomers
+miss there cannot be prevented in this way and matters little: names of nodes."""
 _DOMAIN = 250
-"""Ports of a domain."""
+"""Number of ports of a domain."""
 _FIRST_DATA = 11
-"""Port for data of its first participant, counted from the first of the domain."""
+"""Data port of the first participant, relative to the first port of the domain."""
 _AVOIDED = 20
-"""Participants that are looked at: without multicast only the first of a domain are found."""
+"""Participant ids that are checked: without multicast only the first ones of a domain are found."""
 _MOST = 40
-"""A domain has ports for some 120 participants; the oldest are let go."""
+"""Most ports kept; a domain has ports for some 120 participants, so the oldest are released."""
 
 
 class BurntPorts:
@@ -53,7 +54,7 @@ class BurntPorts:
         self._folder = folder
 
     def keep(self, ports: Iterable[int]) -> None:
-        """Let no newcomer have these ports for data."""
+        """Keep new participants from using these data ports."""
         for port in ports:
             if port >= FIRST and (descriptor := _bind(port - 1)) is not None:
                 self._descriptors.append(descriptor)
@@ -61,7 +62,7 @@ class BurntPorts:
             os.close(self._descriptors.popleft())
 
     def avoid_others(self, domain: int) -> None:
-        """Let no newcomer have a number whose port in shared memory is another user's."""
+        """Keep new participants from ids whose port in shared memory belongs to another user."""
         first = FIRST + _DOMAIN * domain + _FIRST_DATA
         for port in range(first, first + 2 * _AVOIDED, 2):
             if port not in self._avoided and self._is_anothers(port):
@@ -70,7 +71,7 @@ class BurntPorts:
                     self._avoided[port] = descriptor
 
     def _is_anothers(self, port: int) -> bool:
-        """Whether something at this port in shared memory is in the way of this user's nodes."""
+        """Whether a file at this port in shared memory is in the way of this user's nodes."""
         name = f"fastrtps_port{port}"
         for path in (self._folder / name, self._folder / f"sem.{name}_mutex"):
             try:
@@ -83,7 +84,7 @@ class BurntPorts:
 
 
 def _bind(port: int) -> int | None:
-    """Return the descriptor of a socket that has this port, None if it is somebody's."""
+    """Return the descriptor of a socket bound to this port, None if the port is in use."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as bound:
         try:
             bound.bind(("", port))

@@ -1,8 +1,8 @@
-"""Ties the life of one process to another's: prctl(2) and similar calls.
+"""Tying the life of one process to that of another: prctl(2) and similar calls.
 
 A supervisor adopts every descendant whose parent ends (`become_subreaper`), and a node dies with
-the supervisor (`die_with_parent`). What a fork has left of its parent's threads is not touched at
-the end (`leave_libraries_alone_at_exit`).
+the supervisor (`die_with_parent`). A forked process does not touch what is left of its parent's
+threads when it exits (`leave_libraries_alone_at_exit`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def _prctl(option: int, value: int) -> None:
 
 
 def become_subreaper(yes: bool = True) -> None:
-    """Become the parent of every descendant whose own parent ends; or be it no longer."""
+    """Become the parent of every descendant whose own parent ends; or stop doing so."""
     _prctl(_PR_SET_CHILD_SUBREAPER, yes)
 
 
@@ -35,10 +35,10 @@ def die_with_parent(parent: int, within_s: float = 10.0) -> bool:
     """Wait until `parent` is the parent of this process, then die when it does.
 
     Call it in a process whose real parent is about to exit and leave it to its subreaper. The
-    kernel sends nothing for a parent that died before the call, hence the look afterwards.
+    kernel sends no signal for a parent that died before the call, hence the check afterwards.
 
     Returns:
-        False if it is an orphan: `parent` has gone already.
+        False if it is an orphan: `parent` is already gone.
     """
     at_first = os.getppid()
     deadline = time.monotonic() + within_s
@@ -62,9 +62,10 @@ def set_short_name(name: str) -> None:
 def leave_libraries_alone_at_exit() -> None:
     """Have exit(3) end this process before the destructors of libraries loaded so far.
 
-    Call it after a fork. LTTng, which rclpy brings, has its destructor cancel threads that only the
-    parent had; their stacks may be gone by then, and a node that ended well died of SIGSEGV.
+    Call it after a fork. LTTng, which comes with rclpy, has a destructor that cancels threads which
+    only the parent had; their stacks may be gone by then, and nodes that ended well died of
+    SIGSEGV.
     """
     atexit.register(_libc.fflush, None)
-    # Called with the exit code, as the last of Python and its modules has gone.
-    _libc.on_exit(_libc._exit, None)  # noqa: SLF001 - it is libc's own name
+    # Called with the exit code, after Python has shut down.
+    _libc.on_exit(_libc._exit, None)  # noqa: SLF001 - this is its name in libc

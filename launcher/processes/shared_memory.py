@@ -1,9 +1,9 @@
 """Shared memory that Fast DDS nodes leave behind when they are killed.
 
 A participant holds a segment `/dev/shm/fastrtps_<16 hex digits>`, half a megabyte, and ports that
-it listens on, `/dev/shm/fastrtps_port<number>`, with an exclusive flock(2) on the file beside each,
-`..._el`, for as long as it lives. A node that ends as it should removes all; of one that was killed
-the locks go and the files stay.
+it listens on, `/dev/shm/fastrtps_port<number>`. For as long as it lives it has an exclusive
+flock(2) on a file beside each, `..._el`. A node that ends properly removes them all; when one is
+killed, its locks are released and the files stay.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 SHARED_MEMORY = Path("/dev/shm")
 NAME = r"fastrtps_(?:[0-9a-f]{16}|port\d+)"
-"""What the files of segments and ports are called, as a regular expression."""
+"""The names of the files of segments and ports, as a regular expression."""
 _LOCK = re.compile(f"({NAME})_el")
 _PORT = "fastrtps_port"
 STATES = (b"", b"\0\0\0\0", b"\1\0\0\0", b"\2\0\0\0", b"\3\0\0\0")
-"""The first word of such a file, by which boost.interprocess tells how far its making is:
+"""The first word of such a file, in which boost.interprocess keeps the state of its creation:
 uninitialized, initializing, initialized, corrupted."""
 _READ = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
 _ABANDONED_S = 10.0
-"""Age at which a lock that nobody holds is not just being taken."""
+"""Age from which a lock that nobody holds is abandoned, and not about to be taken."""
 
 
 def held_segments(pid: int) -> set[str]:
-    """Return the names of the segments and ports that a process holds."""
+    """Return the names of the segments and ports that a process has locked."""
     found = set()
     folder = f"/proc/{pid}/fd"
     with contextlib.suppress(OSError):
@@ -48,17 +48,17 @@ def held_segments(pid: int) -> set[str]:
 
 
 def port_numbers(names: Iterable[str]) -> list[int]:
-    """Return the numbers of those that are ports."""
+    """Return the numbers of those names that are ports."""
     return sorted(int(name.removeprefix(_PORT)) for name in names if name.startswith(_PORT))
 
 
 def sweep(segments: Iterable[str], folder: Path = SHARED_MEMORY) -> list[str]:
-    """Remove those of these segments that nobody holds any more; return their names."""
+    """Remove those of these segments that nobody has locked any more; return their names."""
     return [name for name in segments if _remove(folder / name)]
 
 
 def is_users_alone(descriptor: int) -> bool:
-    """Whether an open file is a plain one of this user's, and has no other name."""
+    """Whether an open file is a regular file of this user without other hard links."""
     found = os.fstat(descriptor)
     return stat.S_ISREG(found.st_mode) and found.st_uid == os.geteuid() and found.st_nlink == 1
 
@@ -76,7 +76,7 @@ def _remove(segment: Path) -> bool:
             return False
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         if not os.path.samestat(os.fstat(descriptor), lock.lstat()):
-            return False  # Somebody has made it anew meanwhile.
+            return False  # Somebody has created it again in the meantime.
         segment.unlink(missing_ok=True)
         lock.unlink(missing_ok=True)
     except OSError:
@@ -87,7 +87,7 @@ def _remove(segment: Path) -> bool:
 
 
 def _is_of_fast_dds(segment: Path) -> bool:
-    """Whether a segment or port is the user's and holds what its name says, or is gone."""
+    """Whether a segment or port is this user's and really what its name says, or is gone."""
     try:
         descriptor = os.open(segment, _READ)
     except FileNotFoundError:
@@ -99,9 +99,9 @@ def _is_of_fast_dds(segment: Path) -> bool:
 
 
 def sweep_abandoned(folder: Path = SHARED_MEMORY) -> list[str]:
-    """Remove the segments of all nodes that have been killed; return their names.
+    """Remove the segments of all nodes that were killed; return their names.
 
-    Ports stay: whoever still talks to a dead node must see none other at its port.
+    Ports stay: a participant that still talks to a dead node must not see another at its port.
     """
     locks = (match for name in names(folder) if (match := _LOCK.fullmatch(name)))
     segments = (match[1] for match in locks if not match[1].startswith(_PORT))
@@ -109,7 +109,7 @@ def sweep_abandoned(folder: Path = SHARED_MEMORY) -> list[str]:
 
 
 def names(folder: Path) -> list[str]:
-    """Return the names of all that is in a folder, none if there is no such folder."""
+    """Return the names of everything in a folder, nothing if there is no such folder."""
     try:
         return os.listdir(folder)  # noqa: PTH208 - Path objects cost more than the rest
     except OSError:
@@ -117,7 +117,7 @@ def names(folder: Path) -> list[str]:
 
 
 def age_s(path: Path) -> float:
-    """Return the time since something was written to a file, s; 0 if there is none."""
+    """Return the time since a file was last written to, in s; 0 if there is no file."""
     try:
         return time.time() - path.lstat().st_mtime
     except OSError:

@@ -1,9 +1,9 @@
 """Shared memory files whose creator was killed while creating them.
 
-Each file of Fast DDS begins with a word by which boost.interprocess tells how far its making is.
-Whoever opens one that is being made waits until it is made, and for ever if its maker is dead: one
-such file holds up every node of the machine that comes across it. Seen with Fast DDS 2.14: nodes
-stood for minutes where a killed one had begun /dev/shm/fastrtps_port7002.
+Each Fast DDS file begins with a word in which boost.interprocess keeps the state of its creation. A
+process that opens a file under creation waits until it is complete, and for ever if its creator is
+dead: one such file blocks every node on the machine that comes across it. Seen with Fast DDS 2.14:
+nodes hung for minutes because a killed one had begun /dev/shm/fastrtps_port7002.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
 _FILE = re.compile(NAME)
 UNFINISHED_S = 3.0
-"""Age at which a file that is still being made has no maker any more: it takes milliseconds."""
+"""Age from which an incomplete file has lost its creator: creating one takes milliseconds."""
 _BEING_MADE = STATES[:3]
 _CORRUPTED = STATES[4]
-"""Whoever waits for this file gives up, and makes a new one."""
+"""A process that waits for this file gives up and creates a new one."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +42,11 @@ class Discarded:
     removed: tuple[str, ...]
     """Names of files."""
     kept: tuple[str, ...]
-    """Those that belong to another user, or have another name as well."""
+    """Files that belong to another user, or have other hard links."""
 
 
 def unfinished(folder: Path = SHARED_MEMORY) -> Iterator[Path]:
-    """Yield the files whose makers were killed while they made them."""
+    """Yield the files whose creators were killed while creating them."""
     for name in filter(_FILE.fullmatch, names(folder)):
         path = folder / name
         if _begins(path) in _BEING_MADE and age_s(path) > UNFINISHED_S:
@@ -54,7 +54,7 @@ def unfinished(folder: Path = SHARED_MEMORY) -> Iterator[Path]:
 
 
 def discard_unfinished(folder: Path = SHARED_MEMORY) -> Discarded:
-    """Remove the files that nobody will ever finish, and let go whoever waits for one."""
+    """Remove the files that nobody will complete, and release the processes waiting for one."""
     removed, kept = list[str](), list[str]()
     for path in unfinished(folder):
         (removed if _discard(path) else kept).append(path.name)
@@ -62,7 +62,7 @@ def discard_unfinished(folder: Path = SHARED_MEMORY) -> Discarded:
 
 
 def _discard(path: Path) -> bool:
-    """Remove a file, or see another Deck do it; return False if it is another user's."""
+    """Remove a file, or notice that another Deck did; return False if it is another user's."""
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
     except OSError as problem:
@@ -72,7 +72,7 @@ def _discard(path: Path) -> bool:
             return False
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         if os.path.samestat(os.fstat(descriptor), path.lstat()):
-            # First of all: whoever is let go makes a new file of this name at once.
+            # This comes first: a released process immediately creates a new file of this name.
             path.unlink()
             os.pwrite(descriptor, _CORRUPTED, 0)
     except PermissionError:
@@ -85,7 +85,7 @@ def _discard(path: Path) -> bool:
 
 
 def _begins(path: Path) -> bytes | None:
-    """Return the first word of a file, less if it has no more; None if it cannot be read."""
+    """Return the first word of a file, less if it is shorter; None if it cannot be read."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:

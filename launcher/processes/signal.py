@@ -1,4 +1,4 @@
-"""A signal to exactly one process, never to another that has reused its pid."""
+"""Sending a signal to exactly one process, never to another that has reused its pid."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _NO_PIDFD = (errno.ENOSYS, errno.EPERM)
-"""A kernel before 5.3, or a container that has not heard of the call."""
+"""Errors of a kernel before 5.3, or of a container that does not allow the call."""
 
 
 class Identified(Protocol):
@@ -22,23 +22,24 @@ class Identified(Protocol):
 
     @property
     def pid(self) -> int:
-        """Its number."""
+        """Its process number."""
 
     @property
     def started_ticks(self) -> int:
-        """Its start, see `launcher.processes.table`."""
+        """Its start time in ticks, see `launcher.processes.table`."""
 
 
 def lives(process: Identified) -> bool:
-    """Whether this very process is there, be it as one that waits to be reaped."""
+    """Whether exactly this process still exists, perhaps as a zombie."""
     found = read_process(process.pid)
     return found is not None and found.started_ticks == process.started_ticks
 
 
 def send(process: Identified, *numbers: signal.Signals) -> None:
-    """Send signals to a process; nothing if it has gone, or is somebody else's."""
+    """Send signals to a process; does nothing if it is gone or belongs to another user."""
     with contextlib.suppress(ProcessLookupError, PermissionError), _held(process.pid) as descriptor:
-        # Looked at while it is held: whoever has the number now has it until the signal is sent.
+        # Checked while the process is held open: the number cannot be reused before the signal is
+        # sent.
         if not lives(process):
             return
         for number in numbers:
@@ -50,7 +51,7 @@ def send(process: Identified, *numbers: signal.Signals) -> None:
 
 @contextlib.contextmanager
 def _held(pid: int) -> Iterator[int | None]:
-    """Open a process, as far as this kernel lets it be held."""
+    """Hold a process open by a pidfd; yields None where the kernel has none."""
     try:
         descriptor = os.pidfd_open(pid)
     except OSError as problem:

@@ -1,4 +1,4 @@
-"""Stopping a node in stages: SIGINT, SIGTERM, SIGKILL, until none of its processes is left."""
+"""Stopping a node in stages (SIGINT, SIGTERM, SIGKILL), until none of its processes is left."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StopTimeouts:
-    """How long each stage is given."""
+    """How long each stage may take."""
 
     interrupt_s: float
     """From SIGINT to SIGTERM."""
@@ -26,13 +26,13 @@ class StopTimeouts:
     """From SIGTERM to SIGKILL."""
 
     def stage(self, elapsed_s: float) -> int:
-        """Return the stage so long after the beginning: 0, 1 or 2."""
+        """Return the stage at this time after the beginning: 0, 1 or 2."""
         return (elapsed_s >= self.interrupt_s) + (elapsed_s >= self.interrupt_s + self.terminate_s)
 
 
 PATIENT = StopTimeouts(5.0, 5.0)
 QUICK = StopTimeouts(KILLED_AFTER_S, 0.4)
-"""For whoever asks twice, and for a robot whose owner is gone: over well within 2 s."""
+"""For a repeated request, and for a robot whose owner is gone: done well within 2 s."""
 
 STAGES = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 _LOOK_EVERY_S = 0.1
@@ -43,14 +43,14 @@ class Target(Protocol):
     """The processes of one node."""
 
     def left(self) -> Sequence[Process]:
-        """Return those that live."""
+        """Return those that are alive."""
 
     def signal(self, process: Process, number: signal.Signals) -> None:
         """Send one of them a signal."""
 
 
 class StagedStop:
-    """One stop under way."""
+    """One stop in progress."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class StagedStop:
         on_holdup: Callable[[Sequence[Process], signal.Signals], None],
         pace: StopTimeouts = PATIENT,
     ) -> None:
-        """`on_holdup` hears who is left, and the last signal, whenever that has changed."""
+        """`on_holdup` is called with what is left and the last signal, whenever these change."""
         self._target = target
         self._clock = clock
         self._on_holdup = on_holdup
@@ -67,12 +67,12 @@ class StagedStop:
         self._wake = asyncio.Event()
 
     def hurry(self) -> None:
-        """Skip the waiting: somebody has asked twice, or there is no time."""
+        """Skip the waits: the stop was requested twice, or there is no time."""
         self._pace = QUICK
         self._wake.set()
 
     def look(self) -> None:
-        """Look at once: something has ended."""
+        """Check at once: a process has ended."""
         self._wake.set()
 
     async def run(self) -> None:
@@ -99,9 +99,9 @@ class StagedStop:
 
 
 async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Process]:
-    """Stop in a hurry who is there, and who comes meanwhile; return who outlives `within_s`.
+    """Stop all processes in a hurry, new ones too; return those that outlive `within_s`.
 
-    One that is just being forked may be missed by a look, so the last two must find nobody.
+    A scan may miss a process that is just being forked, so the last two must find none.
     """
 
     async def end() -> None:
@@ -120,4 +120,4 @@ async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Pro
 
 
 def _say_nothing(left: Sequence[Process], number: signal.Signals) -> None:
-    """Nobody hears it: at the end of all what is left is told by itself."""
+    """Ignore it: at the end of the run, what is left is reported separately."""

@@ -1,9 +1,10 @@
-"""What `ps` and /proc show of a forked process: a title of its own, and its marks.
+"""What `ps` and /proc show for a forked process: its own title and its marks.
 
-A forked process keeps the argument and environment areas of the process it was forked from. Here
-it overwrites them in place, so that people and the search for a run's processes see a node and
-not a copy of the supervisor. (setproctitle would lay the title over the environment, and with it
-over the marks.) Whoever starts such a process leaves room, `ROOM_ARGUMENT` and `room_for_marks`.
+A forked process keeps the argument and environment areas of the process it was forked from. Here it
+overwrites them in place, so that people, and the search for a run's processes, see a node and not a
+copy of the supervisor. (setproctitle would write the title over the environment, and so over the
+marks.) The program that such processes are forked from must be started with spare room:
+`ROOM_ARGUMENT` and `room_for_marks`.
 """
 
 from __future__ import annotations
@@ -14,14 +15,14 @@ from launcher.processes.prctl import set_short_name
 from launcher.processes.table import NODE_MARK, RUN_MARK, SUPERVISOR_MARK, stat_fields
 
 ROOM_ARGUMENT = "-" * 160
-"""Last argument of a command line that has room for titles."""
+"""The last argument of a command line, which provides the room for titles."""
 _ROOM = {RUN_MARK: "-" * 80, NODE_MARK: "-" * 255, SUPERVISOR_MARK: "-" * 90}
 
 _ARG_START, _ARG_END, _ENV_START, _ENV_END = range(48, 52)  # fields of /proc/self/stat, proc(5)
 
 
 def room_for_marks() -> dict[str, str]:
-    """Return environment variables that have room for the marks."""
+    """Return environment variables that provide room for the marks."""
     return dict(_ROOM)
 
 
@@ -32,12 +33,12 @@ def show_title(title: str) -> None:
 
 
 def show_name(name: str) -> None:
-    """Set the name of this process that `top` shows."""
+    """Set the name that `top` shows for this process."""
     set_short_name(name)
 
 
 def show_mark(mark: str, text: str) -> bool:
-    """Give this process a mark; return False if its environment has no room for it."""
+    """Set a mark of this process; return False if its environment has no room for it."""
     areas = _areas()
     start, end = areas[_ENV_START], areas[_ENV_END]
     room = f"{mark}={_ROOM[mark]}".encode()
@@ -50,14 +51,14 @@ def show_mark(mark: str, text: str) -> bool:
 
 
 def _areas() -> dict[int, int]:
-    with open("/proc/self/stat", "rb") as file:  # noqa: PTH123 - once per start of a node
+    with open("/proc/self/stat", "rb") as file:  # noqa: PTH123 - only once per node
         stat = file.read()
     fields = stat_fields(stat)
     return {number: int(fields[number - 3]) for number in range(_ARG_START, _ENV_END + 1)}
 
 
 def _write(start: int, end: int, text: bytes) -> None:
-    """Write `text`, cut if need be, and zeros up to `end`."""
+    """Write `text`, cut if necessary, and zeros up to `end`."""
     room = end - start - 1
     if room > 0:
         ctypes.memmove(start, text[:room].ljust(room + 1, b"\0"), room + 1)

@@ -1,4 +1,4 @@
-"""What the nodes cost: processor time and memory of all their processes together."""
+"""Resource use of nodes: CPU time and memory of all their processes together."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Usage:
-    """What one node costs."""
+    """The resource use of one node."""
 
     cpu_percent: float | None
-    """Percent of one core since the measurement before; None at the first."""
+    """Percent of one core since the previous measurement; None at the first one."""
     memory_bytes: int | None
-    """Proportional set size; None where the kernel does not tell."""
+    """Proportional set size in bytes; None where the kernel does not provide it."""
 
 
 class UsageMeter:
-    """Measures repeatedly; remembers the last measurement."""
+    """Measures repeatedly, relative to the previous measurement."""
 
     _MEMORY_EVERY = 3
-    """Measurements between two of memory, for which the kernel walks all pages of a process."""
+    """How seldom memory is measured: the kernel walks all pages of a process for it."""
 
     def __init__(self) -> None:
         self._cpu: dict[tuple[int, int], int] = {}
@@ -36,7 +36,7 @@ class UsageMeter:
         self._turn = 0
 
     def measure(self, members: Mapping[str, Sequence[Process]], now: float) -> dict[str, Usage]:
-        """Measure every node; `now` in monotonic seconds."""
+        """Measure every node; `now` is in monotonic seconds."""
         elapsed = None if self._measured_at is None else now - self._measured_at
         before, self._measured_at = self._cpu, now
         self._cpu = {}
@@ -62,7 +62,7 @@ class UsageMeter:
 
 
 def proportional_memory(pids: Iterable[int]) -> int | None:
-    """Return the proportional set size of these processes in bytes, None if it is not told."""
+    """Return the proportional set size of these processes in bytes, None if not available."""
     total = None
     for pid in pids:
         try:

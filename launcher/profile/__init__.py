@@ -1,6 +1,6 @@
-"""Profiles: from YAML to plain data that can be started, every error with its position.
+"""Profiles: from YAML to plain data that can be started, with the position of every error.
 
-From outside: `load.load_profile`, the only way to a profile, `catalog` for which there are, and
-names of the format (`panels`, `devices`, `defaults`). A field is declared in `model` and nowhere
-else.
+Other packages use `load.load_profile`, the only way to load a profile, `catalog` to list the
+profiles, and the names of the format (`panels`, `devices`, `defaults`). Fields are declared in
+`model` and nowhere else.
 """

@@ -13,9 +13,9 @@ _DRIVERS = frozenset(
         "llm_parser",
     )
 )
-"""What gives orders to the wheels; two sessions with any of these would fight over them."""
+"""The nodes that command the wheels; two sessions with any of these would fight over them."""
 
 
 def drives(command: str) -> bool:
-    """Whether a node that is run by this gives orders to the wheels."""
+    """Whether a node run by this command controls the wheels."""
     return command in _DRIVERS

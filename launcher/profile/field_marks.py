@@ -1,7 +1,7 @@
-"""What the annotation of a field says beside its type, for whoever handles a profile unvalidated.
+"""Marks in the annotation of a field, for code that handles a profile before validation.
 
-`launcher.profile.model` is the one place where a field is declared; these marks tell how its value
-is read, where a path of it begins, and what `extends` does with it.
+Fields are declared in `launcher.profile.model` only; these marks say how a value is read, what a
+path is relative to, and how `extends` treats it.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ M = TypeVar("M")
 
 
 class AsText:
-    """Every scalar within means the text that stands there: `0.10`, `yes`, `9`."""
+    """Every scalar inside is taken as text, exactly as written: `0.10`, `yes`, `9`."""
 
 
 class Joined:
-    """`extends` joins the mapping key by key; what is not marked replaces the other profile's."""
+    """`extends` merges the mapping key by key; a field without this mark replaces the other's."""
 
 
 @dataclass(frozen=True)
 class PathFromProfile:
-    """A path, relative to the profile that says it."""
+    """A path relative to the profile that contains it."""
 
     is_meant: Callable[[str], bool] = bool
-    """Tells a path from another text that may stand there."""
+    """Distinguishes a path from other text that is allowed here."""
 
 
 def marked(model: type[BaseModel], mark: type[M]) -> dict[str, M]:

@@ -1,4 +1,4 @@
-"""Looking a Python module up without importing it, or anything on the way to it."""
+"""Looking up a Python module without importing it or any of its parent packages."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from importlib.machinery import ModuleSpec
 
 COURSE = "nodes"
-"""The package of the lessons' own nodes."""
+"""The package of the course's nodes."""
 
 
 def is_installed(module: str) -> bool:
-    """Whether a node can run this module: `launcher.node_program` finds it."""
+    """Whether a node can run this module, that is, `launcher.node_program` finds it."""
     return _runnable(module, _places())
 
 
 def likely_names(module: str) -> list[str]:
-    """Return modules that may have been meant: those beside it, and the course's nodes."""
+    """Return modules that may have been meant: those of the same package, and the course's."""
     package, _, _ = module.rpartition(".")
     names = []
     for parent in {package, COURSE} - {""}:
@@ -35,7 +35,7 @@ def likely_names(module: str) -> list[str]:
 
 
 def _places() -> list[str]:
-    """Where a node's Python looks: the current folder is no place there, unless it is told to."""
+    """The search path of a node's Python: without the current folder, unless PYTHONPATH has it."""
     here = os.getcwd()  # noqa: PTH109
     named = [part for part in os.environ.get("PYTHONPATH", "").split(os.pathsep) if part]
     others = (place for place in sys.path if place and place != here)
@@ -55,7 +55,7 @@ def _runnable(module: str, places: Sequence[str]) -> bool:
 
 
 def _find(module: str, places: Sequence[str]) -> ModuleSpec | None:
-    """Find a module part by part: `find_spec` of the whole name would import its packages."""
+    """Find a module part by part: `find_spec` on the whole name would import its packages."""
     name, spec = "", None
     inner = list(places)
     for part in module.split("."):
@@ -70,7 +70,7 @@ def _find(module: str, places: Sequence[str]) -> ModuleSpec | None:
 def _find_in(name: str, places: list[str]) -> ModuleSpec | None:
     for finder in sys.meta_path:
         find_spec = getattr(finder, "find_spec", None)
-        # Only the finder of paths is told where; those of editable installs know by themselves.
+        # Only the path finder is given the places; those of editable installs have their own.
         where = places if finder is PathFinder or "." in name else None
         try:
             spec: ModuleSpec | None = find_spec(name, where) if find_spec else None

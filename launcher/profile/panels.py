@@ -1,6 +1,6 @@
 """The names of panels that a profile may list: part of the file format, defined here.
 
-What a panel is made of, and which topics it shows, `tui.panels.registry` knows for these names.
+`tui.panels.registry` maps these names to the panels and the topics they show.
 """
 
 from __future__ import annotations

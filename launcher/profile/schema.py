@@ -10,14 +10,14 @@ from launcher.profile.model import ProfileDocument
 
 
 def render() -> str:
-    """Return `profiles/schema.json` as it ought to be."""
+    """Return the correct content of `profiles/schema.json`."""
     schema: dict[str, Any] = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     schema |= ProfileDocument.model_json_schema(by_alias=True)
     return json.dumps(_without_noise(schema), indent=2, ensure_ascii=False) + "\n"
 
 
 def _without_noise(value: Any) -> Any:  # noqa: ANN401 - any JSON
-    """Drop what pydantic adds and an editor would only show in the way."""
+    """Drop pydantic's additions, which would only clutter the hints of an editor."""
     if isinstance(value, list):
         return [_without_noise(item) for item in value]
     if not isinstance(value, dict):

@@ -28,11 +28,11 @@ class Ready:
     kind: str
     """`topic`, `service` or `node`."""
     name: str
-    """As in the profile: a ROS name, absolute or not."""
+    """A ROS name as in the profile, absolute or not."""
     type: str = ""
-    """Of a topic: the type awaited, `std_msgs/msg/Float32`; empty: any."""
+    """For a topic: the expected type, `std_msgs/msg/Float32`; empty: any."""
     rate_hz: float = 0.0
-    """Of a topic: how often messages must come; 0: none need come."""
+    """For a topic: how often messages must arrive; 0: none need to."""
     within_s: float = READY_WITHIN_S
 
 
@@ -41,28 +41,28 @@ class NodeSpec:
     """One node: what to run, how, and after which others."""
 
     name: str
-    """Its key in the profile; of a `run` node also its name in the ROS graph."""
+    """Its key in the profile; for a `run` node also its name in the ROS graph."""
     document: NodeDocument
-    """All that the profile says; what it comes to here stands below, by the same names."""
+    """Everything the profile says; the fields below hold the results, under the same names."""
     params: Mapping[str, Param]
-    """Flat: `{"limits.front": 0.5}`."""
+    """Flattened: `{"limits.front": 0.5}`."""
     needs: tuple[str, ...]
-    """Only nodes that run: those that `when` leaves out are not waited for."""
+    """Only nodes that run: those excluded by `when` are not waited for."""
     ready: Ready | None
-    """For `run`, if nothing is said, that the node is in the graph."""
+    """By default, a `run` node must be in the graph."""
     cwd: Path | None
-    """Absolute; None: where the launcher was started."""
+    """An absolute path; None: the folder in which the launcher was started."""
 
     @property
     def command(self) -> str:
-        """What is run, for people."""
+        """The module or command, for display."""
         run = self.document.run
         if run is None:
             return " ".join(self.document.exec or ())
         return f"./{os.path.basename(run)}" if "/" in run else run  # noqa: PTH119
 
     def ros_args(self) -> list[str]:
-        """Return `--ros-args` and all that follows; empty for a command without parameters."""
+        """Return `--ros-args` and everything after it; empty for a command without parameters."""
         named = ["-r", f"__node:={self.name}"] if self.document.run is not None else []
         remaps = [
             part for old, new in self.document.remap.items() for part in ("-r", f"{old}:={new}")
@@ -71,7 +71,7 @@ class NodeSpec:
         return ["--ros-args", *arguments] if arguments else []
 
     def argv(self) -> list[str]:
-        """Return the full command line, as it is started without the spawn server."""
+        """Return the full command line for a start without the spawn server."""
         if self.document.run is not None:
             return [
                 sys.executable,
@@ -85,20 +85,20 @@ class NodeSpec:
 
 @dataclass(frozen=True)
 class Profile:
-    """A profile as it is about to be started."""
+    """A profile that is ready to be started."""
 
     path: Path
     """Absolute."""
     name: str
-    """File name without its ending: `09-brain`."""
+    """File name without its suffix: `09-brain`."""
     nodes: Mapping[str, NodeSpec]
-    """In the order of the file; only those that run on this hardware."""
+    """In file order; only those that run on this hardware."""
     document: ProfileDocument
-    """All else that it says: title, panels, devices and so on."""
+    """The rest of the profile: title, panels, devices and so on."""
     domain: int
-    """The one that counts, whoever chose it."""
+    """The effective domain, wherever it was set."""
     hardware: str
     used: tuple[str, ...] = ()
-    """The devices that its nodes name, in the order of the file."""
+    """The devices that its nodes refer to, in file order."""
     warnings: tuple[ProfileProblem, ...] = ()
-    """What is allowed, and probably not meant."""
+    """Things that are allowed but probably not intended."""

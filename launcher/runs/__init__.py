@@ -1,5 +1,5 @@
-"""What runs leave on disk for others to find: records, folders, and what was left behind.
+"""Traces of runs that others can find: records, folders, and processes left behind.
 
-From outside: `shared_domain` and `strays` for whoever starts something, `run_folder` and `record`
-for the supervisor, `found` for whoever looks for one.
+Code that starts a profile uses `shared_domain` and `strays`, the supervisor `run_folder` and
+`record`, and code that looks for sessions `found`.
 """

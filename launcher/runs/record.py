@@ -1,6 +1,6 @@
-"""What a run leaves on disk for others to find: who it is, whether it runs, what it has started.
+"""The record of a run on disk, for others to find: its session, and the processes it started.
 
-`<run dir>/<run id>/session.json` beside the control socket.
+It is `<run dir>/<run id>/session.json`, beside the control socket.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ if TYPE_CHECKING:
 RECORD_NAME = "session.json"
 _DRAFT_NAME = f"{RECORD_NAME}.new"
 _LOCKED_WITHIN_S = 20.0
-"""Whoever holds the lock for longer has been stopped in the middle of it."""
+"""A process that holds the lock for longer has been suspended while holding it."""
 
 
 @dataclass(frozen=True)
 class RunRecord:
-    """One run, as its folder tells."""
+    """One run, as recorded in its folder."""
 
     folder: Path
     session: SessionInfo
     nodes: tuple[str, ...]
     processes: Mapping[str, tuple[int, int]]
-    """Node to the number of its process and its start in ticks."""
+    """Node to the number and the start, in ticks, of its process."""
     drives: bool = False
-    """Whether any of them gives orders to the wheels."""
+    """Whether any of the nodes commands the wheels."""
 
     @property
     def runs(self) -> bool:
@@ -48,12 +48,12 @@ class RunRecord:
         return supervisor_runs(self.session.run_id)
 
     def collides(self, nodes: set[str], drives: bool) -> bool:
-        """Whether it and a run of these nodes would get in each other's way in one domain."""
+        """Whether it and a run of these nodes would interfere with each other in one domain."""
         unknown = not self.nodes
         return unknown or not nodes.isdisjoint(self.nodes) or (self.drives and drives)
 
     def write(self) -> None:
-        """Write it, all or nothing."""
+        """Write it atomically."""
         make_folder(self.folder)
         fields = {
             "session": pack_session(self.session),
@@ -68,7 +68,7 @@ class RunRecord:
         draft.replace(self.folder / RECORD_NAME)
 
     def remove(self) -> None:
-        """Take away what the run has put into its folder, and the folder if that was all."""
+        """Remove the files that the run made in its folder, and the folder if it is then empty."""
         with contextlib.suppress(OSError):
             descriptor = open_own_folder(self.folder)
             try:
@@ -78,13 +78,13 @@ class RunRecord:
 
 
 def read_records(run_dir: Path) -> list[RunRecord]:
-    """Return every run that has left a record, oldest first; broken records are passed over."""
+    """Return all runs that have a record, oldest first; broken records are skipped."""
     found = (read_record(path.parent) for path in sorted(run_dir.glob(f"*/{RECORD_NAME}")))
     return [record for record in found if record is not None]
 
 
 def read_record(folder: Path) -> RunRecord | None:
-    """Return the record of the run in this folder; None if there is none, or a broken one."""
+    """Return the record of the run in this folder; None if it is missing or broken."""
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
         fields = json.loads((folder / RECORD_NAME).read_text(encoding="utf-8"))
         processes = {
@@ -99,7 +99,7 @@ def read_record(folder: Path) -> RunRecord | None:
 
 @contextlib.contextmanager
 def exclusively(run_dir: Path, domain: int) -> Iterator[None]:
-    """Keep this user's other supervisors out of the domain, while one looks and settles there."""
+    """Keep this user's other supervisors out of a domain while one checks and enters it."""
     descriptor, lock = _lock(run_dir, domain)
     try:
         deadline = time.monotonic() + _LOCKED_WITHIN_S
@@ -111,9 +111,9 @@ def exclusively(run_dir: Path, domain: int) -> Iterator[None]:
 
 
 def lock_path() -> Path:
-    """Return the file that all of this user's supervisors lock, whatever their run directory.
+    """Return the file that all supervisors of this user lock, whatever their run directory.
 
-    In a user namespace, where anybody can be root, it is named by the user outside of it.
+    In a user namespace, where anybody can be root, its name has the uid from outside it.
     """
     user = os.getuid()
     for line in Path("/proc/self/uid_map").read_text(encoding="ascii").splitlines():
@@ -125,15 +125,15 @@ def lock_path() -> Path:
 
 
 def _lock(run_dir: Path, domain: int) -> tuple[int, Callable[[], None]]:
-    """Return a descriptor to be closed, and what locks it or raises."""
+    """Return a descriptor to be closed, and a function that locks it or raises."""
     with contextlib.suppress(OSError):
         descriptor = open_file(lock_path(), os.O_RDWR | os.O_CREAT)
         if os.fstat(descriptor).st_uid == os.getuid():
-            # One byte for each domain: a start in another need not wait.
+            # One byte for each domain: a start in another domain need not wait.
             exclusive = fcntl.LOCK_EX | fcntl.LOCK_NB
             return descriptor, lambda: fcntl.lockf(descriptor, exclusive, 1, domain)
         os.close(descriptor)
-    # Somebody else has planted it there: those of one run directory at least.
+    # Another user has created it: then at least lock within one run directory.
     folder = open_own_folder(run_dir)
     return folder, lambda: fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
 

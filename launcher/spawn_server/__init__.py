@@ -1,4 +1,4 @@
-"""The spawn server: a child of the supervisor from which every node is forked.
+"""The spawn server: a child of the supervisor from which all nodes are forked.
 
-The only part of the launcher that loads ROS; all others talk to it through `spawner`.
+It is the only part of the launcher that loads ROS; the others use it through `spawner`.
 """

@@ -1,7 +1,7 @@
-"""What the spawn server does when the supervisor is gone: end everything that is left of its run.
+"""Cleanup by the spawn server after the supervisor's death: it ends what is left of the run.
 
-The nodes themselves died with the supervisor (PDEATHSIG); their children, and whatever has left
-the nodes' groups, did not.
+The nodes themselves died with the supervisor (PDEATHSIG); their children and other processes that
+left the nodes' groups did not.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def end_survivors(run_id: str, groups: Iterable[int]) -> None:
-    """End every process in `groups`, and every one that is marked with `run_id`."""
+    """End all processes in `groups`, and all that are marked with `run_id`."""
     wanted = frozenset(groups)
     started = time.monotonic()
     told: set[int] = set()
@@ -41,7 +41,7 @@ def end_survivors(run_id: str, groups: Iterable[int]) -> None:
 
 
 def survivors(run_id: str, groups: frozenset[int]) -> list[Process]:
-    """Return the processes that are left of a run, without this one."""
+    """Return the remaining processes of a run, without this one."""
     return [
         process
         for process in processes()

@@ -1,4 +1,4 @@
-"""The supervisor's end of one spawn server: messages are sent in order, without blocking."""
+"""The supervisor's connection to one spawn server: sends messages in order, without blocking."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MAX_ANSWER = 65536
 
 
 class SpawnServerLink:
-    """One spawn server, as long as its socket is open."""
+    """The connection to one spawn server, for as long as its socket is open."""
 
     def __init__(
         self,
@@ -33,10 +33,10 @@ class SpawnServerLink:
         on_answer: Callable[[dict[str, Any]], None],
         on_end: Callable[[SpawnServerLink], None],
     ) -> None:
-        """`on_end` is called once, behind its last answer, when it has died."""
+        """`on_end` is called once, after its last answer, when the server has died."""
         self.handle = handle
         self.answered = False
-        """Whether it ever has."""
+        """Whether it has ever answered."""
         self.hung = False
         """Whether it was killed because it did not answer in time."""
         self._on_answer = on_answer
@@ -48,22 +48,22 @@ class SpawnServerLink:
         self._loop.add_reader(self._socket, self._read)
 
     def tell(self, message: Mapping[str, object], fds: Sequence[int] = ()) -> None:
-        """Send a message, and copies of descriptors with it, as soon as there is room.
+        """Send a message, with copies of descriptors, as soon as there is room.
 
         Raises:
-            OSError: if there is no memory or no descriptor left for it.
+            OSError: if memory or descriptors have run out.
         """
         self._outbox.append(_packed(message, fds))
         if self._again is None:
             self._write()
 
     def kill(self, *, hung: bool = False) -> None:
-        """End it at once; what it has answered by then is still read."""
+        """Kill the server; answers that it has already sent are still read."""
         self.hung = self.hung or hung
         send(self.handle, signal.SIGKILL)
 
     def drop(self) -> None:
-        """Let go of it."""
+        """Close the connection."""
         if self._again is not None:
             self._again.cancel()
         self._forget_outbox()
@@ -77,10 +77,10 @@ class SpawnServerLink:
                 socket.send_fds(self._socket, [b"."], self._outbox[0])
             except OSError as problem:
                 if problem.errno in _FULL:
-                    # It is busy importing: a matter of a second, as a rule.
+                    # It is busy importing, which usually takes a second.
                     self._again = self._loop.call_later(_FULL_S, self._write)
                 else:
-                    # It is dead, as the other direction will tell behind its last answers.
+                    # It is dead; the reading side will notice after its last answers.
                     self._forget_outbox()
                 return
             _close(self._outbox.popleft())
@@ -105,9 +105,9 @@ class SpawnServerLink:
 
 
 def _packed(message: Mapping[str, object], fds: Sequence[int]) -> list[int]:
-    """Return the message in memory of its own, then the copies.
+    """Return a descriptor of a memory file with the message, then the copies.
 
-    A packet of a socket is limited to some 200 kB, less than a command line may have.
+    A socket packet is limited to some 200 kB, less than a command line may need.
     """
     packed = [os.memfd_create("deck message")]
     try:

@@ -1,4 +1,4 @@
-"""How often messages of a topic come, counted by the probe without decoding them."""
+"""Message rates of topics, counted by the probe without decoding the messages."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 KEPT = 50
-"""So many messages may come between two looks; one of a camera comes every 30 to 100 ms."""
+"""Most messages between two checks; a camera sends one every 30 to 100 ms."""
 COUNTED = 5
-"""The rate is that of the last so many messages."""
+"""The rate is computed over this many recent messages."""
 
 
 class _Counter:
     def __init__(self, node: Node, topic: str, kind: type[Any]) -> None:
-        # What is published reliably and what is not: this hears both.
+        # This receives from reliable and best-effort publishers.
         quality = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._subscription = node.create_subscription(
             kind, topic, lambda _message: None, quality, raw=True
@@ -28,7 +28,7 @@ class _Counter:
         self._stamps: deque[float] = deque(maxlen=COUNTED)
 
     def rate_hz(self) -> float:
-        """Messages per second now; 0 until there are as many as are counted."""
+        """Current messages per second; 0 until enough have arrived to compute it."""
         subscription = self._subscription
         while True:
             with subscription.handle:
@@ -38,7 +38,7 @@ class _Counter:
             self._stamps.append(taken[1]["received_timestamp"] / 1e9)
         if len(self._stamps) < COUNTED:
             return 0.0
-        # Who has fallen silent does not keep the rate that it had.
+        # A publisher that has fallen silent does not keep its former rate.
         lasted = max(self._stamps[-1], time.time() - self._period()) - self._stamps[0]
         return (COUNTED - 1) / lasted if lasted > 0 else 0.0
 
@@ -47,15 +47,15 @@ class _Counter:
 
 
 class MessageRates:
-    """Counts the messages of a topic from the first request on."""
+    """Counts the messages of each topic from the first request for it on."""
 
     def __init__(self, node: Node) -> None:
-        """`node`: listens."""
+        """`node`: the node that subscribes."""
         self._node = node
         self._counters: dict[tuple[str, str], _Counter] = {}
 
     def rate_hz(self, topic: str, type_name: str) -> float | None:
-        """Return how often messages come, None where their type is not installed."""
+        """Return messages per second, None if their type is not installed."""
         counter = self._counters.get((topic, type_name))
         if counter is None:
             package, _, name = type_name.partition("/msg/")

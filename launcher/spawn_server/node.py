@@ -1,4 +1,4 @@
-"""How a freshly forked process becomes a node: its session, its descriptors, its program."""
+"""Turning a freshly forked process into a node: its session, descriptors and program."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import contextlib
 import importlib
 import io
 import os
-import runpy  # noqa: F401 - ahead, for all nodes that are forked
+import runpy  # noqa: F401 - imported ahead for all forked nodes
 import signal
 import sys
 from dataclasses import dataclass
@@ -25,33 +25,33 @@ if TYPE_CHECKING:
 ENDING = (signal.SIGINT, signal.SIGTERM)
 NOT_EXECUTABLE = 126
 NOT_FOUND = 127
-"""Exit codes as a shell gives them."""
+"""The exit codes that a shell uses."""
 
 
 @dataclass(frozen=True)
 class Birth:
-    """All that a forked process needs to know to become its node."""
+    """Everything a forked process needs to know to become its node."""
 
     kind: str
     """`module`: run here, in the warm interpreter; `exec`: a program; `probe`: the graph probe."""
     name: str
     title: str
     argv: tuple[str, ...]
-    """For `module` the module or file with its arguments, for `exec` the command line."""
+    """For `module`: the module or file with its arguments; for `exec`: the command line."""
     env: dict[str, str | None]
-    """What differs from the server's environment; None unsets."""
+    """Changes to the server's environment; None unsets."""
     cwd: str
     fds: tuple[int, ...]
-    """Stdout and stderr, or stdin, stdout and stderr."""
+    """The descriptors for stdout and stderr, or for stdin, stdout and stderr."""
     supervisor: int
     shared: SharedModules
-    """What was imported of the project's own modules."""
+    """The project's own modules that have been imported."""
 
     @classmethod
     def from_request(
         cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload
     ) -> Birth:
-        """Read a request; where the imports have failed, modules start cold."""
+        """Read a request; if the imports have failed, modules are started cold."""
         kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
         if kind == "module" and preload.broken:
             kind, argv = "exec", (sys.executable, node_program.__file__, *argv)
@@ -69,7 +69,7 @@ class Birth:
 
 
 def become(birth: Birth) -> None:
-    """Be the node, to its end; an exception of the node's ends this process as it ought to."""
+    """Run as the node until it ends; an exception in the node ends this process as usual."""
     os.setsid()
     if not die_with_parent(birth.supervisor):
         os._exit(1)
@@ -97,7 +97,7 @@ def become(birth: Birth) -> None:
 
 
 def _reset_signals() -> None:
-    """Undo what this process was forked with, ignored signals above all: exec would keep them."""
+    """Reset inherited signal handling, above all ignored signals, which exec would preserve."""
     for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}:
         if signal.getsignal(number) is not signal.SIG_DFL:
             with contextlib.suppress(OSError, ValueError):
@@ -144,7 +144,7 @@ def _give_up(word: str, code: int) -> None:
 
 
 def _renew_streams() -> None:
-    """Make stdin, stdout and stderr anew, unbuffered as under `python -u`."""
+    """Reopen stdin, stdout and stderr, unbuffered as under `python -u`."""
     stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115
     sys.stdin = sys.__stdin__ = stdin  # type: ignore[misc]
     sys.stdout = sys.__stdout__ = _unbuffered(1)  # type: ignore[misc]
@@ -162,8 +162,8 @@ def _unbuffered(fd: int) -> io.TextIOWrapper:
 
 
 def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
-    """Be the program that `launcher.node_program` would start anew."""
-    # Python's own defaults at start, undone by `_reset_signals`.
+    """Run as the program that `launcher.node_program` would start in a new interpreter."""
+    # Python's defaults at startup, which `_reset_signals` has undone.
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     node_program.prepare(argv)
@@ -171,10 +171,10 @@ def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
     shared.renew(argv[0])
     _hear_signals()
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
-        # Not before: interrupted until here, it ends without a traceback.
+        # Not earlier: interrupted before this point, it ends without a traceback.
         signal.signal(signal.SIGINT, signal.default_int_handler)
     if "numpy.random" in sys.modules:
-        # `random` reseeds itself after a fork, numpy's old global generator does not.
+        # `random` reseeds itself after a fork; numpy's legacy global generator does not.
         sys.modules["numpy.random"].seed()
     leave_libraries_alone_at_exit()
     node_program.run(argv[0])

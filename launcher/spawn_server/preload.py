@@ -1,6 +1,6 @@
-"""What the spawn server imports before it forks nodes, so that they do not have to.
+"""The imports that the spawn server makes before it forks nodes, so that they need not.
 
-No context, no node, no thread of ours: a fork copies only the thread that forks.
+It creates no context, node or thread: a fork copies only the thread that forks.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ _INTERFACES = (
 )
 
 IDLE_AFTER_S = 0.3
-"""Longer than the gaps in a start, when the processors are for others."""
+"""Longer than the pauses during a start, when the CPU is needed by others."""
 
 
 class Preload:
-    """The imports, one step at a time, so that the server can answer in between."""
+    """The imports, one step at a time, so that the server can handle requests in between."""
 
     def __init__(self, packages: Iterable[str] = (), *, cold: bool) -> None:
-        """`packages`: whose shared modules to import too; `cold`: nothing is to be imported."""
+        """`packages`: import their shared modules too; `cold`: import nothing."""
         self.done = cold
         self.broken = "" if not cold else "cold"
         """Why warm nodes cannot be forked; empty if they can."""
@@ -60,13 +60,13 @@ class Preload:
 
     @property
     def wait_s(self) -> float | None:
-        """How long to wait for a request before the next step; None: there is no other step."""
+        """How long to wait for a request before the next step; None if there is no next step."""
         if not self.done:
             return 0.0
         return None if self._idle else IDLE_AFTER_S
 
     def also(self, packages: Iterable[str]) -> None:
-        """Import then what these packages name."""
+        """Add the shared modules of these packages to the imports."""
         new = [package for package in packages if package not in self._packages]
         if new and not self.broken:
             self._packages.update(new)
@@ -86,18 +86,18 @@ class Preload:
             self.broken = f"{type(problem).__name__}: {problem}"
 
     def _all_steps(self) -> Iterator[str]:
-        # Next to nothing of what is imported is garbage; looking for it would take 50 ms.
+        # Imports create hardly any garbage; looking for it would take 50 ms.
         gc.disable()
         for name in _FIRST:
             importlib.import_module(name)
             yield name
         importlib.import_module("rclpy").get_rmw_implementation_identifier()
         for name in _INTERFACES:
-            # Not every installation has every package.
+            # Not every package is installed everywhere.
             with contextlib.suppress(ImportError):
                 _load_types(name)
             yield name
-        # The libraries below rclpy have threads of their own, which a node does not miss.
+        # The libraries below rclpy have their own threads, which a node does not need.
         warnings.filterwarnings("ignore", message=".*multi-threaded.*fork")
         yield _freeze()
 
@@ -113,15 +113,16 @@ class Preload:
 
 
 def _find_callers() -> None:
-    """Have `inspect` note where every module is, as it does at its first call.
+    """Make `inspect` record where every module is, as it does at its first call.
 
-    rclpy's loggers ask it for the caller's place: 20 ms of a node's start, once for all here.
+    rclpy's loggers ask it for the caller's position, which costs 20 ms of a node's start; here it
+    is done once for all.
     """
     inspect.getmodule(inspect.currentframe())
 
 
 def _freeze() -> str:
-    """Keep the garbage collector's hands, and with them its marks, off all there is."""
+    """Exclude all current objects from garbage collection, which would write to shared pages."""
     _find_callers()
     gc.freeze()
     gc.enable()
@@ -129,9 +130,9 @@ def _freeze() -> str:
 
 
 def _load_types(module_name: str) -> None:
-    """Import a module of interfaces with the libraries that rcl and Fast DDS load for them.
+    """Import a module of interfaces, with the libraries that rcl and Fast DDS load for it.
 
-    They are loaded and relocated once, in pages that all nodes then share.
+    These are then loaded and relocated once, in pages that all nodes share.
     """
     module = importlib.import_module(module_name)
     for interface in tuple(vars(module).values()):

@@ -1,9 +1,10 @@
-"""The probe: a short-lived process that tells which nodes, topics and services the graph has.
+"""The probe: a short-lived process that reports which nodes, topics and services exist.
 
-The supervisor has no rclpy. While some node's readiness is awaited, this process, forked from
-the spawn server, watches the graph for it: a line of JSON on stdout for every change. `met`: the
-conditions that hold now, by their position in the list it was given; `seen`: of topics that are
-published but otherwise than awaited `[position, types, messages per second or null]`.
+The supervisor does not load rclpy. While it waits for a node to become ready, this process, forked
+from the spawn server, watches the graph for it and writes a line of JSON to stdout for every
+change. `met` lists the conditions that hold now, by their position in the list it was given; `seen`
+has `[position, types, messages per second or null]` for each topic that is published but not as
+required.
 """
 
 from __future__ import annotations
@@ -23,17 +24,17 @@ if TYPE_CHECKING:
     from launcher.spawn_server.message_rates import MessageRates
 
 EAGER_S = 10.0
-"""For so long it looks often: a start is under way."""
+"""It checks often for this long, because a start is in progress."""
 EAGER_PERIOD_S = 0.03
 CALM_PERIOD_S = 0.25
 RATES_S = 1.0
-"""A rate that is too low is told no more often than this."""
+"""A rate that is too low is reported no more often than this."""
 ENOUGH = 0.9
-"""Of the rate awaited: a timer of 5 Hz never comes at 5 Hz quite."""
+"""Fraction of the required rate that is enough: a 5 Hz timer never quite reaches 5 Hz."""
 
 
 class _Wanted(NamedTuple):
-    """As `launcher.supervisor.readiness.Condition`."""
+    """The counterpart of `launcher.supervisor.readiness.ReadyCondition`."""
 
     kind: str
     name: str
@@ -47,12 +48,12 @@ class _Report:
     seen: list[tuple[int, list[str], float | None]] = field(default_factory=list)
 
     def differs(self, other: _Report) -> bool:
-        """Whether more differs than rates."""
+        """Whether anything but the rates differs."""
         return self.met != other.met or [x[:2] for x in self.seen] != [x[:2] for x in other.seen]
 
 
 def probe(argv: Sequence[str]) -> None:
-    """Watch until stdin ends; `argv` is one JSON list of `[kind, name, type, rate]` conditions."""
+    """Watch until stdin ends; `argv` is a single JSON list of `[kind, name, type, rate]`."""
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
@@ -60,7 +61,7 @@ def probe(argv: Sequence[str]) -> None:
 
     conditions = [_Wanted(*fields) for fields in json.loads(argv[0])]
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-    # A leading underscore hides a node from people's lists.
+    # A leading underscore hides a node from the usual lists.
     node = rclpy.create_node(
         f"_deck_probe_{os.getpid()}",
         use_global_arguments=False,
@@ -81,7 +82,7 @@ def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates) ->
     while True:
         now = time.monotonic()
         report = _look(node, conditions, arrivals)
-        # A rate is never quite the same; the rest is told at once.
+        # Rates change all the time; all else is reported at once.
         if told is None or report.differs(told) or (report != told and now > told_at + RATES_S):
             line = {"met": report.met, "seen": report.seen}
             os.write(1, json.dumps(line).encode() + b"\n")

@@ -1,17 +1,17 @@
-"""The spawn server: a child of the supervisor from which every node is forked.
+"""The spawn server: a child of the supervisor from which all nodes are forked.
 
-The first is forked from the supervisor before that has imported anything, later ones are started
-as `python -m launcher.spawn_server.server FD PID MODE ROOM`: FD is its end of a seqpacket socket,
-PID the supervisor, MODE `warm` or `cold`, and ROOM mere length for titles
+The first one is forked from the supervisor before that has imported anything; later ones are
+started as `python -m launcher.spawn_server.server FD PID MODE ROOM`: FD is its end of a seqpacket
+socket, PID the supervisor, MODE `warm` or `cold`, and ROOM a filler that makes room for titles
 (`launcher.processes.title`).
 
-One message is one packet of descriptors: first that of a memory file with a JSON object, then, of
-a request, the new process's stdin (optional), stdout and stderr. The answer is a packet of JSON,
-`{"id": ..., "pid": ..., "started": ...}`, its start in ticks, or `{"id": ..., "error": ...}`. A
-node is forked through an intermediate that exits, so that it becomes the supervisor's own child.
+A message is one packet of descriptors: first that of a memory file with a JSON object, then, for a
+request, the new process's stdin (optional), stdout and stderr. The answer is a packet of JSON,
+`{"id": ..., "pid": ..., "started": ...}` with the start in ticks, or `{"id": ..., "error": ...}`. A
+node is forked by an intermediate process that exits, so that it becomes a child of the supervisor.
 
-At the end of the socket the supervisor is gone, and this process, which outlives it, ends
-whatever it has left running (`launcher.spawn_server.cleanup`).
+When the socket is closed the supervisor is gone, and this process, which outlives it, ends
+everything it has left running (`launcher.spawn_server.cleanup`).
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ if TYPE_CHECKING:
 
 MAX_FDS = 4
 COLLECT_EVERY_S = 0.05
-"""While there are intermediates that have not been seen to exit."""
+"""How often to check while intermediate processes have not been reaped yet."""
 
 
 class SpawnServer:
-    """Answers the supervisor's requests until the supervisor has gone."""
+    """Answers the supervisor's requests until the supervisor is gone."""
 
     def __init__(self, link: socket.socket, supervisor: int, preload: Preload) -> None:
-        """`preload`: what is still to be imported before warm nodes can be forked."""
+        """`preload`: the imports to complete before warm nodes can be forked."""
         self._link = link
         self._supervisor = supervisor
         self._preload = preload
@@ -51,10 +51,10 @@ class SpawnServer:
         self.groups: set[int] = set()
 
     def serve(self) -> Callable[[], None] | None:
-        """Serve to the end of the socket.
+        """Serve until the socket is closed.
 
         Returns:
-            None at the end; in a process that was forked here, what it has to do now.
+            None at the end; in a forked process, the function it has to run next.
         """
         while True:
             if self._preload.done and self._waiting:
@@ -71,7 +71,7 @@ class SpawnServer:
                 return task
 
     def _request_is_there(self) -> bool:
-        """Wait for a request, but do not wait while there is something to be imported."""
+        """Wait for a request, but not while there are imports left."""
         timeout = self._preload.wait_s
         if self._intermediates:
             self._collect()
@@ -122,9 +122,9 @@ def _read(fd: int) -> dict[str, Any]:
 
 
 def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[], None]:
-    """Fork the node, answer for it, and exit: what comes after runs in the node alone.
+    """Fork the node, answer the request, and exit; only the node returns from this function.
 
-    The server does not wait for that: meanwhile it forks for the next request.
+    The server does not wait for this: meanwhile it handles the next request.
     """
     try:
         pid = os.fork()
@@ -140,20 +140,20 @@ def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[],
 
 
 def _answer(link: socket.socket, answer: dict[str, Any]) -> None:
-    # Without a supervisor nobody waits for it, and the next read says so.
+    # If the supervisor is gone nobody waits for the answer, and the next read shows it.
     with contextlib.suppress(OSError):
         link.send(json.dumps(answer).encode())
 
 
 def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold: bool) -> None:
-    """Serve; at the end of the socket end what is left; in a forked node be the node.
+    """Serve; when the socket is closed, end what is left. In a forked node, run the node.
 
-    `packages`: those whose shared modules the nodes to come will need, as far as that is known.
+    `packages`: those whose shared modules the nodes will need, as far as is known.
     """
-    # Whoever started the supervisor may have had these ignored, and a terminal is none of ours.
+    # Not inherited: the supervisor ends this process, a signal from a terminal does not.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    # A node inherits this: one that is asked to end at once must not take that for ignored.
+    # Nodes inherit this: a node that is told to end at once must not find the signal ignored.
     signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     server = SpawnServer(link, supervisor, Preload(packages, cold=cold))
     task = server.serve()
@@ -164,7 +164,7 @@ def serve(link: socket.socket, supervisor: int, packages: Iterable[str], *, cold
 
 
 def main() -> None:
-    """Serve on the socket that the arguments tell of."""
+    """Serve on the socket given in the arguments."""
     link = socket.socket(fileno=int(sys.argv[1]))
     link.set_inheritable(False)
     serve(link, int(sys.argv[2]), (), cold=sys.argv[3] == "cold")

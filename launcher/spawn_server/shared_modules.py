@@ -1,9 +1,9 @@
 """Modules that many nodes of a project share, imported once for all of them.
 
-A package names them itself in its `__init__.py`: in `__preload__ = ("_life", "_topics")` what
-nearly every node needs, in `__preload_idle__` what some need, for when there is time. They are the
-user's to edit at any time, so a node that is forked later looks whether they are still as they
-were, and imports them anew if not.
+A package lists them in its `__init__.py`: in `__preload__ = ("_life", "_topics")` those that nearly
+every node needs, in `__preload_idle__` those that some need, imported when there is time. The user
+may edit them at any time, so a node that is forked later checks whether they are unchanged, and
+imports them again if not.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 _Stamp = tuple[str, int, int]
-"""File, time of its last change in nanoseconds, size."""
+"""A file, its modification time in nanoseconds, and its size."""
 
 
 class SharedModules:
-    """What has been imported of the project's own packages."""
+    """The modules of the project's packages that have been imported."""
 
     def __init__(self) -> None:
         self._packages: dict[str, dict[str, _Stamp]] = {}
 
     def load(self, package: str) -> Iterator[str]:
-        """Import what `package` says nearly every node needs, step by step."""
+        """Import, step by step, the modules that `package` lists for nearly every node."""
         return self._load(package, "__preload__")
 
     def load_idly(self, package: str) -> Iterator[str]:
-        """Import what `package` says some nodes need, step by step."""
+        """Import, step by step, the modules that `package` lists for some nodes."""
         return self._load(package, "__preload_idle__")
 
     def _load(self, package: str, attribute: str) -> Iterator[str]:
-        """Leave out what does not go."""
+        """Skip modules that cannot be imported."""
         stamps = self._packages.setdefault(package, {})
         with contextlib.suppress(Exception):
             with _noting(stamps):
@@ -51,10 +51,10 @@ class SharedModules:
                 yield name
 
     def renew(self, module: str) -> None:
-        """In a forked node: drop what is no longer as it was imported.
+        """In a forked node: drop modules that have changed since they were imported.
 
-        The `__init__` of the package that `module`, the node's own, is in runs again: it may look
-        at the command line. A node that is not Deck's may mean another package than Deck's.
+        The `__init__` of the package of `module`, the node's own module, runs again, because it may
+        look at the command line. A node that is not Deck's may mean another package of that name.
         """
         if not is_ours(module):
             for package in _packages_of_deck():
@@ -71,7 +71,7 @@ class SharedModules:
 
 
 def _packages_of_deck() -> list[str]:
-    """Return those that have been imported here, for whatever reason."""
+    """Return the packages that have been imported here, for whatever reason."""
     return [
         name
         for name in os.listdir(INSTALLATION)  # noqa: PTH208
@@ -86,7 +86,7 @@ def _forget(package: str) -> None:
 
 @contextlib.contextmanager
 def _noting(stamps: dict[str, _Stamp]) -> Iterator[None]:
-    """Note how the project's modules were that are imported meanwhile, even if the last fails."""
+    """Record the state of the project's modules imported meanwhile, even if the last one fails."""
     before = set(sys.modules)
     try:
         yield
@@ -119,7 +119,7 @@ def _changed(stamp: _Stamp) -> bool:
 
 
 def _elsewhere(package: str) -> bool:
-    """Whether Python, with this node's path, would find another package of that name."""
+    """Whether Python, with this node's path, finds another package of that name."""
     loaded = sys.modules.pop(package)
     try:
         spec = importlib.util.find_spec(package)

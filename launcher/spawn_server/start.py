@@ -1,4 +1,4 @@
-"""Starting the spawn server: kept apart and light, because the supervisor does it first thing."""
+"""Starting the spawn server: separate and light, because the supervisor does it first."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SpawnServerHandle:
-    """A spawn server that runs."""
+    """A running spawn server."""
 
     link: socket.socket
     pid: int
@@ -27,12 +27,12 @@ class SpawnServerHandle:
 
 
 def fork_spawn_server(run_id: str, packages: Sequence[str]) -> SpawnServerHandle:
-    """Fork a warm one from this process, whose parent of nodes it then is.
+    """Fork a warm server from this process, which becomes the parent of its nodes.
 
-    It begins with what nodes of `packages` share, without being told to by the plan.
+    It begins with the shared modules of `packages`, before there is a plan.
 
-    Quicker than to start another Python, and possible only while there is nothing else in this
-    one. In the server, and in all that is forked from it, this function does not return.
+    This is faster than starting another Python, and only possible while this one has done nothing
+    else. In the server, and in everything forked from it, this function does not return.
     """
     supervisor = os.getpid()
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -55,7 +55,7 @@ def fork_spawn_server(run_id: str, packages: Sequence[str]) -> SpawnServerHandle
 
 
 def start_spawn_server(run_id: str, *, warm: bool) -> SpawnServerHandle:
-    """Start one as a program, in a session of its own; this process is its nodes' supervisor."""
+    """Start one as a program, in its own session; this process is its nodes' supervisor."""
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     theirs.set_inheritable(True)
     mode = "warm" if warm else "cold"

@@ -1,5 +1,5 @@
-"""The supervisor: a process that starts a session's nodes, watches them, and ends them.
+"""The supervisor: the process that starts a session's nodes, monitors them, and ends them.
 
-From outside: `plan`, what it is given, and `python -m launcher.supervisor`; all else runs in that
-process only.
+Other packages use `plan`, its input, and `python -m launcher.supervisor`; everything else runs only
+in that process.
 """

@@ -1,9 +1,9 @@
-"""The supervisor: starts a session's nodes, watches them, and ends them.
+"""The supervisor: starts a session's nodes, monitors them, and ends them.
 
-`python -m launcher.supervisor PACKAGE... ROOM` is started by `launcher.client.client.launch`; it
-may be told beforehand the packages that its nodes will be from. Its plan comes as one line on
-stdin, which then stays open as long as the client lives: in the foreground, its end is the
-end of the session. It answers with one line on stdout: where to connect, or why not.
+`python -m launcher.supervisor PACKAGE... ROOM` is started by `launcher.client.client.launch`.
+PACKAGE names packages that its nodes will probably come from. It reads its plan as one line from
+stdin, which then stays open as long as the client lives: a foreground session ends when it is
+closed. It answers with one line on stdout: where to connect, or why it cannot run.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from launcher.supervisor.guardian import fork_under_guardian
 
 def main() -> None:
     """Run one session."""
-    # It waits for the answer to its plan; the parent will be the guardian.
+    # The client waits for the answer to its plan; the parent will become the guardian.
     client = os.getppid()
     fork_under_guardian()
     become_subreaper()
     run_id = new_run_id()
-    # First of all: what it imports takes longer than all that is done here meanwhile.
+    # This comes first: its imports take longer than everything done here in the meantime.
     spawn_server = fork_spawn_server(run_id, sys.argv[1:-1])
 
     import asyncio

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def with_needs(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return `names` with all that they need, however far, each after what it needs itself."""
+    """Return `names` and everything they need, directly or not, in starting order."""
     ordered: list[str] = []
 
     def visit(name: str) -> None:
@@ -24,7 +24,7 @@ def with_needs(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list
 
 
 def stop_waves(names: Iterable[str], needs: Mapping[str, Sequence[str]]) -> list[list[str]]:
-    """Group `names` so that none is stopped before those of them that need it."""
+    """Group `names` so that none is stopped before the others that need it."""
     left = list(names)
     waves = []
     while left:

@@ -1,8 +1,8 @@
-"""The guardian: the supervisor's parent, which outlives it and ends whatever it has left running.
+"""The guardian: the supervisor's parent, which outlives it and ends everything it left running.
 
-The supervisor adopts what its nodes have started and let go of. When it is killed the kernel hands
-all of that to its own nearest ancestor that adopts: this process. So nothing eludes it, be it in a
-session of its own, daemonised, without a variable in its environment.
+The supervisor adopts processes that its nodes have started and abandoned. When it is killed, the
+kernel gives them to its nearest ancestor that is a subreaper: this process. So none escapes, not
+even a daemon in its own session and without our variables in its environment.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _LOOK_EVERY_S = 0.05
 
 
 def fork_under_guardian() -> None:
-    """Become the guardian of a new process; in that one, which is to be the supervisor, return."""
+    """Fork: this process becomes the guardian; the child, the future supervisor, returns."""
     become_subreaper()
     supervisor = os.fork()
     if supervisor == 0:
@@ -35,14 +35,14 @@ def fork_under_guardian() -> None:
 
 
 def _guard(supervisor: int) -> NoReturn:
-    # What is sent to all of a service or a terminal is for the supervisor to obey.
+    # Signals to all processes of a service or terminal are for the supervisor to act on.
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     show_title("deck: guardian")
     show_name("deck guardian")
     nowhere = os.open(os.devnull, os.O_RDWR)
     for fd in range(3):
-        # Whoever waits for the end of the supervisor's output must not wait for us.
+        # A reader that waits for the end of the supervisor's output must not wait for us.
         os.dup2(nowhere, fd)
     os.chdir("/")
     while os.wait()[0] != supervisor:
@@ -69,7 +69,7 @@ def _end_all() -> None:
 
 
 def _descendants() -> list[Process]:
-    """Return all that lives and has this process among its forebears."""
+    """Return all living descendants of this process."""
     children: dict[int, list[Process]] = {}
     for process in processes():
         children.setdefault(process.parent, []).append(process)

@@ -1,4 +1,4 @@
-"""What a node's life needs of the session around it, and of the process started for it."""
+"""The interfaces that a node uses: the session it belongs to, and the process started for it."""
 
 from __future__ import annotations
 
@@ -18,42 +18,42 @@ if TYPE_CHECKING:
 
 
 class RunningProcess(Protocol):
-    """A process that was started for a node, with all that descends from it."""
+    """A process that was started for a node, with all its descendants."""
 
     pid: int
     ended: asyncio.Future[Exit]
 
     def left(self) -> Sequence[Process]:
-        """Return those of them that live."""
+        """Return those of them that are alive."""
 
     def signal(self, process: Process, number: Signals) -> None:
         """Send one of them a signal."""
 
     async def close(self) -> None:
-        """Nothing of it is left: read what it has still written, and let go of it."""
+        """Read its last output and release it; none of its processes is left."""
 
 
 class NodeContext(Protocol):
-    """What a node's life needs of the session around it."""
+    """The part of the session that a node uses."""
 
     @property
     def clock(self) -> Clock:
-        """What the waits between two tries are measured by."""
+        """The clock for the waits between two attempts."""
 
     async def launch(self, plan: NodePlan) -> RunningProcess:
         """Start the node's process; raises `SpawnError`."""
 
     async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
-        """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
+        """Return once the condition holds; `tell` gets other states; raises `UnwatchableError`."""
 
     def missing(self, plan: NodePlan) -> str:
-        """Say which needed nodes are not there yet; empty if all are."""
+        """Say which needed nodes are not ready yet; empty if all are."""
 
     def last_words(self, name: str) -> str:
-        """Return what the node said last."""
+        """Return the last words of the node."""
 
     def say(self, name: str, severity: Severity, words: str) -> None:
         """Add a line about the node to its log."""
 
     def changed(self, name: str, state: NodeState) -> None:
-        """The status of the node of this name has changed."""
+        """Note that the status of this node has changed."""

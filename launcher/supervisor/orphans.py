@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 
 class Orphans:
-    """What is left of a run when its nodes are gone; fits `launcher.processes.stop.Target`."""
+    """The remaining processes of a run whose nodes are gone; a `launcher.processes.stop.Target`."""
 
     def __init__(self, run_id: str, spawner: Spawner) -> None:
-        """Its spawn server is needed to the last."""
+        """The spawn server is not an orphan: it is needed to the end."""
         self._run_id = run_id
         self._spawner = spawner
 
     def left(self) -> Sequence[Process]:
-        """Return the processes that carry the run's mark, and the children we have adopted."""
+        """Return the processes with the run's mark, and the children we have adopted."""
         us = os.getpid()
         return [
             process
@@ -37,7 +37,7 @@ class Orphans:
         ]
 
     def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal, and wake it so that it hears it."""
+        """Send one of them a signal, and wake it so that it handles it."""
         send(process, number, signal.SIGCONT)
 
     def _marked(self, process: Process) -> bool:

@@ -1,6 +1,6 @@
-"""What a supervisor is given to run: plain data, so that it does not have to read profiles itself.
+"""The plan for a supervisor: plain data, so that it does not have to read profiles itself.
 
-The client has read and validated the profile; the supervisor starts while it does, and gets
+The client reads and validates the profile while the supervisor is already starting, and passes it
 the plan as one line of JSON.
 """
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from launcher.profile.load import NodeSpec, Profile
 
 _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTNG_", "AMENT_")
-"""Variables that count when an interpreter or a library starts: a fork would come too late."""
+"""Variables read when an interpreter or a library is loaded: after a fork it is too late."""
 
 _BOOTSTRAP_DONE = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
-"""Set by the ROS wheels once LD_LIBRARY_PATH leads into this environment."""
+"""Set by the ROS wheels once LD_LIBRARY_PATH points into this environment."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class NodePlan:
     name: str
     command: str
     argv: tuple[str, ...]
-    """The full command line, as it is without the spawn server."""
+    """The full command line for a start without the spawn server."""
     module: tuple[str, ...] = ()
-    """The module, or file, and its arguments if it is to be forked warm, else empty."""
+    """The module or file with its arguments if it is to be forked warm, else empty."""
     env: dict[str, str | None] = field(default_factory=dict)
-    """What differs from the supervisor's environment; None unsets."""
+    """Changes to the supervisor's environment; None unsets."""
     cwd: str = "/"
     needs: tuple[str, ...] = ()
     ready: ReadyCondition | None = None
@@ -58,7 +58,7 @@ class Plan:
     name: str
     nodes: tuple[NodePlan, ...]
     env: dict[str, str | None]
-    """What differs for every node, and for the probe: domain, discovery, language."""
+    """Changes for all nodes and the probe: domain, discovery, language."""
     run_dir: str
     log_dir: str
     title: dict[str, str] = field(default_factory=dict)
@@ -76,12 +76,12 @@ class Plan:
 
     @property
     def drives(self) -> bool:
-        """Whether anything gives orders to the wheels."""
+        """Whether any node commands the wheels."""
         return any(drives(node.command) for node in self.nodes)
 
     @property
     def warm(self) -> bool:
-        """Whether anything is to be forked warm."""
+        """Whether any node is to be forked warm."""
         return any(node.module for node in self.nodes)
 
     @property
@@ -96,7 +96,7 @@ class Plan:
 
     @classmethod
     def from_json(cls, line: str | bytes) -> Plan:
-        """Read what `to_json` has written."""
+        """Read the output of `to_json`."""
         fields: dict[str, Any] = json.loads(line)
         fields["nodes"] = tuple(_node_from(node) for node in fields["nodes"])
         fields["panels"] = tuple(fields["panels"])
@@ -116,7 +116,7 @@ def _node_from(fields: dict[str, Any]) -> NodePlan:
 def plan_of(
     profile: Profile, *, run_dir: str, log_dir: str, foreground: bool, node_lang: str
 ) -> Plan:
-    """Make the plan of a profile for this machine, environment and working directory."""
+    """Make the plan of a profile for this machine, environment and current folder."""
     return Plan(
         profile=str(profile.path),
         name=profile.name,
@@ -142,7 +142,7 @@ def _common_env(profile: Profile, node_lang: str) -> dict[str, str | None]:
         if wanted.get(name) != os.environ.get(name)
     }
     env.update(settings_of_discovery(os.environ, profile.document.discovery))
-    # One format of log lines, one that can be read back.
+    # A single format of log lines, which can be parsed.
     env["RCUTILS_CONSOLE_OUTPUT_FORMAT"] = None
     env["RCUTILS_COLORIZED_OUTPUT"] = "0"
     env["PYTHONUNBUFFERED"] = "1"
@@ -180,9 +180,10 @@ def _node_plan(node: NodeSpec) -> NodePlan:
 
 
 def _foreign_env() -> Mapping[str, str | None]:
-    """Return what a program of another environment must not inherit from the ROS wheels.
+    """Return changes for programs of another environment, which must not inherit the ROS wheels'.
 
-    Their libraries would be found before its own; a Python of this environment finds them again.
+    They would find the wheels' libraries before their own; a Python of this environment sets the
+    variables again.
     """
     if _BOOTSTRAP_DONE not in os.environ:
         return {}

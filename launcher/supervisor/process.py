@@ -1,4 +1,4 @@
-"""A node's process with all that descends from it: started, found, signalled, released."""
+"""A node's process with all its descendants: starting, finding, signalling, releasing."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from launcher.supervisor.plan import NodePlan, Plan
 
 _FRESH_S = 0.02
-"""A scan of all processes this old is good for the other nodes that stop at the same time."""
+"""A scan of all processes of at most this age also serves other nodes that are stopping."""
 
 
 class ProcessScan:
-    """The processes of all nodes, looked up only as often as useful."""
+    """The processes of all nodes, scanned only as often as useful."""
 
     def __init__(self, members: Members) -> None:
         self.members = members
@@ -44,12 +44,12 @@ class ProcessScan:
         return self._found
 
     def forget(self) -> None:
-        """What is known is out of date: something was started, or has ended."""
+        """Drop the cached scan: a process was started or has ended."""
         self._at = float("-inf")
 
 
 class NodeProcess:
-    """One process that was started for a node; fits `RunningProcess`."""
+    """One process that was started for a node; a `RunningProcess`."""
 
     def __init__(
         self, name: str, born: Born, launcher: ProcessLauncher, readers: Sequence[PipeReader]
@@ -64,15 +64,15 @@ class NodeProcess:
         self._readers = readers
 
     def left(self) -> Sequence[Process]:
-        """Return its processes that live."""
+        """Return its living processes."""
         return self._launcher.scan.look().get(self.name, ())
 
     def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal, and wake it, which may be suspended, so that it hears it."""
+        """Send one of them a signal, and wake it if it is suspended, so that it handles it."""
         send(process, number, signal.SIGCONT)
 
     async def close(self) -> None:
-        """Read what it has still written, and forget it."""
+        """Read its last output and forget it."""
         for reader in self._readers:
             reader.close()
         self._launcher.sweep_segments(self.name)
@@ -86,7 +86,7 @@ class NodeProcess:
 
 
 class ProcessLauncher:
-    """Starts nodes' processes, their pipes read into the log."""
+    """Starts processes for nodes, and reads their output into the log."""
 
     def __init__(
         self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, log: SessionLog
@@ -98,15 +98,16 @@ class ProcessLauncher:
         self._log = log
         self._segments: dict[str, set[str]] = {}
         self._burnt = BurntPorts()
-        # Before the probe joins: it would be shifted, and shift the nodes.
+        # This must happen before the probe joins: its port would be shifted, and those of the
+        # nodes.
         self._burnt.avoid_others(plan.domain)
 
     def note_segments(self, name: str, pids: Iterable[int]) -> None:
-        """Note which shared memory a node's processes hold: of a killed one nobody could tell."""
+        """Note the shared memory that a node's processes hold: after a kill it is unknown."""
         self._segments.setdefault(name, set()).update(*map(held_segments, pids))
 
     def sweep_segments(self, name: str) -> None:
-        """Remove the shared memory that a node has left behind, and let nobody take its place."""
+        """Remove the shared memory that a node left, and keep others from taking its ports."""
         self._burnt.keep(port_numbers(sweep(self._segments.pop(name, ()))))
 
     async def launch(self, node: NodePlan) -> NodeProcess:
@@ -121,7 +122,7 @@ class ProcessLauncher:
         )
         out, out_write = node_pipe()
         err, err_write = node_pipe()
-        # Read from the first moment: what a process says before it is known is its own too.
+        # Read from the beginning: output from before the process is known is its own too.
         readers = [
             self._log.read(node.name, out, "stdout"),
             self._log.read(node.name, err, "stderr"),

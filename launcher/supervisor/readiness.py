@@ -1,7 +1,7 @@
-"""Waiting until a node can be used: its name, a topic or a service is in the ROS graph.
+"""Waiting until a node can be used, that is, its name, topic or service is in the ROS graph.
 
-The graph is watched by a probe process (`launcher.spawn_server.probe`) that lives only while
-somebody waits.
+The graph is watched by a probe process (`launcher.spawn_server.probe`) that exists only while a
+node is waited for.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ if TYPE_CHECKING:
     from launcher.spawn_server.spawner import Born, Spawner
 
 MAX_PROBES = 3
-"""So many probes may die in a row before the graph counts as one that cannot be watched."""
+"""After this many probes have died in a row, the graph counts as unwatchable."""
 LINGER_S = 5.0
-"""For so long the graph is watched though nobody waits: the next node's turn comes soon."""
+"""The probe stays this long when nothing is waited for: the next node may come soon."""
 
 
 @dataclass(frozen=True)
 class ReadyCondition:
-    """What must be in the ROS graph."""
+    """Something that must be in the ROS graph."""
 
     kind: str
     """`node`, `topic` (a publisher of it) or `service`."""
     name: str
     type: str = ""
-    """Of a topic: only a publisher of this type counts, `std_msgs/msg/Float32`; empty: any."""
+    """For a topic: only a publisher of this type counts, `std_msgs/msg/Float32`; empty: any."""
     rate_hz: float = 0.0
-    """Of a topic: messages come at least this often; 0: none need come."""
+    """For a topic: messages must arrive at least this often; 0: none need to."""
 
 
 @dataclass(frozen=True)
@@ -47,17 +47,17 @@ class Seen:
     """The state of a topic whose condition is not met."""
 
     types: tuple[str, ...]
-    """Of its publishers."""
+    """The types of its publishers."""
     rate_hz: float | None = None
-    """Of the messages that come; None if that is not awaited, or cannot be measured."""
+    """The rate of its messages; None if it is not required or cannot be measured."""
 
 
 class UnwatchableError(Exception):
-    """The graph cannot be watched: there is no rclpy here, or it does not start."""
+    """The graph cannot be watched: rclpy is not installed, or does not start."""
 
 
 class Readiness:
-    """Reports when conditions are met; all of them are known from the start."""
+    """Reports when conditions are met; all conditions are known from the start."""
 
     def __init__(
         self,
@@ -66,7 +66,7 @@ class Readiness:
         reaper: Reaper,
         env: Mapping[str, str | None],
     ) -> None:
-        """`env`: what the probe needs to look at the right domain."""
+        """`env`: the variables that the probe needs to watch the right domain."""
         self._conditions = list(dict.fromkeys(conditions))
         self._spawner = spawner
         self._reaper = reaper
@@ -80,16 +80,16 @@ class Readiness:
         self._linger: asyncio.TimerHandle | None = None
 
     def expect(self) -> None:
-        """Begin to watch: somebody will wait in a moment, and looking takes time to begin."""
+        """Start watching: a wait will begin in a moment, and the probe takes time to start."""
         if self._task is None and self._conditions:
             self._task = asyncio.create_task(self._watch())
             self._stop_later()
 
     async def until(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
-        """Return once `condition` holds; `tell` what is there instead whenever that changes.
+        """Return once `condition` holds; until then `tell` gets every new state of the topic.
 
         Raises:
-            UnwatchableError: if that cannot be found out.
+            UnwatchableError: if the graph cannot be watched.
         """
         if condition in self._holding:
             return
@@ -105,7 +105,7 @@ class Readiness:
             self._stop_later()
 
     def renew(self) -> None:
-        """Forget what is known: a dead node lingers in the view of whoever has seen it alive."""
+        """Start a new probe: one that has seen a node alive keeps seeing it after its death."""
         self._stop()
         if self._waiters:
             self.expect()
@@ -149,11 +149,11 @@ class Readiness:
                 os.close(report_write)
             await self._listen(report)
         finally:
-            # The probe ends at the end of its stdin, politely: it says goodbye to the graph.
+            # The probe ends cleanly when its stdin is closed, and announces that to the graph.
             os.close(hold)
             os.close(report)
             if born is not None:
-                _ = asyncio.create_task(self._see_off(born))  # noqa: RUF006 - ends by itself
+                _ = asyncio.create_task(self._see_off(born))  # noqa: RUF006 - it ends by itself
 
     async def _listen(self, fd: int) -> None:
         reader = asyncio.StreamReader()

@@ -1,4 +1,4 @@
-"""When a node that ended is started again, and when that is given up."""
+"""The decision whether and when a node that has ended is started again."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 FIRST_DELAY_S = 1.0
 LAST_DELAY_S = 30.0
 STABLE_S = 20.0
-"""A node that ran for so long has nothing to do with the crashes before."""
+"""For a node that ran this long, earlier crashes no longer count."""
 MAX_CRASHES = 5
 CRASH_WINDOW_S = 60.0
 
@@ -22,7 +22,7 @@ class Again:
 
 @dataclass(frozen=True)
 class Finished:
-    """It ended as it should."""
+    """It ended as intended."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +30,12 @@ class GivenUp:
     """It will not be started again."""
 
     crashes: int
-    """How many there were in a row; 1 if the policy is not to start it again at all."""
+    """How many times in a row it ended; 1 if the policy is not to start it again at all."""
     within_s: float = 0.0
 
 
 class RestartPolicy:
-    """One node's `restart:` and what has happened to it so far. Times are monotonic seconds."""
+    """The `restart:` policy of one node, with its history. Times are monotonic seconds."""
 
     def __init__(self, kind: str) -> None:
         """`kind`: `never`, `on-failure` or `always`."""
@@ -44,12 +44,12 @@ class RestartPolicy:
         self._crashes: deque[float] = deque(maxlen=MAX_CRASHES)
 
     def reset(self) -> None:
-        """Forget: somebody has started it by hand."""
+        """Forget the history: the node was started by hand."""
         self._delay_s = FIRST_DELAY_S
         self._crashes.clear()
 
     def after(self, *, clean: bool, lasted_s: float, now: float) -> Again | Finished | GivenUp:
-        """Decide after the node ended by itself, `clean` if with exit code 0."""
+        """Decide after the node has ended by itself, `clean` if with exit code 0."""
         if clean and self._kind != "always":
             return Finished()
         if self._kind == "never":

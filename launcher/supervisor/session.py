@@ -1,4 +1,4 @@
-"""The session: all nodes of a profile, what they cost, and what can be asked of them."""
+"""The session: all nodes of a profile, the operations on them, and their resource use."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ USAGE_EVERY_S = 2.0
 
 
 class Session:
-    """Implements `NodeContext`: gives each node what it needs."""
+    """All nodes of a profile; implements `NodeContext` for each of them."""
 
     def __init__(
         self,
@@ -38,7 +38,7 @@ class Session:
         log: SessionLog,
         on_change: Callable[[str], None],
     ) -> None:
-        """`on_change` is called with the name of a node whose status has changed."""
+        """`on_change` is called with the name of each node whose status has changed."""
         self.clock: Clock = MonotonicClock()
         self.plan = plan
         self.log = log
@@ -53,27 +53,27 @@ class Session:
             plan.env,
         )
         self.processes: dict[str, tuple[int, int]] = {}
-        """Node to the number and the start, in ticks, of its newest process."""
+        """Node to the number and the start, in ticks, of its latest process."""
         self._to_return: set[str] = set()
-        """Nodes that are being stopped only to be started again."""
+        """Nodes that are being stopped for a restart."""
         self._restarting: asyncio.Task[None] | None = None
         self._hurry = asyncio.Event()
         self._shared_memory = SharedMemory(lambda *words: log.say(DECK, *words))
 
-    # What is asked of it.
+    # Requests.
 
     def start(self, names: Iterable[str] = ()) -> None:
-        """Start these nodes with all that they need; all if none is named."""
+        """Start these nodes and everything they need; all nodes if none is named."""
         chosen = self._chosen(names)
         self._shared_memory.clear()
-        # The probe goes first: what it sees coming it need not look for.
+        # The probe goes first: nodes that appear while it watches are found sooner.
         self._readiness.expect()
         for name in with_needs(chosen, self.plan.needs):
             if name in chosen or not self.nodes[name].at_work:
                 self.nodes[name].start()
 
     async def stop(self, names: Iterable[str] = (), *, now: bool = False) -> None:
-        """Stop these nodes, dependants first; all if none is named."""
+        """Stop these nodes, dependants first; all nodes if none is named."""
         chosen = self._chosen(names)
         self._to_return.difference_update(chosen)
         await self._stop(chosen, now=now)
@@ -89,7 +89,7 @@ class Session:
             await asyncio.gather(*(self.nodes[name].stop(now=in_a_hurry) for name in wave))
 
     def restart(self, names: Iterable[str] = ()) -> None:
-        """Begin to stop and start these nodes, dependants first; all if none is named."""
+        """Begin to restart these nodes, dependants first; all nodes if none is named."""
         chosen = self._chosen(names)
         if len(chosen) == 1:
             self.nodes[chosen[0]].restart()
@@ -104,7 +104,7 @@ class Session:
             wave = self._to_return - stopped
             await self._stop(sorted(wave))
             stopped |= wave
-        # Without those that somebody has stopped meanwhile.
+        # Without those that have been stopped in the meantime.
         returning = [name for name in self.nodes if name in self._to_return]
         self._to_return.clear()
         if returning:
@@ -118,7 +118,7 @@ class Session:
         return names or list(self.nodes)
 
     async def measure(self) -> None:
-        """Measure what the nodes cost, again and again."""
+        """Measure the resource use of the nodes periodically."""
         while True:
             await asyncio.sleep(USAGE_EVERY_S)
             self._shared_memory.clear()
@@ -133,30 +133,30 @@ class Session:
                     node.usage = usages.get(name)
                     self._on_change(name)
 
-    # What the nodes ask of it.
+    # The `NodeContext` of the nodes.
 
     async def launch(self, plan: NodePlan) -> NodeProcess:
         """Start a node's process; raises `SpawnError`."""
         if plan.name in self.processes:
-            # It may have died without a goodbye, and whoever saw it alive sees it still.
+            # It may have died without notice, and a probe that saw it alive still sees it.
             self._readiness.renew()
         process = await self._launcher.launch(plan)
         self.processes[plan.name] = (process.pid, process.started_ticks)
         return process
 
     async def ready(self, condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
-        """Return when the condition holds, `tell` what else is there; raises `UnwatchableError`."""
+        """Return once the condition holds; `tell` gets other states; raises `UnwatchableError`."""
         await self._readiness.until(condition, tell)
 
     def missing(self, plan: NodePlan) -> str:
-        """Say which needed nodes are not there yet; empty if all are."""
+        """Say which needed nodes are not ready yet; empty if all are."""
         absent = [self.nodes[name] for name in plan.needs if not self.nodes[name].serves]
         if not absent:
             return ""
         return say("waiting for {nodes}", nodes=", ".join(map(_with_state, absent)))
 
     def last_words(self, name: str) -> str:
-        """Return what the node said last."""
+        """Return the last words of the node."""
         return self.log.last_words(name)
 
     def say(self, name: str, severity: Severity, words: str) -> None:
@@ -164,9 +164,9 @@ class Session:
         self.log.say(name, severity, words)
 
     def changed(self, name: str, state: NodeState) -> None:
-        """Tell the clients, and those nodes that need this one."""
+        """Notify the clients, and the nodes that need this one."""
         if state is NodeState.READY:
-            # It may be killed before it is measured.
+            # It may be killed before the next measurement.
             pid, _started = self.processes[name]
             self._launcher.note_segments(name, (pid,))
         self._on_change(name)

@@ -1,4 +1,4 @@
-"""Clears shared memory of what would hang the nodes, and reports what was removed."""
+"""Clears shared memory of files that would make nodes hang, and reports what was removed."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 LEAST_FREE_BYTES = 1 << 20
-"""A participant of Fast DDS takes half of that."""
+"""Least free space; a Fast DDS participant takes half of it."""
 
 
 class SharedMemory:
-    """Cleared before nodes start and periodically after: others may be killed at any time."""
+    """Cleared before nodes start and periodically afterwards: others may be killed at any time."""
 
     def __init__(
         self, tell: Callable[[Severity, Words], None], folder: Path = SHARED_MEMORY
@@ -35,7 +35,7 @@ class SharedMemory:
         self._full = False
 
     def clear(self) -> None:
-        """Remove what is in the way; tell once of what cannot be helped here."""
+        """Remove incomplete files; report once the problems that cannot be fixed here."""
         self._look_for_room()
         found = discard_unfinished(self._folder)
         if found.removed:
