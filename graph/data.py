@@ -1,7 +1,7 @@
-"""The ROS graph as plain data: what the observer hands over, with nothing of rclpy in it.
+"""The ROS graph as plain data: what the observer hands over, without any rclpy objects.
 
 Times are seconds on the monotonic clock unless a name says otherwise, sizes are bytes of the
-serialized message (CDR), rates are messages a second.
+serialized message (CDR), rates are messages per second.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ A single `byte` is an int, 0..255."""
 
 
 class Trouble(str, Enum):
-    """Why a topic shows nothing. Four different things, four different messages."""
+    """Why a topic shows nothing. Four different causes, four different messages."""
 
     NO_PUBLISHER = "no publisher"
     QOS_MISMATCH = "qos mismatch"
     UNKNOWN_TYPE = "unknown type"
     QUIET = "quiet"
-    """Publishers are there, nothing has come for longer than is usual."""
+    """There are publishers, but nothing has arrived for longer than usual."""
 
 
 PROCESS_NUMBERS = 1 << 16
-"""The middleware tells the number of a process modulo this."""
+"""The middleware reports the number of a process modulo this."""
 
 
 @dataclass(frozen=True)
@@ -52,17 +52,17 @@ class EndpointInfo:
     durability: str
     """`volatile` or `transient_local`."""
     depth: int = 0
-    """0 where the peer does not tell, or keeps everything."""
+    """0 if the peer does not report it, or keeps everything."""
     history: str = ""
-    """`keep_last`, `keep_all`; empty where the peer does not tell."""
+    """`keep_last`, `keep_all`; empty if the peer does not report it."""
     deadline_s: float | None = None
-    """None: none was asked for or offered. So with the next two."""
+    """None: none was requested or offered. The same holds for the next two."""
     lifespan_s: float | None = None
     lease_s: float | None = None
     liveliness: str = ""
-    """`automatic`, `manual_by_topic`; empty where the peer does not tell."""
+    """`automatic`, `manual_by_topic`; empty if the peer does not report it."""
     process: int | None = field(default=None, compare=False)
-    """Number of its process modulo `PROCESS_NUMBERS`; None where the middleware does not tell."""
+    """Number of its process modulo `PROCESS_NUMBERS`; None if the middleware does not report it."""
 
 
 @dataclass(frozen=True)
@@ -71,47 +71,47 @@ class TopicRow:
 
     name: str
     type_names: tuple[str, ...]
-    """`std_msgs/msg/Float32`; more than one where peers disagree."""
+    """`std_msgs/msg/Float32`; more than one if peers disagree."""
     publishers: int
     subscribers: int
     """Deck's own subscription is not counted."""
     hz: float | None = None
-    """None while it is not measured or fewer than two messages came."""
+    """None while it is not measured or fewer than two messages have come."""
     bytes_per_s: float | None = None
     age_s: float | None = None
-    """Since the newest message; None if none came yet."""
+    """Since the newest message; None if none has come yet."""
     jitter_s: float | None = None
-    """Standard deviation of the time between messages; None while too few came."""
+    """Standard deviation of the time between messages; None while too few have come."""
     latency_s: float | None = None
-    """Mean of arrival less `header.stamp`; None without a header, or with a stamp of another
-    clock."""
+    """Mean of arrival time minus `header.stamp`; None without a header, or if the stamp is from
+    another clock."""
     lost: int | None = None
-    """Messages that were sent and never came, since `measured`; None where the middleware does not
-    tell."""
+    """Messages that were sent but never arrived, since `measured`; None if the middleware does not
+    report them."""
     count: int = 0
     """Messages taken since the subscription was made."""
     measured: bool = False
     """Whether Deck is subscribed now."""
     trouble: Trouble | None = None
     detail: str = ""
-    """The trouble in English words: which endpoints do not fit, which type is missing. May also be
-    set without a trouble, as a remark: peers that disagree about the type."""
+    """The trouble in English words: which endpoints are incompatible, which type is missing. It may
+    also be set without a trouble, as a remark: peers that disagree about the type."""
     facts: Mapping[str, str] = field(default_factory=dict)
-    """What `detail` is made of, to say it in another language.
+    """The facts in `detail`, to say it in another language.
 
-    QOS_MISMATCH: of the first pair `policy` (as in `graph.qos_compatibility.Mismatch`),
-    `publisher`, `subscriber` (nodes), `offered`, `requested`; `more`, the number of further
-    pairs, if there are any. UNKNOWN_TYPE: `type`, `package`, `reason`, and if the package is
-    missing its names for `pip` (where PyPI has it), `apt` and `pixi`. QUIET: `seconds`.
+    QOS_MISMATCH: `policy` of the first pair (as in `graph.qos_compatibility.Mismatch`),
+    its `publisher`, `subscriber` (nodes), `offered`, `requested`; `more`, the number of further
+    pairs, if there are any. UNKNOWN_TYPE: `type`, `package`, `reason`, and for a
+    missing package its names for `pip` (if PyPI has it), `apt` and `pixi`. QUIET: `seconds`.
     NO_PUBLISHER: none.
     Both in a replay: `recorded`.
-    A remark: `types`, with the one that is shown in `shown`.
+    A remark: `types`, and in `shown` the one that is shown.
     """
     published_by: tuple[EndpointInfo, ...] = ()
     subscribed_by: tuple[EndpointInfo, ...] = ()
-    """Both without Deck's own endpoints."""
+    """Neither contains Deck's own endpoints."""
     own_publishers: int = 0
-    """Deck's own."""
+    """The number of Deck's own publishers."""
 
 
 @dataclass(frozen=True)
@@ -123,13 +123,13 @@ class Sample:
     received_s: float
     """When it was taken, unix time."""
     age_s: float
-    """Between its arrival at the middleware and being taken, as far as is known, else 0."""
+    """Time between its arrival at the middleware and being taken, if known, otherwise 0."""
     size_bytes: int
     value: Mapping[str, Value]
     sent_s: float | None = None
     """When its publisher handed it to the middleware, unix time by the publisher's clock; None
-    where that is not told. On one machine it orders messages of different topics better than their
-    arrival does: who receives them is not always awake."""
+    if not reported. On one machine it orders messages of different topics better than their
+    arrival does: the receiver is not always awake."""
 
 
 @dataclass(frozen=True)
@@ -146,8 +146,8 @@ class NodeRow:
     action_servers: tuple[str, ...] = ()
     action_clients: tuple[str, ...] = ()
     processes: tuple[int, ...] = ()
-    """Numbers of its processes modulo `PROCESS_NUMBERS`: more than one if there are nodes of the
-    same name. Empty where the middleware does not tell."""
+    """Numbers of its processes modulo `PROCESS_NUMBERS`: more than one if several nodes have the
+    same name. Empty if the middleware does not report them."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,7 @@ class GoalStatus(str, Enum):
     CANCELED = "canceled"
     ABORTED = "aborted"
     FAILED = "failed"
-    """Nobody serves it, or its server has gone or does not answer."""
+    """There is no server, or it has gone or does not answer."""
 
     @property
     def ended(self) -> bool:
@@ -194,10 +194,10 @@ class GoalStatus(str, Enum):
 
 @dataclass(frozen=True)
 class Goal:
-    """One goal that Deck has sent."""
+    """One goal sent by Deck."""
 
     number: int
-    """Deck's own, from 1."""
+    """Deck's own number, from 1."""
     action: str
     type_name: str
     status: GoalStatus
@@ -211,7 +211,7 @@ class Goal:
     elapsed_s: float = 0.0
     """Since it was sent, or until it ended."""
     goal_id: str = ""
-    """By which its server knows it, 32 hexadecimal digits."""
+    """Identifies it to its server, 32 hexadecimal digits."""
 
     @property
     def ended(self) -> bool:
@@ -221,7 +221,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class SeenGoal:
-    """One goal that somebody else has sent, as its server publishes it."""
+    """One goal sent by another client, as its server publishes it."""
 
     action: str
     type_name: str
@@ -229,12 +229,12 @@ class SeenGoal:
     """32 hexadecimal digits."""
     status: GoalStatus
     age_s: float | None = None
-    """Since its server has accepted it, or until it was seen to end; None where nobody saw that,
-    or where the clocks do not agree."""
+    """Since its server accepted it, or until it was seen to end; None if Deck did not see that,
+    or if the clocks do not agree."""
     feedback: Mapping[str, Value] | None = None
     """The newest."""
     feedbacks: int = 0
-    """How many came since it is looked at."""
+    """How many have come since Deck began to look."""
     error: str = ""
 
     @property
@@ -248,14 +248,14 @@ class Publication:
     """A message that Deck publishes periodically."""
 
     number: int
-    """Deck's own, from 1."""
+    """Deck's own number, from 1."""
     topic: str
     type_name: str
     hz: float
     sent: int
     subscribers: int
     error: str = ""
-    """Why it has ended by itself."""
+    """Why it stopped by itself."""
 
 
 @dataclass(frozen=True)
@@ -274,7 +274,7 @@ class ParameterRow:
     least: float | None = None
     greatest: float | None = None
     step: float | None = None
-    """Of its range; None where there is none, or the step is free."""
+    """Step of its range; None without a range, or if any step is allowed."""
 
 
 @dataclass(frozen=True)
@@ -289,12 +289,12 @@ class ParametersResult:
 
 @dataclass(frozen=True)
 class SetResult:
-    """The result of setting parameters: reasons by name of the refused ones, or nothing."""
+    """The result of setting parameters: the reason for each refused one, or nothing."""
 
     node: str
     refused: Mapping[str, str] = field(default_factory=dict)
     error: str = ""
-    """Why nothing is known of it: no such node, no answer."""
+    """Why the result is unknown: no such node, no answer."""
     elapsed_s: float = 0.0
 
 
@@ -309,7 +309,7 @@ class CallResult:
     """Why there is no response: no such service, time-out, unknown type, bad request."""
     elapsed_s: float
     late: Future[CallResult] | None = None
-    """After a time-out: what still comes of it, if anything does."""
+    """After a time-out: the late answer, if one comes."""
 
 
 @dataclass(frozen=True)
@@ -319,17 +319,17 @@ class GraphUpdate:
     time_s: float
     """Unix time of this update."""
     topics: tuple[TopicRow, ...] = ()
-    """Every topic there is and every one that is watched or followed, sorted by name. A row that
-    is the same object as in the update before has not changed."""
+    """Every existing topic and every one that is watched or followed, sorted by name. A row that
+    is the same object as in the previous update has not changed."""
     samples: Mapping[str, tuple[Sample, ...]] = field(default_factory=dict)
     """Topic to its new samples in order: one for a watched topic, all for a followed one."""
     nodes: tuple[NodeRow, ...] = ()
     services: tuple[ServiceRow, ...] = ()
     actions: tuple[ActionRow, ...] = ()
     goals: tuple[Goal, ...] = ()
-    """Deck's own, oldest first, those that have ended too until they are forgotten."""
+    """Deck's own goals, oldest first; ended ones stay until they are forgotten."""
     seen_goals: tuple[SeenGoal, ...] = ()
-    """Those of others to the actions that are looked at, as long as their servers tell of them."""
+    """Goals of other clients to the watched actions, as long as their servers list them."""
     publications: tuple[Publication, ...] = ()
     error: str = ""
     """Set when the observer cannot work at all: rclpy is missing, the domain is refused."""

@@ -1,4 +1,4 @@
-"""Which names of the ROS graph are ROS's own, so that lists can show the robot's alone."""
+"""Tells which names in the ROS graph are ROS's own, so that lists can show only the robot's."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ SERVICES = frozenset(
         "set_logger_levels",
     }
 )
-"""Last part of the name of what rclpy and rclcpp give every node."""
+"""Last part of the names of services that rclpy and rclcpp give every node."""
 PARAMETERS = (N_("If enabled, start the ~/get_type_description service."),)
-"""What rclpy says of the parameters that every node has, marked for the catalogue."""
+"""rclpy's descriptions of the parameters that every node has, marked for the catalogue."""
 
 
 def is_housekeeping(name: str) -> bool:
-    """Tell whether a topic, service or node of this full name is there without anybody's asking.
+    """Return whether a topic, service or node of this full name exists without anybody's asking.
 
-    Hidden names, those with a part that begins with an underscore, count as such: the inner topics
-    of actions, the nodes of command line tools.
+    Hidden names, those with a part that begins with an underscore, count too: the inner topics of
+    actions, the nodes of command line tools.
     """
     return name in TOPICS or name.rpartition("/")[2] in SERVICES or is_hidden(name)
 
 
 def is_hidden(name: str) -> bool:
-    """Tell whether a name has a part that begins with an underscore."""
+    """Return whether a name has a part that begins with an underscore."""
     return any(part.startswith("_") for part in name.split("/"))

@@ -1,4 +1,4 @@
-"""How the C library keeps memory: pictures arrive ten times a second and are freed at once."""
+"""Tunes how the C library keeps memory: pictures arrive ten times a second and are soon freed."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ KEPT_BYTES = 2 * LARGEST_BYTES
 
 
 def keep_room_for_large_messages() -> None:
-    """Let the C library keep a few megabytes in place of giving them back after each message.
+    """Let the C library keep a few megabytes instead of giving them back after each message.
 
-    Else every picture of 640x480 is some 400 page faults, two thirds of what it costs to take it
-    (measured: 1.6 ms against 0.5 ms). Does nothing where the C library is not glibc.
+    Otherwise every picture of 640x480 causes some 400 page faults, two thirds of the cost of taking
+    it (measured: 1.6 ms against 0.5 ms). Does nothing if the C library is not glibc.
     """
     try:
         mallopt = ctypes.CDLL(None).mallopt

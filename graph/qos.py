@@ -1,4 +1,4 @@
-"""Which quality of service Deck requests and offers, so that it is compatible with everybody."""
+"""Chooses the quality of service that Deck requests and offers, to be compatible with everybody."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ VOLATILE = "volatile"
 
 @dataclass(frozen=True)
 class Qos:
-    """What Deck requests or offers; the other policies keep their defaults."""
+    """The policies that Deck requests or offers; the others keep their defaults."""
 
     reliability: str = RELIABLE
     durability: str = VOLATILE
@@ -42,7 +42,7 @@ def to_be_heard(subscribers: Iterable[EndpointInfo]) -> Qos:
 
 
 def profile(qos: Qos, depth: int) -> QoSProfile:
-    """Return rclpy's own form of it, keeping the last `depth` messages."""
+    """Return it as an rclpy profile that keeps the last `depth` messages."""
     from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
     return QoSProfile(

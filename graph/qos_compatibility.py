@@ -1,7 +1,7 @@
-"""Which endpoints of a topic are incompatible, by which policy, and what to change.
+"""Finds which endpoints of a topic are incompatible, by which policy, and what to change.
 
-The rule of every policy: an offer may exceed the request, never fall short of it.
-Source: ROS 2 documentation, "Quality of Service settings", tables of compatibilities.
+The rule for every policy: an offer may exceed the request, never fall short of it.
+Source: ROS 2 documentation, "Quality of Service settings", compatibility tables.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TIMES = {
     DEADLINE: ("a message", "deadline"),
     LEASE: ("a sign of life", "liveliness lease duration"),
 }
-"""The policies that are a time, with what has to come that often, and their name in words."""
+"""The policies that are durations, with the event they limit, and their name in words."""
 AUTOMATIC, MANUAL = "automatic", "manual_by_topic"
 
 
@@ -35,11 +35,11 @@ class Mismatch:
     publisher: str
     subscriber: str
     offered: str
-    """The policy's value, or its seconds (`0.5`) where it is a time; empty for no such time."""
+    """The policy's value, or seconds (`0.5`) for a duration; empty if there is none."""
     requested: str
 
     def in_words(self) -> str:
-        """Return who does not hear whom, and the two ways out."""
+        """Return who does not receive from whom, and the two ways to fix it."""
         about = f"{self.subscriber} does not hear {self.publisher}: it asks for"
         let, or_let = f"Let {self.publisher} offer", f"or let {self.subscriber} ask for"
         if self.policy not in TIMES:
@@ -56,7 +56,7 @@ class Mismatch:
         )
 
     def facts(self) -> dict[str, str]:
-        """Return the same as names and values, to be said in another language."""
+        """Return the same as names and values, for a sentence in another language."""
         return {
             "policy": self.policy,
             "publisher": self.publisher,
@@ -69,9 +69,9 @@ class Mismatch:
 def mismatches(
     publishers: Sequence[EndpointInfo], subscribers: Sequence[EndpointInfo]
 ) -> list[Mismatch]:
-    """Return every pair that does not fit, once for each policy.
+    """Return every incompatible pair, once for each policy.
 
-    Those of different types are left out: no policy would join them.
+    Pairs with different types are left out: no policy would connect them.
     """
     return [
         Mismatch(policy, publisher.node, subscriber.node, offered, requested)
@@ -85,7 +85,7 @@ def mismatches(
 def _short_falls(
     publisher: EndpointInfo, subscriber: EndpointInfo
 ) -> Iterator[tuple[str, str, str]]:
-    """Return each policy in which the offer is less than the request, with both."""
+    """Yield each policy in which the offer falls short of the request, with both values."""
     if publisher.reliability == BEST_EFFORT and subscriber.reliability == RELIABLE:
         yield RELIABILITY, BEST_EFFORT, RELIABLE
     if publisher.durability == VOLATILE and subscriber.durability == TRANSIENT_LOCAL:
@@ -99,7 +99,7 @@ def _short_falls(
 
 
 def _is_longer(offered_s: float | None, requested_s: float | None) -> bool:
-    """Tell whether the offer comes less often than asked for; None is never."""
+    """Return whether the offer comes less often than requested; None means never."""
     return requested_s is not None and (offered_s is None or offered_s > requested_s)
 
 

@@ -1,4 +1,4 @@
-"""Deck's own node: opened with as little as rclpy allows, closed without a trace."""
+"""Deck's own node: opened with as little as rclpy allows, and closed without a trace."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 NAME_PREFIX = "_deck_"
 """The underscore keeps it out of `ros2 node list`."""
 ONLY_LISTENING = (f"/{NAME_PREFIX}observer_", f"/{NAME_PREFIX}recorder_")
-"""How the full names of nodes begin that look on, in this process or in another of Deck's."""
+"""Prefix of the full names of observing nodes, in this or in another process of Deck."""
 DOMAINS = range(233)
-"""Fast DDS ends the whole process at a greater one: its ports would be no ports any more."""
+"""Fast DDS ends the whole process at a greater domain: its port numbers would be out of range."""
 FAST_DDS = Path(__file__).with_name("fastdds.xml")
-"""Settings of Fast DDS for all of Deck's processes: found in tenths of a second, by no network."""
+"""Fast DDS settings for all of Deck's processes: fast discovery, on this machine only."""
 FAST_DDS_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
-"""The first is the one that Jazzy's Fast DDS reads first."""
+"""Jazzy's Fast DDS reads the first one first."""
 ONLY_THESE = "SKIP_DEFAULT_XML_FILE"
 """Keeps Fast DDS from reading DEFAULT_FASTRTPS_PROFILES.xml in the current folder as well."""
 LOCALHOST_ONLY = "ROS_LOCALHOST_ONLY"
@@ -54,8 +54,8 @@ def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observe
     """Join the domain; takes a tenth of a second or more, most of it the import of rclpy.
 
     `discovery` is `localhost`, `subnet`, or the addresses of the peers to be found; `role` is
-    part of the node's name. Raises
-    ImportError without ROS, ValueError for a domain that does not exist, and what rclpy raises.
+    part of the node's name. Raises ImportError without ROS, ValueError for a domain that does not
+    exist, and what rclpy raises.
     """
     if domain not in DOMAINS:
         raise ValueError(f"domain {domain} is not between {DOMAINS[0]} and {DOMAINS[-1]}")
@@ -69,7 +69,7 @@ def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observe
     context = Context()
     silent = Parameter("start_type_description_service", value=False)
     with _environment(_discovery(discovery) | announcing(discovery)):
-        # No arguments of the program's, no log file, and no word on the terminal: it is a screen.
+        # No arguments of the program, no log file, and no output on the terminal: it is a screen.
         context.init(args=[], initialize_logging=False, domain_id=domain)
         set_logger_level("", LoggingSeverity.FATAL)
         node = Node(
@@ -84,7 +84,7 @@ def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observe
 
 
 def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
-    """Return the variables to be set, None for those to be taken away."""
+    """Return the variables to set, None for those to remove."""
     # The deprecated variable would win over the others.
     if not isinstance(discovery, str):
         peers = ";".join(discovery)
@@ -95,9 +95,10 @@ def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
 
 
 def announcing(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
-    """Return the variables for Deck's settings of Fast DDS, unless somebody has chosen his own.
+    """Return the variables for Deck's Fast DDS settings, unless the user has set their own.
 
-    They are for one machine alone: on a network the announcements of a whole class would add up.
+    They apply to a single machine only: on a network, the announcements of a whole class would add
+    up.
     """
     ours = str(FAST_DDS)
     if any(os.environ.get(name, ours) not in ("", ours) for name in FAST_DDS_VARIABLES):
@@ -109,7 +110,7 @@ def announcing(discovery: str | tuple[str, ...]) -> dict[str, str | None]:
 
 @contextmanager
 def _environment(settings: dict[str, str | None]) -> Iterator[None]:
-    """Set variables for as long as rcl reads them: children of the screen get none of it."""
+    """Set variables only while rcl reads them: the screen's children must not inherit them."""
     before = {name: os.environ.get(name) for name in settings}
     _set(settings)
     try:

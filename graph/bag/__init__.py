@@ -1,5 +1,5 @@
-"""Recorded bags: read, listed, described, and published into a domain again.
+"""Recorded bags: reading, listing, describing them, and publishing them into a domain again.
 
-From outside: `listing`, `reading`, `publishing` and `errors`; a replay also takes `decoding`,
-`metadata` and `types`.
+Other rooms may import `listing`, `reading`, `publishing` and `errors`; a replay also uses
+`decoding`, `metadata` and `types`.
 """

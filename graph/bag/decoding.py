@@ -1,6 +1,6 @@
-"""From the raw bytes of a bag to trees, by the definitions that the bag carries itself.
+"""Decodes the raw bytes of a bag into trees, using the definitions stored in the bag itself.
 
-No ROS is needed, and a type may be of a package that is not installed, or of another
+No ROS is needed, and a type may belong to a package that is not installed, or to another
 distribution. The trees are those of `graph.data.Value`.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 AS_BYTES = BYTES | {"byte"}
 CDR = frozenset({b"\x00\x00", b"\x00\x01"})
-"""How big-endian and little-endian plain CDR begin (OMG DDS-XTypes 1.3, 7.6.3.1.2)."""
+"""The first bytes of big-endian and little-endian plain CDR (OMG DDS-XTypes 1.3, 7.6.3.1.2)."""
 LISTED = frozenset({"bool", "string", "wstring"})
 
 
@@ -32,18 +32,18 @@ class TypeText(NamedTuple):
 
     name: str
     text: str = ""
-    """Empty where the bag does not define its types: sqlite3 before ROS 2 Iron."""
+    """Empty if the bag does not define its types: sqlite3 before ROS 2 Iron."""
     is_idl: bool = False
     distro: str = ""
-    """ROS distribution that wrote the bag, if it says."""
+    """ROS distribution that wrote the bag, if recorded."""
 
 
 @lru_cache(maxsize=256)
 def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
-    """Return what makes a tree of a message of this type.
+    """Return a function that decodes a message of this type into a tree.
 
-    Raises BagError for a type that is neither defined nor known. What it returns raises anything
-    for bytes that are no such message.
+    Raises BagError for a type that is neither defined nor known. The returned function may raise
+    any exception for bytes that are not such a message.
     """
     store = _store(kind)
     if kind.name not in store.fielddefs:
@@ -62,7 +62,7 @@ def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
         if raw[:2] not in CDR:
             raise ValueError("it is not in plain CDR")
         take = plan.deserialize_cdr_le if raw[1] else plan.deserialize_cdr_be
-        # The store's own method refuses messages with bytes to spare; rmw makes such ones.
+        # The store's own method refuses messages with trailing bytes, which rmw produces.
         message, _end = take(memoryview(raw)[4:], 0, plan.cls, store)
         return read(message)
 
@@ -87,7 +87,7 @@ def _store(kind: TypeText) -> Typestore:
             store.register(get_types_from_idl(kind.text))
         else:
             found = get_types_from_msg(kind.text, kind.name)
-            # The library takes the name of a service's for that of a package.
+            # The library mistakes the name of a service's message for that of a package.
             for name in found.keys() - {kind.name}:
                 if name.replace("/srv/msg/", "/srv/") == kind.name:
                     found[kind.name] = found.pop(name)
@@ -103,7 +103,7 @@ def _store(kind: TypeText) -> Typestore:
 
 
 def _reader(store: Typestore, type_name: str) -> Callable[[Any], dict[str, Value]]:
-    """Return what reads all fields of a message of a type of the store's."""
+    """Return a function that reads all fields of a message whose type is in the store."""
     from rosbags.typesys.base import normalize_fieldname
 
     fields = [

@@ -1,4 +1,4 @@
-"""Files that are not bag files after all, recognised by their first bytes."""
+"""Recognises files that are not bag files after all by their first bytes."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 _KINDS = {".mcap": (b"\x89MCAP0\r\n", "MCAP"), ".db3": (b"SQLite format 3\x00", "SQLite")}
-"""How a file begins that is named so, and what it is called. An MCAP file ends so, too."""
+"""The first bytes of a file by its suffix, and the name of its format. An MCAP file also ends
+with these bytes."""
 
 
 def defect_of(folder: Path, files: Iterable[Path], metadata: Mapping[str, object]) -> Words | None:
-    """Return what is wrong with one of a bag's files, None if all of them begin as they should.
+    """Return what is wrong with one of a bag's files, None if all of them begin correctly.
 
-    `metadata`: what the bag's metadata.yaml says, which names its files.
+    `metadata`: the content of the bag's metadata.yaml, which names its files.
     """
     named = metadata.get("relative_file_paths")
     for name in (Path(str(each)).name for each in (named if isinstance(named, list) else ())):
-        # The first rosbag2 wrote the folder before it; readers leave that out too.
+        # The first rosbag2 put the folder in front of the name; readers ignore that too.
         if not (folder / name).exists():
             return say("metadata.yaml names {file}, which is not there", file=name)
     for file in files:
@@ -37,7 +38,7 @@ def defect_of(folder: Path, files: Iterable[Path], metadata: Mapping[str, object
 
 
 def endless(files: Iterable[Path]) -> Words | None:
-    """Return which of a bag's files was not ended properly, None if none is seen to be so."""
+    """Return which of a bag's files was not closed properly, None if none is known to be."""
     for file in files:
         if file.suffix == ".mcap":
             end, _kind = _KINDS[file.suffix]

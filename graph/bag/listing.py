@@ -1,4 +1,4 @@
-"""The bags in a folder, as far as metadata and first bytes tell: no message is read or decoded."""
+"""The bags in a folder, judged by metadata and first bytes: no message is read or decoded."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ class ListedBag:
     name: str
     path: Path
     bytes: int
-    """Of its files on the disk."""
+    """Size of its files on the disk."""
     changed_s: float
-    """When it was written last, unix time."""
+    """When it was last written, unix time."""
     seconds: float | None = None
-    """From the first message to the last; None if the metadata does not tell."""
+    """From the first message to the last; None if the metadata does not say."""
     topics: int | None = None
     messages: int | None = None
     trouble: str = ""
-    """Why less is known, in words that can be translated; empty for a whole bag."""
+    """Why less is known, as translatable words; empty for a whole bag."""
 
 
 def bags_in(folder: Path) -> list[ListedBag]:
-    """Return the bags of a folder, the newest first; none if there is no such folder."""
+    """Return the bags of a folder, newest first; none if there is no such folder."""
     found = []
     with suppress(OSError):
         for path in folder.iterdir():

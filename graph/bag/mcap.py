@@ -1,6 +1,6 @@
-"""MCAP files of which a chunk may be damaged: it is left out and counted, all others are read.
+"""MCAP files that may have damaged chunks: these are left out and counted, all others are read.
 
-Format: https://mcap.dev/spec. A chunk is taken whole or not at all: where one record in it is
+Format: https://mcap.dev/spec. A chunk is taken whole or not at all: if one record in it is
 wrong, nothing vouches for those that look right.
 """
 
@@ -27,10 +27,10 @@ MAGIC = b"\x89MCAP0\r\n"
 FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, DATA_END = 2, 3, 4, 5, 6, 7, 15
 IN_CHUNK = frozenset({SCHEMA, CHANNEL, MESSAGE})
 PRIVATE = 0x80
-"""Opcodes from here on are anybody's own."""
+"""Opcodes from here on are free for private use."""
 RECORD_HEAD = struct.Struct("<BQ")
 CHUNK_HEAD = struct.Struct("<QQQII")
-"""First and last time, size, checksum, and how long the name of the compression is."""
+"""First and last time, size, checksum, and length of the name of the compression."""
 SIZE = struct.Struct("<Q")
 MESSAGE_HEAD = struct.Struct("<HIQQ")
 INDEX_HEAD = 6
@@ -44,19 +44,19 @@ class Lost(NamedTuple):
     """A chunk that cannot be read."""
 
     at_ns: int
-    """Unix time of its first message, as far as is known."""
+    """Unix time of its first message, if known."""
     messages: int
-    """How many there were in it, as far as is known."""
+    """How many messages it held, if known."""
 
 
 class Parts(NamedTuple):
     """The intact parts of a file without an index."""
 
     sound: list[tuple[int, int]]
-    """Where records can be read, from one place in the file to another."""
+    """Readable stretches of the file: first offset, and the offset after the last record."""
     lost: list[Lost]
     end: int
-    """Behind the last whole record."""
+    """The offset after the last whole record."""
     size: int
 
 
@@ -64,10 +64,10 @@ class SparingMcap(McapReader):
     """The library's reader, except that a damaged chunk costs no more than that chunk."""
 
     def __init__(self, path: Path) -> None:
-        """Read this file, once it is opened."""
+        """Read this file once it is opened."""
         super().__init__(path)
         self.lost: dict[int, Lost] = {}
-        """Place in the file to what is lost there; grows as it is come to."""
+        """Offset in the file to what is lost there; grows while messages are read."""
 
     def messages(
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
@@ -89,11 +89,11 @@ class SparingMcap(McapReader):
                 yield wanted[number], stamp_ns, raw
 
     def _of_chunk(self, chunk: ChunkInfo) -> Iterator[Found]:
-        # The merge takes one from each before it begins: not all chunks are to be read by then.
+        # The merge takes one from each before it begins; not all chunks should be read by then.
         yield chunk.message_start_time, NOBODY, b""
         try:
             found = messages_in(self._record(chunk))
-        except Exception:  # noqa: BLE001 - the disk, a decompressor, or what is in it
+        except Exception:  # noqa: BLE001 - the disk, a decompressor, or the content
             messages = sum(chunk.channel_count.values())
             self.lost[chunk.chunk_start_offset] = Lost(chunk.message_start_time, messages)
             return
@@ -101,7 +101,7 @@ class SparingMcap(McapReader):
         yield from found
 
     def _record(self, chunk: ChunkInfo) -> bytes:
-        """Return what the record of a chunk holds."""
+        """Return the content of a chunk's record."""
         assert self.bio is not None
         self.bio.seek(chunk.chunk_start_offset)
         raw = self.bio.read(chunk.chunk_length)
@@ -118,7 +118,7 @@ class _SparingDirectory(DirectoryReader):
 
 
 class SparingReader(Reader):
-    """The library's reader of bags of all kinds, with `SparingMcap` for those of MCAP."""
+    """The library's reader for bags of all kinds, with `SparingMcap` for MCAP."""
 
     STORAGE_PLUGINS: Mapping[str, type[ReaderProtocol]] = {
         **Reader.STORAGE_PLUGINS,
@@ -135,9 +135,9 @@ class SparingReader(Reader):
 
 
 def messages_in(record: bytes) -> list[Found]:
-    """Return the messages in what the record of a chunk holds.
+    """Return the messages in the content of a chunk's record.
 
-    Raises whatever there is to raise if a single byte of its frame is wrong, or its checksum.
+    Raises any exception if a single byte of its framing is wrong, or its checksum.
     """
     first_ns, last_ns, size, checksum, named = CHUNK_HEAD.unpack_from(record)
     at = CHUNK_HEAD.size + named
@@ -164,9 +164,9 @@ def messages_in(record: bytes) -> list[Found]:
 
 
 def sound_parts(path: Path) -> Parts:
-    """Look through a file without using its index, record by record.
+    """Scan a file record by record without using its index.
 
-    Raises ValueError for a file that is no MCAP at all, and OSError.
+    Raises ValueError for a file that is not MCAP at all, and OSError.
     """
     size = path.stat().st_size
     sound: list[tuple[int, int]] = []

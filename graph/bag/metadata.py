@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 VERSION = 9
 NANOSECONDS = 10**9
 QosOffer: TypeAlias = Mapping[str, Any]
-"""One offered QoS profile, in the names that rosbag2 writes."""
+"""One offered QoS profile, with the names that rosbag2 writes."""
 
 
 @dataclass
@@ -24,7 +24,7 @@ class BagTopic:
     """One topic of a bag that is being written."""
 
     number: int
-    """From 1, the number of its channel."""
+    """The number of its channel, counted from 1."""
     name: str
     type_name: str
     digest: str
@@ -35,7 +35,7 @@ class BagTopic:
 
 
 def qos_offer(profile: QoSProfile) -> QosOffer:
-    """Return what a publisher offers, as rosbag2 writes it."""
+    """Return the QoS that a publisher offers, as rosbag2 writes it."""
     return {
         "history": profile.history.name.lower(),
         "depth": profile.depth,
@@ -55,7 +55,7 @@ def _time(duration: Duration) -> dict[str, int]:
 
 
 def as_yaml(content: object) -> str:
-    """Return YAML in the order of its keys."""
+    """Return YAML with the keys in their given order."""
     import yaml
 
     text: str = yaml.safe_dump(content, sort_keys=False, default_flow_style=False)
@@ -65,7 +65,7 @@ def as_yaml(content: object) -> str:
 def information(
     file: str, topics: Sequence[BagTopic], first_ns: int, last_ns: int
 ) -> dict[str, Any]:
-    """Return what is known of a bag with one MCAP file; times are unix time in nanoseconds."""
+    """Return the metadata of a bag with one MCAP file; times are unix time in nanoseconds."""
     messages = sum(topic.messages for topic in topics)
     span = {"nanoseconds": last_ns - first_ns if messages else 0}
     begun = {"nanoseconds_since_epoch": first_ns if messages else 0}
@@ -107,7 +107,7 @@ def _topic(topic: BagTopic) -> dict[str, Any]:
 
 
 def write(folder: Path, content: Mapping[str, Any]) -> None:
-    """Write or renew `metadata.yaml`: there is always a whole one."""
+    """Write or replace `metadata.yaml`; a complete one exists at any moment."""
     fresh = folder / "metadata.yaml.new"
     fresh.write_text(as_yaml({"rosbag2_bagfile_information": dict(content)}), encoding="utf-8")
     fresh.replace(folder / "metadata.yaml")

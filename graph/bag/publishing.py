@@ -1,7 +1,7 @@
-"""A bag published into a ROS domain: raw messages, timed as they were recorded.
+"""Publishes a bag into a ROS domain: raw messages, timed as they were recorded.
 
-Nothing is decoded. A topic that somebody else publishes is left to him, from the moment on at which
-he is seen: two publishers of one sensor are worse than none.
+Nothing is decoded. A topic that another node publishes is left to that node as soon as it is seen:
+two publishers of one sensor are worse than none.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ if TYPE_CHECKING:
     from graph.ros import Ros
 
 DEPTH = 100
-"""Queue of a publisher: a subscriber may be behind by so many messages."""
+"""Queue of a publisher: how many messages a subscriber may lag behind."""
 FOUND_WITHIN_S = 1.0
-"""Until then those who are there have been found, and have found this publisher."""
+"""By then existing nodes have been discovered, and have discovered this publisher."""
 LOOK_S = 0.25
-"""How often others on the topics are looked for."""
+"""How often to look for other publishers of the topics."""
 TELL_S = 1.0
 ACKED_WITHIN_S = 2.0
 SHARED = frozenset({"/rosout"})
-"""What every node publishes: nobody's alone."""
+"""Topics that every node publishes: no node owns them."""
 
 
 @dataclass
 class PublishingProgress:
-    """How far it is."""
+    """How far the publishing has come."""
 
     seconds: float = 0.0
-    """Of the bag."""
+    """Position in the bag."""
     messages: int = 0
     left_out: dict[str, str] = field(default_factory=dict)
-    """Topic to why it is not published, in words that can be translated."""
+    """Topic to why it is not published, as translatable words."""
 
 
 class BagPublisher:
@@ -57,9 +57,9 @@ class BagPublisher:
         refusal: Callable[[TopicInBag], str | None],
         stopped_by_zeros: Collection[str] = (),
     ) -> None:
-        """`refusal` tells why a topic is not to be published, None for those that are.
+        """`refusal` returns why a topic must not be published, None for those that may be.
 
-        `stopped_by_zeros`: types of which an empty message is sent at the end.
+        `stopped_by_zeros`: types for which an empty message is sent at the end.
         """
         self.progress = PublishingProgress()
         self._bag = bag
@@ -79,7 +79,7 @@ class BagPublisher:
         return len(self._publishers)
 
     def find_others(self, stop: threading.Event) -> None:
-        """Wait until all who are there are known; leave topics to those who publish them."""
+        """Wait until all existing nodes are known; leave topics to those who publish them."""
         stop.wait(FOUND_WITHIN_S)
         self._give_way()
 
@@ -92,9 +92,9 @@ class BagPublisher:
         start_s: float = 0.0,
         loop: bool = False,
     ) -> None:
-        """Publish once, or with `loop` until `stop`; tell of the progress each second.
+        """Publish once, or with `loop` until `stop`; report the progress each second.
 
-        Raises BagError where the bag turns out to be damaged.
+        Raises BagError if the bag turns out to be damaged.
         """
         try:
             self._once(stop, tell, rate, start_s)
@@ -133,7 +133,7 @@ class BagPublisher:
             self._put(topic, raw)
 
     def _latched_before(self, begin_ns: int) -> None:
-        """Publish what was latched when the bag is begun later than at its beginning."""
+        """Publish what was latched before the start, if playing does not start at the beginning."""
         names = [name for name, (topic, _) in self._publishers.items() if _latched(topic)]
         if begin_ns <= self._bag.start_ns or not names:
             return
@@ -166,7 +166,7 @@ class BagPublisher:
         except UnknownTypeError as error:
             self.progress.left_out[topic.name] = error.reason
         except InvalidTopicNameException:
-            # Programs that are not of ROS write MCAP files, too.
+            # Programs outside ROS write MCAP files, too.
             self.progress.left_out[topic.name] = say("not a valid name of a ROS topic")
         else:
             self._publishers[topic.name] = (topic, publisher)
@@ -185,7 +185,7 @@ class BagPublisher:
                 self.progress.left_out[name] = say("{node} publishes it", node=", ".join(others))
 
     def _end(self) -> None:
-        """Let nothing go on that was asked for, and nothing be lost that is under way."""
+        """Stop what was set in motion, and let messages under way arrive."""
         from rclpy.duration import Duration
 
         deadline_s = time.monotonic() + ACKED_WITHIN_S

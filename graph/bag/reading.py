@@ -1,6 +1,6 @@
-"""A recorded bag to be read: a rosbag2 directory (MCAP, sqlite3) or a bare MCAP file.
+"""Reads recorded bags: a rosbag2 directory (MCAP, sqlite3) or a bare MCAP file.
 
-One that was cut short, by a crash or a full disk, is read as far as it goes, and says so.
+A bag that was cut short, by a crash or a full disk, is read as far as it goes, and says so.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ class TopicInBag:
     messages: int
     reliability: str = ""
     durability: str = ""
-    """Offered by its first publisher: `reliable`, `volatile`; empty if the bag does not say."""
+    """QoS offered by its first publisher: `reliable`, `volatile`; empty if the bag does not say."""
 
 
 class Bag:
-    """An open bag; to be closed, or used in a `with`."""
+    """An open bag; close it, or use it in a `with`."""
 
     def __init__(self, path: Path, reader: BagReader, cut: Words | None) -> None:
         """Use `open_bag` to make one."""
@@ -64,7 +64,7 @@ class Bag:
 
     @property
     def damage(self) -> Words | None:
-        """What was left out so far because it cannot be read; grows while messages are read."""
+        """What has been left out so far as unreadable; grows while messages are read."""
         lost = self._reader.lost
         if not lost:
             return None
@@ -93,8 +93,8 @@ class Bag:
     ) -> Iterator[tuple[TopicInBag, int, bytes]]:
         """Yield topic, unix time in nanoseconds and raw message in the order of their times.
 
-        `names`: of which topics, all if empty. Chunks of an MCAP that are damaged are left out, see
-        `damage`; raises BagError where a bag of another kind turns out to be damaged.
+        `names`: of which topics, all if empty. Damaged chunks of an MCAP file are left out, see
+        `damage`; raises BagError if a bag of another kind turns out to be damaged.
         """
         wanted = [each for each in self._reader.connections if not names or each.topic in names]
         try:
@@ -106,7 +106,7 @@ class Bag:
             raise unreadable(self.path, error) from error
 
     def on_this_thread(self) -> Bag:
-        """Return a bag that this thread may read: a sqlite3 is bound to who has opened it."""
+        """Return a bag that this thread may read: sqlite3 is bound to the thread that opened it."""
         if not any(self.path.glob("*.db3")) and self.path.suffix != ".db3":
             return self
         self.close()
@@ -124,7 +124,7 @@ class Bag:
 
 
 def open_bag(path: Path) -> Bag:
-    """Open a bag. Raises BagError with a word that names the file and the mend."""
+    """Open a bag. Raises BagError with words that name the file and the fix."""
     from graph.bag.files import CutFiles, WholeBag
 
     files = files_of(path)
@@ -147,7 +147,7 @@ def open_bag(path: Path) -> Bag:
 
 
 def _unreadable(path: Path, files: list[Path], error: Exception) -> BagError:
-    """Return why no reader takes the files, by their first bytes if these tell it."""
+    """Return why no reader accepts the files, judged by their first bytes if possible."""
     with suppress(OSError):
         reason = defect_of(path, files, metadata_of(path))
         if reason:
@@ -156,7 +156,7 @@ def _unreadable(path: Path, files: list[Path], error: Exception) -> BagError:
 
 
 def files_of(path: Path) -> list[Path]:
-    """Return the files with messages; none of them is opened.
+    """Return the files that hold messages, without opening any.
 
     Raises BagError if there are none, or none that can be read.
     """
@@ -187,7 +187,7 @@ def _files(path: Path) -> list[Path]:
 
 
 def unknown_storage(path: Path, storage: object) -> BagError:
-    """Return that Deck does not read this kind of storage."""
+    """Return the error for a kind of storage that Deck does not read."""
     return BagError(
         say(
             "{path}: storage {storage!r} is not known, only mcap and sqlite3; convert it: "
@@ -199,7 +199,7 @@ def unknown_storage(path: Path, storage: object) -> BagError:
 
 
 def metadata_of(folder: Path) -> Mapping[str, Any]:
-    """Return what metadata.yaml says; nothing if it is missing or broken: readers say more."""
+    """Return the content of metadata.yaml; nothing if it is missing or broken: readers say more."""
     import yaml
 
     try:

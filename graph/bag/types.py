@@ -1,7 +1,7 @@
-"""The definitions of message types as text, as a bag carries them for its readers.
+"""The definitions of message types as text, as a bag stores them for its readers.
 
-Taken from the library's own store of ROS 2 Jazzy; for what that does not know from the `.msg`
-files of the installed packages; where a package has none, made from the fields of its class.
+They come from the library's own store of ROS 2 Jazzy; types unknown to it come from the `.msg`
+files of the installed packages, or, where a package has none, are made from the fields of a class.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SEPARATOR = "=" * 80
 MSG_NAMES = {"boolean": "bool", "float": "float32", "double": "float64", "octet": "byte"}
-"""The generator's name of a plain type to that of a `.msg` file."""
+"""The generator's name of a plain type to its name in a `.msg` file."""
 PLAIN = frozenset(
     {
         *("bool", "byte", "char", "float32", "float64", "string", "wstring"),
@@ -29,16 +29,16 @@ PLAIN = frozenset(
     }
 )
 PARTS = {"Feedback": "action", "Request": "srv", "Response": "srv"}
-"""Of what a generated message is a part, by how its name ends."""
+"""The kind of interface that a generated message belongs to, by the suffix of its name."""
 _TYPE = re.compile(r"^\s*(?P<name>[A-Za-z][\w/]*)")
 _CONSTANT = re.compile(r"^\s*\S+\s+\w+\s*=")
 
 
 def definition(type_name: str, digest: str = "") -> str:
-    """Return the text of a type, with those of the types in it below.
+    """Return the text of a type, followed by those of the types in it.
 
-    `digest`, `RIHS01_...`, is what the publisher says of its type: a definition of the store's
-    that is another is not taken. Raises UnknownTypeError for a type that is not installed.
+    `digest`, `RIHS01_...`, is the publisher's hash of its type: a definition in the store with
+    another hash is not used. Raises UnknownTypeError for a type that is not installed.
     """
     store = jazzy()
     if type_name in store.fielddefs and digest in {"", store.hash_rihs01(type_name)}:
@@ -47,7 +47,7 @@ def definition(type_name: str, digest: str = "") -> str:
 
 
 def hash_of(type_name: str) -> str:
-    """Return the hash of a type of the store's, empty for any other."""
+    """Return the hash of a type in the store, empty for any other."""
     store = jazzy()
     return store.hash_rihs01(type_name) if type_name in store.fielddefs else ""
 
@@ -61,7 +61,7 @@ def jazzy() -> Typestore:
 
 
 def _gathered(type_name: str) -> str:
-    """Return the installed text of a type and, below it, of every type that it needs."""
+    """Return the installed text of a type, followed by every type that it needs."""
     texts: dict[str, str] = {}
     wanted = [type_name]
     while wanted:
@@ -86,7 +86,7 @@ def _installed(type_name: str) -> str:
 
 
 def _class(type_name: str) -> Any:  # noqa: ANN401 - generated, without a base class
-    """Return the class of a message, be it the inner part of an action's or a service's."""
+    """Return the class of a message, which may be an inner part of an action or a service."""
     whole, _, part = type_name.rpartition("_")
     if whole and part in PARTS:
         owner = load_action(whole) if PARTS[part] == "action" else load_service(whole)
@@ -98,7 +98,7 @@ def _written(kind: FieldType) -> str:
     """Return how a `.msg` file writes the type of a field."""
     element = MSG_NAMES.get(kind.element, kind.element)
     if (of := PARTS.get(element.rpartition("_")[2])) is not None:
-        # In full: readers take a shorter name for that of a message, and its hash is another.
+        # In full: readers take a shorter name for a message's, which has another hash.
         element = element.replace("/", f"/{of}/", 1)
     if kind.text_limit is not None:
         element += f"<={kind.text_limit}"

@@ -1,5 +1,5 @@
-"""Requests to other nodes, none of them blocking: services, goals, parameters.
+"""Non-blocking requests to other nodes: services, goals, parameters.
 
-The observer drives `services`, `goals`, `goals_seen` and `parameters` on its thread; from other
-rooms only `parameters_file` and `timeouts`.
+The observer drives `services`, `goals`, `goals_seen` and `parameters` on its thread; other rooms
+may import only `parameters_file` and `timeouts`.
 """

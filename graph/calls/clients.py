@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 KEPT = 32
-"""Whoever looks at the parameters of a hundred nodes needs no three hundred clients after that."""
+"""Looking at the parameters of a hundred nodes must not leave three hundred clients behind."""
 SETTLE_S = 0.1
-"""A service is found here before it has found the client, and its answer to a stranger is lost."""
+"""A service is discovered here before it discovers the client; until then its answers are lost."""
 
 
 class Clients:
@@ -30,14 +30,14 @@ class Clients:
     def get(self, service: str, type_name: str, busy: Container[Client]) -> Client:
         """Return the client; may close others that are not `busy`.
 
-        Raises UnknownTypeError, and what rclpy raises for a name that is none.
+        Raises UnknownTypeError, and what rclpy raises for an invalid name.
         """
         key = (service, type_name)
         client = self._clients.pop(key, None)
         if client is None:
             client = self._node.create_client(load_service(type_name), service)
             self._close_some(busy)
-            # Its time begins now, though it may be asked something later.
+            # Its time starts now, although the first request may come later.
             self.is_ready(client)
         self._clients[key] = client
         return client

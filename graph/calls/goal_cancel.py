@@ -1,4 +1,4 @@
-"""Cancelling one goal that somebody else has sent: a client for this alone, and its answer."""
+"""Cancels one goal that another client has sent: a client for this alone, and its answer."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ ID_BYTES = 16
 
 
 class Cancelling:
-    """One request to cancel, until it is answered; `step` it, and `close` it in the end."""
+    """One request to cancel, until it is answered; call `step` repeatedly, then `close`."""
 
     def __init__(self, node: Node, action: str, type_name: str, goal_id: str) -> None:
         """Make the client. Raises UnknownTypeError, ValueError, and what rclpy raises."""
         self.action = action
         self._id = bytes.fromhex(goal_id)
-        # A request with an id of zeros is one to cancel them all (source: action_msgs/CancelGoal).
+        # A request with an all-zero id cancels all goals (source: action_msgs/CancelGoal).
         if len(self._id) != ID_BYTES or not any(self._id):
             raise ValueError(f"{goal_id} is no id of a goal")
         self._line = ActionLine(node, action, type_name)
@@ -32,9 +32,9 @@ class Cancelling:
         self._request: int | None = None
 
     def step(self, status: GoalStatus | None) -> str | None:
-        """Go on; return what came of it: why it is refused, or nothing; None while it is awaited.
+        """Continue; return the outcome: why it was refused, or an empty text; None while waiting.
 
-        `status` is how the goal stands: its server's answer may get lost, its status does not.
+        `status` is the goal's status by now: the server's answer may get lost, the status does not.
         """
         heard = self._line.take()
         if status is not None and (status.ended or status is GoalStatus.CANCELING):

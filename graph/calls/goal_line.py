@@ -1,7 +1,7 @@
 """The client side of one action: sends requests and takes what has arrived, without blocking.
 
-rclpy's own ActionClient needs an executor to be woken by; this one holds the same handle of rcl
-and is asked a few times a second.
+rclpy's own ActionClient needs an executor to wake it; this one holds the same rcl handle and is
+polled a few times a second.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 FEEDBACKS = 100
-"""Kept between two looks."""
+"""Queue between two polls."""
 LOOK_AT_SERVERS_S = 0.25
 
 
 @dataclass
 class GoalAnswers:
-    """What has arrived since the previous look; responses by the number of their request."""
+    """What has arrived since the previous poll; responses by the number of their request."""
 
     accepted: dict[int, bool] = field(default_factory=dict)
     results: dict[int, Any] = field(default_factory=dict)
     cancelled: dict[int, bool] = field(default_factory=dict)
-    """Whether the server agrees to cancel, or the goal has just ended."""
+    """Whether the server agreed to cancel, or the goal has just ended."""
     feedback: dict[bytes, list[Any]] = field(default_factory=dict)
     """By the goal's id, oldest first."""
     status: dict[bytes, int] = field(default_factory=dict)
@@ -35,7 +35,7 @@ class GoalAnswers:
 
 
 class Servers:
-    """Who serves an action, asked for a few times a second at most."""
+    """Who serves an action, looked up a few times a second at most."""
 
     def __init__(self, node: Node, action: str) -> None:
         self._node = node
@@ -44,7 +44,7 @@ class Servers:
         self._looked_s = 0.0
 
     def now(self) -> frozenset[bytes]:
-        """Return what identifies each server that is there: one that is started anew is another."""
+        """Return an identifier of each existing server; a restarted server has a new one."""
         now_s = time.monotonic()
         if now_s - self._looked_s >= LOOK_AT_SERVERS_S:
             self._looked_s = now_s
@@ -54,7 +54,7 @@ class Servers:
 
 
 def status_topic(action: str) -> str:
-    """Return where the servers of an action tell everybody how all goals stand."""
+    """Return the topic on which the servers of an action publish the status of all goals."""
     return f"{action}/_action/status"
 
 
@@ -62,7 +62,7 @@ class ActionLine:
     """The client of one action."""
 
     def __init__(self, node: Node, action: str, type_name: str) -> None:
-        """Make it. Raises UnknownTypeError, and what rclpy raises for a name that is none."""
+        """Create the client. Raises UnknownTypeError, and what rclpy raises for an invalid name."""
         from rclpy.impl.implementation_singleton import rclpy_implementation
         from rclpy.qos import (
             QoSProfile,
@@ -87,7 +87,7 @@ class ActionLine:
 
     @property
     def is_ready(self) -> bool:
-        """Whether a server is there and matched."""
+        """Whether a server exists and is matched."""
         ready: bool = self._handle.is_action_server_available()
         return ready
 
@@ -100,7 +100,7 @@ class ActionLine:
         return number
 
     def ask_result(self, goal_id: bytes) -> int:
-        """Ask for the result of a goal, whenever it is there; return the number of the request."""
+        """Ask for the result of a goal, once there is one; return the number of the request."""
         request = self.type.Impl.GetResultService.Request()
         request.goal_id.uuid = list(goal_id)
         number: int = self._handle.send_result_request(request)
@@ -114,7 +114,7 @@ class ActionLine:
         return number
 
     def take(self) -> GoalAnswers:
-        """Take all that has come."""
+        """Take everything that has arrived."""
         heard = GoalAnswers()
         impl, handle = self.type.Impl, self._handle
         for number, response in _all(handle.take_goal_response, impl.SendGoalService.Response):
@@ -137,7 +137,7 @@ class ActionLine:
         self._handle.destroy_when_not_in_use()
 
 
-def _all(take: Any, kind: type[Any]) -> list[tuple[int, Any]]:  # noqa: ANN401 - a method of C
+def _all(take: Any, kind: type[Any]) -> list[tuple[int, Any]]:  # noqa: ANN401 - a C method
     """Take responses until there are none."""
     taken: list[tuple[int, Any]] = []
     while True:

@@ -24,21 +24,21 @@ if TYPE_CHECKING:
     from graph.data import ActionRow, Value
 
 LEAVE_WITHIN_S = 1.5
-"""How long an observer that is stopped waits for servers to agree to cancel."""
+"""How long a stopping observer waits for servers to agree to cancel."""
 LOOK_S = 0.01
 
 
 class GoalError(Exception):
-    """The goal cannot be sent; str() says why, `words` so that it can be translated."""
+    """The goal cannot be sent; str() says why, `words` says it in translatable form."""
 
     def __init__(self, words: str) -> None:
-        """Say why, as `text.sentences.say` makes it."""
+        """Store the reason, made by `text.sentences.say`."""
         super().__init__(words)
         self.words = words
 
 
 class Goals:
-    """All goals that were sent, until they are forgotten."""
+    """All goals that have been sent, until they are forgotten."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -46,7 +46,7 @@ class Goals:
         self._lives: dict[int, GoalLife] = {}
         self._lines: dict[tuple[str, str], ActionLine] = {}
         self._sent: set[bytes] = set()
-        """Ids of all, those that are forgotten too."""
+        """Ids of all goals, forgotten ones included."""
 
     @property
     def under_way(self) -> bool:
@@ -61,9 +61,9 @@ class Goals:
         known: ActionRow | None,
         future: Future[int],
     ) -> None:
-        """Send a goal as soon as a server is there; the future tells its number at once.
+        """Send a goal as soon as there is a server; the future gets its number at once.
 
-        `known` is what the graph says of the action. Raises GoalError, UnknownTypeError or
+        `known` is what the graph knows of the action. Raises GoalError, UnknownTypeError or
         FieldError.
         """
         if known and known.servers and type_name not in known.type_names:
@@ -89,12 +89,12 @@ class Goals:
         return goal_id in self._sent
 
     def cancel(self, number: int) -> None:
-        """Have a goal cancelled; one that has ended, or is not known, is left as it is."""
+        """Cancel a goal; one that has ended or is unknown is left as it is."""
         if number in self._lives:
             self._lives[number].cancel()
 
     def forget(self, number: int) -> None:
-        """Tell no more of a goal; one that has not ended is cancelled."""
+        """Stop reporting a goal; one that has not ended is cancelled."""
         life = self._lives.get(number)
         if life is not None:
             life.is_forgotten = True
@@ -102,7 +102,7 @@ class Goals:
                 life.cancel()
 
     def step(self) -> bool:
-        """Take what has come, send what is due; tell whether an answer is due any moment."""
+        """Take what has arrived, send what is due; return whether an answer is due any moment."""
         if not self._lives:
             return False
         for line in list(self._lines.values()):
@@ -114,11 +114,11 @@ class Goals:
         return any(life.is_urgent for life in self._lives.values())
 
     def rows(self) -> tuple[Goal, ...]:
-        """Return all goals that are not forgotten, oldest first."""
+        """Return all goals except forgotten ones, oldest first."""
         return tuple(life.snapshot() for life in self._lives.values() if not life.is_forgotten)
 
     def close(self) -> None:
-        """Have all goals cancelled, within bounds: a robot must not drive on for nobody."""
+        """Cancel all goals, within a time limit: no robot must drive on with nobody in charge."""
         for life in self._lives.values():
             if life.may_drive:
                 life.cancel()
@@ -158,6 +158,6 @@ def _go_on(line: ActionLine, lives: list[GoalLife]) -> None:
             going = [life]
             life.hear(heard)
             life.act()
-    except Exception as error:  # noqa: BLE001 - one odd server must not end what else is under way
+    except Exception as error:  # noqa: BLE001 - one odd server must not end the other goals
         for life in going:
             life.fail(str(error))

@@ -1,7 +1,7 @@
-"""Goals that others have sent, as every action server publishes them, and how they end.
+"""Goals that other clients have sent, as every action server publishes them, and how they end.
 
-A server publishes the state of all its goals, latched, and their feedback; whoever sent a goal
-and whoever looks on hear the same. So Deck needs no client until it is told to cancel one.
+A server publishes the status of all its goals, latched, and their feedback; the sender of a goal
+and an onlooker receive the same. So Deck needs no client until it is asked to cancel a goal.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 LONGEST_S = 24 * 3600.0
-"""A goal that seems to be older than this was dated by another clock, as that of a simulation."""
+"""A goal that seems older than this was dated by another clock, such as a simulation's."""
 NANOSECONDS = 1e-9
 
 
 @dataclass
 class _Seen:
-    """One goal of another."""
+    """One goal of another client."""
 
     told: SeenGoal
     accepted_s: float
     """Unix time by its server's clock."""
     ended_s: float | None = None
-    """When it was seen to end; None too if it had ended before anybody looked."""
+    """When it was seen to end; None also if it had ended before Deck began to look."""
 
     def snapshot(self, error: str) -> SeenGoal:
-        """Return it as it is now."""
+        """Return the goal as it is now."""
         now_s = None if self.told.ended else time.time()
         age_s = (self.ended_s or now_s or math.inf) - self.accepted_s
         sane_s = age_s if 0 <= age_s <= LONGEST_S else None
@@ -57,7 +57,7 @@ class SeenAction:
     """What is known of the goals of one action."""
 
     def __init__(self, node: Node, action: str, type_name: str) -> None:
-        """Begin to listen. Raises what rclpy raises for a name that is none."""
+        """Subscribe. Raises what rclpy raises for an invalid name."""
         from action_msgs.msg import GoalStatusArray
         from rclpy.qos import QoSProfile, qos_profile_action_status_default
 
@@ -75,7 +75,7 @@ class SeenAction:
         try:
             kind: Any = load_action(type_name)
         except UnknownTypeError:
-            # What its feedback is made of nobody knows here; its status is the same everywhere.
+            # The type of its feedback is unknown here; its status has the same type everywhere.
             return
         self._feedback = _subscribe(
             node,
@@ -85,7 +85,7 @@ class SeenAction:
         )
 
     def take(self) -> None:
-        """Take what has come."""
+        """Take what has arrived."""
         for message in _taken(self._status):
             self._hear_status(message.status_list)
         for message in _taken(self._feedback) if self._feedback else ():
@@ -108,17 +108,17 @@ class SeenAction:
                 yield seen.snapshot(errors.get(seen.told.goal_id, ""))
 
     def status_of(self, goal_id: str) -> GoalStatus | None:
-        """Return how this goal stands; None if nothing is known of it."""
+        """Return the status of this goal; None if nothing is known of it."""
         seen = self._goals.get(bytes.fromhex(goal_id))
         return None if seen is None else seen.told.status
 
     def close(self) -> None:
-        """Listen no more."""
+        """Unsubscribe."""
         for subscription in filter(None, (self._status, self._feedback)):
             self._node.destroy_subscription(subscription)
 
     def _hear_status(self, listed: Iterable[Any]) -> None:
-        """What its server lists no more is forgotten here, too."""
+        """Process a status list; goals that the server no longer lists are forgotten here, too."""
         before, self._goals = self._goals, {}
         for each in listed:
             status = STATUS.get(each.status)
@@ -140,7 +140,7 @@ class SeenAction:
                 seen.told = replace(seen.told, error=say(LOST))
 
     def _end(self, seen: _Seen, status: GoalStatus) -> None:
-        # A goal of a moment may be heard of only when it has ended.
+        # A very short goal may be noticed only after it has ended.
         goes_on = not seen.told.ended or seen.accepted_s >= self._since_s
         seen.told = replace(seen.told, status=status)
         if seen.told.ended and seen.ended_s is None and goes_on:
@@ -151,7 +151,7 @@ class SeenGoals:
     """The actions that are watched."""
 
     def __init__(self, node: Node, is_own: Callable[[bytes], bool]) -> None:
-        """`is_own` tells of an id whether Deck itself has sent that goal."""
+        """`is_own` returns whether Deck itself has sent the goal with this id."""
         self._node = node
         self._is_own = is_own
         self._actions: dict[str, SeenAction] = {}
@@ -160,7 +160,7 @@ class SeenGoals:
         """Id to why that goal was not cancelled."""
 
     def tune(self, wanted: frozenset[str], known: Iterable[ActionRow]) -> None:
-        """Listen to exactly the actions that are wanted and known."""
+        """Subscribe to exactly the actions that are wanted and known."""
         types = {row.name: row.type_names[0] for row in known if row.name in wanted}
         for name, action in list(self._actions.items()):
             if name not in wanted or types.get(name, action.type_name) != action.type_name:
@@ -170,11 +170,11 @@ class SeenGoals:
                 try:
                     self._actions[name] = SeenAction(self._node, name, type_name)
                 except Exception:
-                    # A name that only others allow; the rest of the graph is told all the same.
+                    # Only other programs allow this name; the rest of the graph is still reported.
                     logger.exception("the goals of %s cannot be seen", name)
 
     def step(self) -> bool:
-        """Take what has come; tell whether the answer to a request to cancel is due."""
+        """Take what has arrived; return whether the answer to a request to cancel is due."""
         for action in self._actions.values():
             action.take()
         for goal_id, cancelling in list(self._cancelling.items()):
@@ -186,7 +186,7 @@ class SeenGoals:
         return bool(self._cancelling)
 
     def rows(self) -> tuple[SeenGoal, ...]:
-        """Return the goals of others."""
+        """Return the goals of other clients."""
         return tuple(
             row
             for _name, action in sorted(self._actions.items())
@@ -194,7 +194,7 @@ class SeenGoals:
         )
 
     def cancel(self, action: str, goal_id: str) -> None:
-        """Ask for a goal that has not ended to be cancelled, if its action is looked at."""
+        """Ask for a goal that has not ended to be cancelled, if its action is watched."""
         seen = self._actions.get(action)
         status = None if seen is None else seen.status_of(goal_id)
         if seen is None or status is None or status.ended or goal_id in self._cancelling:
@@ -220,7 +220,7 @@ def _subscribe(node: Node, kind: Any, topic: str, qos: Any) -> Subscription:  # 
 
 
 def _taken(subscription: Subscription) -> Iterable[Any]:
-    """Yield what lies in the queue, as it was when this began at most."""
+    """Yield what is in the queue; bounded, or a fast publisher could keep this busy for ever."""
     with subscription.handle:
         for _ in range(2 * FEEDBACKS):
             taken = subscription.handle.take_message(subscription.msg_type, False)

@@ -1,4 +1,4 @@
-"""Messages as plain trees: types as installed, values, YAML forms, conditions, from and to bytes.
+"""Messages as plain trees: installed types, values, YAML forms, conditions, conversion to bytes.
 
-No node and no subscription here: what comes in are bytes or message objects.
+No nodes or subscriptions here: the input is bytes or message objects.
 """

@@ -1,8 +1,8 @@
 """Whether a message fits an expression: `m.data > 0.5`, as `ros2 topic echo --filter` takes it.
 
-Only what is listed here is understood, and nothing of it is ever run as Python: fields, elements,
-comparisons, arithmetic, `and`, `or`, `not`, `in` and a few functions. Nothing can be called on a
-message, and nothing is reached but its fields. (Evaluators of PyPI reach for attributes of live
+Only what is listed here is understood, and nothing is ever run as Python: fields, elements,
+comparisons, arithmetic, `and`, `or`, `not`, `in` and a few functions. No method of a message can
+be called, and only its fields can be reached. (The evaluators on PyPI read attributes of live
 objects, and do not say where in the text something is wrong.)
 """
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from graph.data import Value
 
 MESSAGE = "m"
-"""What the message is called."""
+"""The name of the message in an expression."""
 LONGEST = 500
 DEEPEST = 40
-"""Brackets and signs within each other."""
+"""Maximum nesting of brackets and signs."""
 QUOTED = 60
 """Characters of the expression that an error repeats."""
 _OPERATORS = (
@@ -38,10 +38,10 @@ _NODES = (
 
 
 class ConditionError(ValueError):
-    """Something is wrong with an expression, or it asks what a message cannot answer."""
+    """An expression is wrong, or asks for something that a message does not have."""
 
     def __init__(self, column: int, part: str, message: str) -> None:
-        """Say what is wrong with this part of the expression, which begins at this column."""
+        """Report what is wrong with this part of the expression, which begins at this column."""
         self.column = column
         """Counted from 1."""
         self.words = say(
@@ -52,10 +52,10 @@ class ConditionError(ValueError):
 
 
 class MessageFilter:
-    """An expression over a message that is called `m`."""
+    """An expression about a message, which is called `m`."""
 
     def __init__(self, text: str) -> None:
-        """Take it in. Raises ConditionError."""
+        """Parse and check the expression. Raises ConditionError."""
         self._text = text
         self._skipped = len(text) - len(text.lstrip())
         if len(text) > LONGEST:
@@ -64,7 +64,7 @@ class MessageFilter:
         self._check(self._root, 0)
 
     def holds(self, message: Mapping[str, Value]) -> bool:
-        """Tell whether it is true of this message. Raises ConditionError."""
+        """Return whether it is true of this message. Raises ConditionError."""
         try:
             return truth(self._root, evaluate(self._root, {**CONSTANTS, MESSAGE: message}))
         except RefusalError as refusal:
@@ -72,12 +72,12 @@ class MessageFilter:
 
     def _parsed(self, text: str) -> ast.expr:
         try:
-            # Of an odd escape in a text Python warns, on the terminal that is the screen.
+            # Python warns about an odd escape in a string, on the terminal that is the screen.
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 return ast.parse(text, mode="eval").body
         except SyntaxError as error:
-            # No place is given where the end has come too soon.
+            # Python gives no position if the expression ends too early.
             at = min(error.offset or len(text) + 1, len(text) + 1)
             why = say("cannot be parsed from here on")
             if text[at - 1 : at] == "=" or "'=='" in (error.msg or ""):
@@ -88,7 +88,7 @@ class MessageFilter:
             raise ConditionError(1, "", why) from error
 
     def _check(self, node: ast.AST, depth: int) -> None:
-        """Refuse whatever is not listed above, before any message comes."""
+        """Refuse whatever is not listed above, before any message arrives."""
         if depth > DEEPEST:
             raise self._error(node, say("too many nested brackets"))
         if isinstance(node, (*_OPERATORS, ast.Load)):
@@ -105,7 +105,7 @@ class MessageFilter:
         else:
             children = list(ast.iter_child_nodes(node))
         for child in children:
-            # An operator has no place of its own.
+            # An operator has no position of its own.
             if not isinstance(child, (ast.expr, *_OPERATORS, ast.Load)):
                 raise self._error(node, say("this cannot be used here"))
             self._check(child, depth + 1)
@@ -127,7 +127,7 @@ class MessageFilter:
 
     def _error(self, node: ast.AST, words: str) -> ConditionError:
         text = self._text.strip()
-        # Places are counted in bytes of UTF-8; an operator has none.
+        # Positions are counted in UTF-8 bytes; an operator has none.
         at = len(text.encode()[: getattr(node, "col_offset", 0)].decode(errors="ignore"))
         part = ast.get_source_segment(text, node) if isinstance(node, ast.expr) else ""
         shown = part if part and len(part) <= QUOTED else (part or "")[: QUOTED - 1] + "…"

@@ -1,6 +1,6 @@
-"""The time of sending in a message: `stamp: now` and `header: auto`, as in `ros2 topic pub`.
+"""Fills in the time of sending: `stamp: now` and `header: auto`, as in `ros2 topic pub`.
 
-Source of the two words: ros2cli, `ros2 topic pub --help`.
+Source of the two keywords: ros2cli, `ros2 topic pub --help`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ TIME = "builtin_interfaces/Time"
 NOW, AUTO = "now", "auto"
 _WORDS = {TIME: NOW, HEADER: AUTO}
 _STAMP = {TIME: (), HEADER: ("stamp",)}
-"""Where the time is in what the word stands for."""
+"""Path of the time within the field that the keyword replaces."""
 NANOSECONDS_PER_S = 1_000_000_000
 Path: TypeAlias = "tuple[str | int, ...]"
 
@@ -37,7 +37,7 @@ class Draft:
     """The fields that hold the time of sending."""
 
     def dated(self) -> Any:  # noqa: ANN401 - generated, without a base class
-        """Return the message as it is to be sent at this moment, by the clock of the system."""
+        """Return the message as it should be sent at this moment, by the system clock."""
         seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_S)
         for path in self.stamps:
             field = self.message
@@ -48,7 +48,7 @@ class Draft:
 
 
 def draft(cls: type[Any], tree: Mapping[str, Value]) -> Draft:
-    """Return a message of the class with these fields, as `to_message` does, but for the two words.
+    """Return a message of the class with these fields, as `to_message` does, with the two keywords.
 
     Raises FieldError.
     """
@@ -72,7 +72,7 @@ def with_words(cls: type[Any], tree: Mapping[str, Value]) -> dict[str, Value]:
 
 def _without_words(
     cls: type[Any],
-    tree: Any,  # noqa: ANN401 - whatever was typed; what does not fit is told when it is made
+    tree: Any,  # noqa: ANN401 - whatever was typed; errors are reported when the message is made
     path: Path,
     stamps: list[Path],
 ) -> Any:  # noqa: ANN401

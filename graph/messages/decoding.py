@@ -1,4 +1,4 @@
-"""From the bytes of a message to its tree."""
+"""Decodes the bytes of a message into its tree."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ LITTLE_ENDIAN_CDR = b"\x00\x01"
 
 
 def decoder(type_name: str) -> Callable[[bytes], dict[str, Value]]:
-    """Return what makes a tree of a serialized message of this type.
+    """Return a function that decodes a serialized message of this type into a tree.
 
-    Raises UnknownTypeError; what it returns raises whatever rclpy does for bytes that are no such
-    message.
+    Raises UnknownTypeError; the returned function raises what rclpy raises for bytes that are not
+    such a message.
     """
     from rclpy.serialization import deserialize_message
 
@@ -37,9 +37,9 @@ def decoder(type_name: str) -> Callable[[bytes], dict[str, Value]]:
 
 
 def read_image(raw: bytes) -> dict[str, Value] | None:
-    """Return the tree of a `sensor_msgs/Image`, None for bytes that rclpy should have a look at.
+    """Return the tree of a `sensor_msgs/Image`, None for bytes that rclpy should decode instead.
 
-    rclpy copies the pixels three times on the way, this once: at 640x480 and 10 Hz that is one
+    rclpy copies the pixels three times, this function once: at 640x480 and 10 Hz that saves one
     hundredth of a core. Layout: OMG DDS-XTypes 1.3, 7.4.1, plain CDR, numbers aligned to their
     size.
     """
@@ -65,7 +65,7 @@ def read_image(raw: bytes) -> dict[str, Value] | None:
 
 
 class _CdrCursor:
-    """A place in plain CDR."""
+    """A read position in plain CDR."""
 
     def __init__(self, raw: bytes) -> None:
         self._raw = raw
@@ -73,7 +73,7 @@ class _CdrCursor:
 
     def number(self, form: str) -> int:
         size = struct.calcsize(form)
-        # Counted from the end of the head of four bytes, which is the same up to a size of four.
+        # Alignment counts from the end of the four-byte header: no difference for sizes up to four.
         self._at += -self._at % size
         (number,) = struct.unpack_from(form, self._raw, self._at)
         self._at += size

@@ -20,10 +20,10 @@ INTEGERS = {
 }
 """Least and greatest value; `octet` is ROS's `byte`."""
 FLOATS = {"float": 3.4028234663852886e38, "double": 1.7976931348623157e308, "long double": 0.0}
-"""Greatest finite value; 0 where there is none to know."""
+"""Greatest finite value; 0 if it is not fixed."""
 STRINGS = frozenset({"string", "wstring"})
 BYTES = frozenset({"octet", "uint8", "char"})
-"""Elements whose arrays are shown as bytes."""
+"""Element types whose arrays are shown as bytes."""
 
 _ROS_NAMES = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 _SEQUENCE = re.compile(r"^sequence<(?P<element>.+?)(?:, (?P<limit>\d+))?>$")
@@ -33,17 +33,17 @@ _STRING = re.compile(r"^(?P<kind>w?string)(?:<(?P<limit>\d+)>)?$")
 
 @dataclass(frozen=True)
 class FieldType:
-    """What one field may hold."""
+    """The type of one field."""
 
     element: str
-    """`double`, `string`, `std_msgs/Header`: of the field itself or of its elements."""
+    """`double`, `string`, `std_msgs/Header`: type of the field itself or of its elements."""
     is_many: bool = False
     size: int | None = None
-    """Of an array with a fixed number of elements."""
+    """Number of elements of a fixed-size array."""
     limit: int | None = None
-    """Greatest number of elements of a bounded sequence."""
+    """Maximum number of elements of a bounded sequence."""
     text_limit: int | None = None
-    """Greatest number of characters of a bounded string."""
+    """Maximum number of characters of a bounded string."""
 
     @property
     def is_message(self) -> bool:
@@ -64,7 +64,7 @@ class FieldType:
 
 @lru_cache(maxsize=1024)
 def parse(text: str) -> FieldType:
-    """Return what `get_fields_and_field_types()` of a message says of one field."""
+    """Parse the type of one field, as `get_fields_and_field_types()` of a message gives it."""
     if array := _ARRAY.match(text):
         element, limit = _text(array["element"])
         return FieldType(element, is_many=True, size=int(array["size"]), text_limit=limit)

@@ -19,32 +19,32 @@ if TYPE_CHECKING:
 SHOWN = 40
 """Characters of a wrong value that an error repeats."""
 ROUNDED = 1 + 2**-26
-"""The greatest float32 in its shortest form, 3.4028235e+38, is a little more than it is."""
+"""The shortest form of the greatest float32, 3.4028235e+38, is a little more than its value."""
 
 
 class FieldError(ValueError):
-    """A value does not fit its field; str() is `field: what was expected, and what was got`."""
+    """A value does not fit its field; str() is `field: what was expected, and what was given`."""
 
     def __init__(self, field: str, message: str) -> None:
-        """Say what is wrong with the field of this path: `header.stamp.sec`, `points[2].x`."""
+        """Store what is wrong with the field of this path: `header.stamp.sec`, `points[2].x`."""
         super().__init__(f"{field}: {message}" if field else message)
         self.field = field
         self.message = message
         """Made by `text.sentences.say`, so that it can be translated."""
         self.line: int | None = None
-        """Where it stands in a text, counted from 1, as far as there is one. So with the next."""
+        """Place of the value in a text, counted from 1, if there is a text, as is the next."""
         self.column: int | None = None
 
 
 class NoSuchFieldError(FieldError):
-    """There is no field of this name."""
+    """There is no field with this name."""
 
 
 def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> Any:  # noqa: ANN401
     """Return a message of the class with these fields, the others at their defaults.
 
-    Takes what `to_tree` returns, and what YAML or JSON give: lists for arrays, integers for
-    floats, a text for the UTF-8 bytes of it in an array of bytes. Raises FieldError.
+    Accepts what `to_tree` returns, and what YAML or JSON give: lists for arrays, integers for
+    floats, a string for an array of bytes (its UTF-8 bytes). Raises FieldError.
     """
     if not isinstance(tree, Mapping):
         raise FieldError(field, say("expected fields by name, got {value}", value=_shown(tree)))
@@ -62,14 +62,14 @@ def to_message(cls: type[Any], tree: Mapping[str, Value], field: str = "") -> An
 
 
 def _check_comma(before: tuple[str, object], name: object, value: object) -> None:
-    """Of `{x: 0,5}`, which YAML takes for `x: 0` and a field `5`, say what is meant."""
+    """Explain `{x: 0,5}`, which YAML reads as `x: 0` and a field `5`."""
     path, whole = before
     if value is None and type(whole) is int and str(name).isdigit():
         raise FieldError(path, no_number(f"{whole},{name}", ""))
 
 
 def no_such_field(name: str, names: list[str]) -> str:
-    """Say that there is none of this name among these, or which one may be meant."""
+    """Say that none of these has this name, or which one may be meant."""
     if meant := nearest(name, names):
         return say("no such field; did you mean {name}?", name=meant)
     if not names:
@@ -114,7 +114,7 @@ def _many(kind: FieldType, value: Value, path: str) -> object:
 
 
 def _fits_as_it_is(kind: FieldType, elements: object) -> bool:
-    """Tell whether this is the very array that rclpy itself would hold, so no look is needed."""
+    """Return whether this is exactly the array that rclpy itself would hold, so needs no checks."""
     dtype = getattr(elements, "dtype", None)
     return kind.size is not None and dtype is not None and dtype.name == _DTYPES.get(kind.element)
 
@@ -124,7 +124,7 @@ _DTYPES = {"float": "float32", "double": "float64"} | {
 }
 
 
-def _plain(value: Any) -> Any:  # noqa: ANN401 - a number of numpy's, or a value
+def _plain(value: Any) -> Any:  # noqa: ANN401 - a numpy number, or a value
     return value.item() if hasattr(value, "item") else value
 
 

@@ -33,10 +33,10 @@ OURS = frozenset({"deck_interfaces"})
 
 
 def install_names(package: str) -> dict[str, str]:
-    """Return the package's name for `pip`, `apt` and `pixi`; those that have it not are left out.
+    """Return the package's name for `pip`, `apt` and `pixi`; those without it are left out.
 
-    apt (packages.ros.org) and RoboStack have what is released into Jazzy under the same name;
-    whether that package is, nobody can tell from here.
+    apt (packages.ros.org) and RoboStack have everything that is released into Jazzy under the same
+    name; whether this package is released cannot be known here.
     """
     if package in OURS:
         return {}
@@ -46,7 +46,7 @@ def install_names(package: str) -> dict[str, str]:
 
 
 def how_to_install(package: str) -> Words:
-    """Say what to type."""
+    """Return words with the commands that install it."""
     names = install_names(package)
     if not names:
         return say(

@@ -11,25 +11,25 @@ if TYPE_CHECKING:
 HEADER = "std_msgs/Header"
 NANOSECONDS = 1e-9
 FARTHEST_S = 600.0
-"""A stamp that is farther off is of another clock: of a simulation, a bag, a board just booted."""
+"""A stamp farther off than this is from another clock: a simulation, a bag, a board just booted."""
 ENCAPSULATION = 4
-"""Source: OMG DDS-XTypes 1.3, 7.6.3.1: two bytes tell the representation, odd ones are little
-endian; two are options. The body follows, and its first field is not padded."""
+"""Source: OMG DDS-XTypes 1.3, 7.6.3.1: two bytes give the representation, odd is little
+endian; two are options. The body follows; its first field is not padded."""
 LITTLE, BIG = struct.Struct("<iI"), struct.Struct(">iI")
 
 
 def delay_reader(cls: type[Any]) -> Callable[[bytes, float], float | None] | None:
-    """Return what tells how long a message of this class was on its way, None without a header.
+    """Return a function for the delay of messages of this class, None if they have no header.
 
     It takes the serialized message and its arrival in unix time, and returns seconds; None for a
-    stamp of zero or of another clock. A sender whose clock is ahead gives less than nothing.
+    stamp of zero or of another clock. The delay is negative if the sender's clock is ahead.
     """
     fields: dict[str, str] = cls.get_fields_and_field_types()
     return delay_s if next(iter(fields.values()), "") == HEADER else None
 
 
 def delay_s(raw: bytes, arrived_s: float) -> float | None:
-    """Return arrival less stamp, for a message that begins with a header."""
+    """Return arrival minus stamp, for a message that begins with a header."""
     if len(raw) < ENCAPSULATION + LITTLE.size:
         return None
     layout = LITTLE if raw[1] & 1 else BIG

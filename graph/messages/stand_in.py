@@ -1,7 +1,7 @@
 """A class for a type that is not installed: enough to receive its messages, not to decode them.
 
-A subscription needs of a type its name and functions to read and write it. Messages are taken as
-they came, so the functions are never called: those of `std_msgs/String` stand there in their place.
+A subscription needs the name of a type and functions to read and write it. Messages are taken raw,
+so the functions are never called: those of `std_msgs/String` take their place.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ INTROSPECTION = b"rosidl_typesupport_introspection_c"
 MODEL = {b"std_msgs::msg", b"std_msgs__msg"}, b"String"
 NAME_PARTS = 3
 SPARE = 10
-"""Words of zero behind a structure, should a later release look for more."""
+"""Zero words after a structure, in case a later release looks for more."""
 
 Find = CFUNCTYPE(c_void_p, c_void_p, c_char_p)
 HashOf = CFUNCTYPE(c_void_p, c_void_p)
 
 
 class _TypeHash(Structure):
-    """`rosidl_type_hash_t`; version 0 says that it is not known."""
+    """`rosidl_type_hash_t`; version 0 means unknown."""
 
     _fields_ = (("version", c_uint8), ("value", c_uint8 * 32))
 
@@ -58,8 +58,8 @@ class _Callbacks(Structure):
 def stand_in(type_name: str) -> type[Any] | None:
     """Return a class to subscribe to `foo_msgs/msg/Bar` with, and to take its messages raw.
 
-    None where the middleware is another than Fast DDS, or not as this was written for. It lives
-    as long as the process does: the middleware keeps what it has seen of it.
+    None if the middleware is not Fast DDS, or not the version that this was written for. The class
+    lives as long as the process does: the middleware keeps references to it.
     """
     parts = type_name.split("/")
     if len(parts) != NAME_PARTS or not all(part.isidentifier() for part in parts):
@@ -68,7 +68,7 @@ def stand_in(type_name: str) -> type[Any] | None:
     if model is None:
         return None
     capsule, kept = _support(*model, "::".join(parts[:-1]), parts[-1])
-    # rclpy looks for these four, and calls none of them for a message that stays raw.
+    # rclpy looks these four up, but calls none of them for raw messages.
     words = ("_CREATE_ROS_MESSAGE", "_CONVERT_FROM_PY", "_CONVERT_TO_PY", "_DESTROY_ROS_MESSAGE")
     meta = type("StandInType", (type,), {"_TYPE_SUPPORT": capsule, **dict.fromkeys(words, capsule)})
     made: type[Any] = meta(parts[-1], (), {"kept": kept})
@@ -83,7 +83,7 @@ def _model() -> tuple[int, _TypeSupport, _Callbacks] | None:
     if rclpy_c.rclpy_get_rmw_implementation_identifier() != MIDDLEWARE:
         return None
     meta: Any = type(String)
-    if meta._TYPE_SUPPORT is None:  # noqa: SLF001 - it is how rclpy finds it
+    if meta._TYPE_SUPPORT is None:  # noqa: SLF001 - rclpy finds it this way
         meta.__import_type_support__()
     address = _address(meta._TYPE_SUPPORT)  # noqa: SLF001
     finder = _TypeSupport.from_address(address).find
@@ -102,7 +102,7 @@ def _model() -> tuple[int, _TypeSupport, _Callbacks] | None:
 def _support(
     model: int, support: _TypeSupport, callbacks: _Callbacks, namespace: str, name: str
 ) -> tuple[object, tuple[object, ...]]:
-    """Return a type support of that name as rclpy takes it, and what has to outlive it."""
+    """Return a type support of that name as rclpy expects it, and what must outlive it."""
     callbacks.namespace, callbacks.name = namespace.encode(), name.encode()
     type_hash = _TypeHash()
     find_in_model = Find(_TypeSupport.from_address(model).find)
@@ -110,7 +110,7 @@ def _support(
     def find(_: int, identifier: bytes) -> int | None:
         if identifier == IDENTIFIER:
             return ctypes.addressof(support)
-        # It wants to know the fields: those of the model do, nobody compares them.
+        # It asks for the fields: those of the model will do, nobody compares them.
         return find_in_model(model, identifier) if identifier == INTROSPECTION else None
 
     finder, hasher = Find(find), HashOf(lambda _: ctypes.addressof(type_hash))

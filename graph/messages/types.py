@@ -1,4 +1,4 @@
-"""Message and service types by their names, of whatever is installed."""
+"""Finds the installed message, service and action types by name."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FEEDBACK = "_FeedbackMessage"
-"""How the type of the messages on an action's feedback topic ends."""
+"""Suffix of the message type on an action's feedback topic."""
 EVENT = "_Event"
-"""How the type of the messages ends that tell of a service's calls, where it tells of them."""
+"""Suffix of the message type in which a service publishes its calls, if it does."""
 NAME_PARTS = 3
 """`std_msgs/msg/Float32`."""
 
@@ -27,9 +27,9 @@ class UnknownTypeError(Exception):
     def __init__(
         self, type_name: str, package: str, reason: str, install: Mapping[str, str] | None = None
     ) -> None:
-        """Say why `type_name` cannot be had; `package` is where it should have come from.
+        """Store why `type_name` is unavailable; `package` is where it should have come from.
 
-        `install` has the names that would bring it, by `pip`, `apt` and `pixi`.
+        `install` has the names of the missing package for `pip`, `apt` and `pixi`.
         """
         super().__init__(reason)
         self.install = install or {}
@@ -42,9 +42,9 @@ class UnknownTypeError(Exception):
 def load_message(type_name: str) -> type[Any]:
     """Return the class of a message such as `std_msgs/msg/Float32`.
 
-    So it does for the feedback of an action, `package/action/Name_FeedbackMessage`, and for what
-    a service tells of its calls, `package/srv/Name_Event`. Raises UnknownTypeError, also when the
-    package is there and its import fails.
+    It also accepts the feedback of an action, `package/action/Name_FeedbackMessage`, and the event
+    of a service, `package/srv/Name_Event`. Raises UnknownTypeError, also if the package exists but
+    its import fails.
     """
     found: type[Any]
     if "/action/" in type_name and type_name.endswith(FEEDBACK):
@@ -100,7 +100,7 @@ def _load(type_name: str, kind: str) -> type[Any]:
             raise UnknownTypeError(type_name, package, words, names) from error
         raise UnknownTypeError(type_name, package, _missing(error, package, kind)) from error
     except Exception as error:
-        # A broken package may raise anything, and must not take the observer along.
+        # A broken package may raise anything, and must not take the observer down.
         reason = _broken(package, error)
         raise UnknownTypeError(type_name, package, reason) from error
     if found is None:
@@ -109,7 +109,7 @@ def _load(type_name: str, kind: str) -> type[Any]:
 
 
 def _import_type_support(found: Any) -> None:  # noqa: ANN401 - generated, without a base class
-    """Load the C library behind a class now, where its failure can be named."""
+    """Load the C library behind a class now, where a failure can be reported."""
     if getattr(found, "_TYPE_SUPPORT", None) is None:
         found.__import_type_support__()
 
@@ -125,7 +125,7 @@ def _missing(error: ModuleNotFoundError, package: str, kind: str) -> Words:
 
 
 def not_subscribed(topic: str, type_name: str, error: Exception) -> Words:
-    """Say that a topic cannot be heard, as where a second type is under one name."""
+    """Say that a topic cannot be subscribed, for example if its name has a second type."""
     return say(
         "{topic} cannot be subscribed as {type}: {error}",
         topic=topic,

@@ -13,19 +13,19 @@ if TYPE_CHECKING:
     from graph.data import Value
 
 DUMMY = "structure_needs_at_least_one_member"
-"""What the generator puts into a message without fields."""
+"""Dummy field that the generator puts into a message without fields."""
 
 
 def to_tree(message: Any) -> dict[str, Value]:  # noqa: ANN401 - generated, without a base class
-    """Return the message's fields in their order, by the rules of `graph.data.Value`.
+    """Return the message's fields in order, by the rules of `graph.data.Value`.
 
-    Arrays of numbers are not copied where the message owns them: do not change the message then.
+    Arrays of numbers that the message owns are not copied: do not change the message afterwards.
     """
     return {name: read(getattr(message, name)) for name, read in _readers(type(message))}  # type: ignore[arg-type]
 
 
 def fields_of(cls: type[Any]) -> tuple[tuple[str, str], ...]:
-    """Return names and types of a message's fields, as the class has them, in their order."""
+    """Return names and types of a message's fields as the class has them, in order."""
     fields: dict[str, str] = cls.get_fields_and_field_types()
     return tuple((name, kind) for name, kind in fields.items() if name != DUMMY)
 

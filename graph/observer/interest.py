@@ -13,7 +13,7 @@ class Interest:
     followed: frozenset[str] = frozenset()
     all_topics: bool = False
     actions: frozenset[str] = frozenset()
-    """Whose goals are wanted, those of others too."""
+    """Actions whose goals are wanted, including other clients' goals."""
 
     @property
     def named(self) -> frozenset[str]:

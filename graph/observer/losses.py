@@ -1,4 +1,4 @@
-"""How many messages never came, as far as the middleware knows."""
+"""How many messages were lost, as far as the middleware knows."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 class Losses:
     """The middleware's own count for one subscription, read without blocking.
 
-    It has the messages of all publishers that were lost on the way. Not among them are those that
-    came and were overwritten in Deck's own queue, nor those that were sent before Deck listened.
+    It counts messages of all publishers that were lost on the way. It does not count messages that
+    arrived but were overwritten in Deck's own queue, or that were sent before Deck subscribed.
     """
 
     def __init__(self, subscription: Subscription) -> None:
@@ -24,11 +24,11 @@ class Losses:
             with subscription.handle:
                 self._event = rclpy_c.EventHandle(subscription.handle, lost)
         except rclpy_c.UnsupportedEventTypeError:
-            # Not every middleware knows it.
+            # Not every middleware counts losses.
             return
 
     def take(self) -> int | None:
-        """Return how many were lost since the last question; None if nobody knows."""
+        """Return how many were lost since the last call; None if unknown."""
         if self._event is None:
             return None
         with self._event:
@@ -36,7 +36,7 @@ class Losses:
         return int(told.total_count_change) if told else 0
 
     def close(self) -> None:
-        """Let go of it; to be called before the subscription is destroyed."""
+        """Release it; call this before the subscription is destroyed."""
         if self._event is not None:
             self._event.destroy_when_not_in_use()
             self._event = None

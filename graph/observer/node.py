@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 LOOK_AT_GRAPH_S = 0.25
 PENDING_S = 0.01
-"""How often a call or a message under way is looked at."""
+"""How often calls and messages under way are polled."""
 RESCAN_S = 3.0
-"""A node that was replaced by its like between two looks is noticed after this long."""
+"""A node replaced by an identical one between two scans is noticed after this long."""
 
 
 class ObserverNode:
@@ -43,7 +43,7 @@ class ObserverNode:
         self.dead_man_switch = DeadManSwitch(ros.node)
         self.parameters = ParameterCalls(self.calls, self._known_node, self._known_service)
         self.serve_urgent: Callable[[], object] = _nothing
-        """Called again and again by what takes its time, for what cannot wait."""
+        """Called repeatedly during long operations, for what cannot wait."""
         self._ros = ros
         self._taps = Taps(ros.node)
         self._scan = Scan()
@@ -55,7 +55,7 @@ class ObserverNode:
 
     @property
     def is_idle(self) -> bool:
-        """Whether only the graph itself is to be looked at."""
+        """Whether there is nothing to do but look at the graph."""
         return not (self._taps.any_open or self.goals.under_way)
 
     def ends(self, topic: str) -> TopicEnds | None:
@@ -85,14 +85,14 @@ class ObserverNode:
         return self._update(self._taps.drain(self.serve_urgent))
 
     def step(self) -> float | None:
-        """Go on with what is under way; return when to go on with it, on the monotonic clock.
+        """Continue what is under way; return when to continue again, on the monotonic clock.
 
-        None if nothing needs it before the next look.
+        None if nothing needs that before the next look.
         """
-        # What is held may have to rest, before all else; then what is due.
+        # A held topic may have to send its rest message first of all; then what is due.
         due_s = _sooner(self.dead_man_switch.step(), self.publications.step())
         calling = self.calls.step()
-        # What has just been answered leads to the next question.
+        # Answers that have just arrived lead to the next question.
         talking = self.parameters.step()
         pursuing = self.goals.step()
         canceling = self.seen_goals.step()
@@ -102,7 +102,7 @@ class ObserverNode:
         return _sooner(due_s, time.monotonic() + PENDING_S)
 
     def close(self, error: Exception) -> None:
-        """Have goals cancelled, let everything else that is under way fail, and leave the graph."""
+        """Cancel goals, let everything else under way fail, and leave the graph."""
         try:
             self.dead_man_switch.close()
             self.publications.close()
@@ -130,7 +130,7 @@ class ObserverNode:
             return
         self._signature, self._scanned_s = found, now_s
         seen = scan(self._ros.node, self._ros.name, self.serve_urgent)
-        # Also if only the onlookers are others.
+        # Also if only the onlookers have changed.
         self.publications.tune(seen.topics)
         if seen != self._scan:
             self._scan = seen
@@ -150,7 +150,7 @@ class ObserverNode:
 
 
 def _nothing() -> None:
-    """Serve nobody."""
+    """Do nothing."""
 
 
 def _sooner(one_s: float | None, other_s: float | None) -> float | None:

@@ -1,4 +1,4 @@
-"""The rate of a topic and how evenly it arrives, from messages polled a few times a second."""
+"""Measures the rate of a topic and its jitter, from messages polled a few times a second."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 WINDOW_S = 4.0
 """Long enough that the jitter of two stamps is below 0.5 % of it, short enough to follow."""
 FEW = 3
-"""Points that are kept whatever their age, so that a slow topic has a rate too."""
+"""Points that are kept whatever their age, so that a slow topic has a rate, too."""
 QUIET_S = 3.0
 QUIET_PERIODS = 3.0
 
 
 @dataclass(frozen=True)
 class _Point:
-    """How many messages had come by the stamp of the newest one of a batch."""
+    """How many messages had come by the stamp of a batch's newest message."""
 
     stamp_s: float
     messages: int
@@ -31,15 +31,15 @@ class _Point:
 class RateMeter:
     """Rate, bandwidth, age, jitter and latency of one topic, from the stamps of the middleware.
 
-    A batch is what lay in the queue at one look. Only its newest stamp is kept: between two such
-    stamps the number of messages is exact, whenever the looks were.
+    A batch is the content of the queue at one poll. Only its newest stamp is kept: between two such
+    stamps the number of messages is exact, whenever the polls took place.
     """
 
     def __init__(self) -> None:
         self.count = 0
         self.mean_size_bytes = 0.0
         self.lost: int | None = None
-        """Messages that the middleware knows to be lost; None while it tells nothing."""
+        """Messages that the middleware knows to be lost; None while it reports nothing."""
         self._bytes = 0.0
         self._points: deque[_Point] = deque()
         self._sequence: int | None = None
@@ -54,10 +54,10 @@ class RateMeter:
         one_publisher: bool = True,
         lost: int = 0,
     ) -> None:
-        """Take a batch in order of arrival.
+        """Add a batch in order of arrival.
 
-        `overflowed` says that the queue was full. With one publisher a gap in the sequence before
-        the batch was ours then, and its messages did come, save those `lost` on the way.
+        `overflowed` says that the queue was full. With one publisher, a gap in the sequence before
+        the batch is then our own doing: its messages did arrive, except those `lost` on the way.
         """
         if not batch:
             return
@@ -79,7 +79,7 @@ class RateMeter:
             self._points.popleft()
 
     def _is_another_story(self, stamp_s: float) -> bool:
-        """Tell whether the clock was set back, or a topic with a known rate was quiet till now."""
+        """Return whether the clock was set back, or a topic with a known rate had gone quiet."""
         if not self._points:
             return False
         return stamp_s < self._points[-1].stamp_s or (
@@ -96,15 +96,15 @@ class RateMeter:
         return max(0, min(first - self._sequence - 1, missing - lost))
 
     def hz(self, now_s: float) -> float | None:
-        """Messages a second; 0 when it has gone quiet, None before the second message."""
+        """Messages per second; 0 when it has gone quiet, None before the second message."""
         return self._rate(now_s, lambda point: point.messages)
 
     def bytes_per_s(self, now_s: float) -> float | None:
-        """Bytes a second, by the same rule as `hz`."""
+        """Bytes per second, by the same rule as `hz`."""
         return self._rate(now_s, lambda point: point.bytes)
 
     def age_s(self, now_s: float) -> float | None:
-        """Seconds since the newest message came, None if none did."""
+        """Seconds since the newest message came, None if none has."""
         return max(0.0, now_s - self._points[-1].stamp_s) if self._points else None
 
     def jitter_s(self, now_s: float) -> float | None:
@@ -112,11 +112,11 @@ class RateMeter:
         return None if self.is_quiet(now_s) else self._intervals.deviation_s
 
     def latency_s(self, now_s: float) -> float | None:
-        """Mean of arrival less stamp; None while quiet, or without stamps of this clock."""
+        """Mean of arrival minus stamp; None while quiet, or without stamps from this clock."""
         return None if self.is_quiet(now_s) else self._delays.mean_s
 
     def is_quiet(self, now_s: float) -> bool:
-        """Tell whether nothing has come for longer than is usual for this topic."""
+        """Return whether nothing has come for longer than usual for this topic."""
         age_s = self.age_s(now_s)
         return age_s is not None and age_s > self._patience_s()
 

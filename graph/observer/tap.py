@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 DEEP = 200
 SHALLOW = 4
-"""A fragmented message takes a place while it is being put together, so 1 would starve."""
+"""A fragmented message occupies a slot while it is being reassembled, so 1 would starve."""
 QUEUE_BYTES = 4_000_000
-"""What may wait in one queue."""
+"""Bytes that may wait in one queue."""
 LARGE_TYPES = frozenset(
     {
         "sensor_msgs/msg/Image",
@@ -33,12 +33,12 @@ LARGE_TYPES = frozenset(
     }
 )
 FOLLOWED = 200
-"""Messages of one look that a follower gets; older ones of the same look are only counted."""
+"""Messages per poll that a follower gets; older ones of the same poll are only counted."""
 NANOSECONDS = 1e-9
 
 
 class Tap:
-    """A subscription of Deck's with its rates; create it, drain it, close it."""
+    """One of Deck's subscriptions with its rates; create it, drain it, close it."""
 
     def __init__(
         self,
@@ -49,9 +49,9 @@ class Tap:
         depth: int,
         meter: RateMeter | None = None,
     ) -> None:
-        """Subscribe; `meter` goes on where an earlier tap ended.
+        """Subscribe; `meter` continues where an earlier tap ended.
 
-        A type that is not installed is measured where the middleware lets us, and not decoded.
+        A type that is not installed is measured if the middleware allows it, but not decoded.
         Raises UnknownTypeError, and what rclpy raises.
         """
         from rclpy.event_handler import SubscriptionEventCallbacks
@@ -65,7 +65,7 @@ class Tap:
         self.broken = ""
         """Why the newest message could not be decoded."""
         self.unknown: UnknownTypeError | None
-        """Why none ever will be."""
+        """Why no message can be decoded."""
         self._cls, self.unknown = _class_for(type_name)
         self._decode = decoder(type_name) if self.unknown is None else None
         self._delay = delay_reader(self._cls) if self.unknown is None else None
@@ -73,7 +73,7 @@ class Tap:
         self._last: tuple[bytes, float, float] | None = None
         self._numbered = True
         self._hears = False
-        """Whether a message has come since this subscription was made."""
+        """Whether a message has come since this subscription was created."""
         self._subscription: Subscription = node.create_subscription(
             self._cls,
             topic,
@@ -85,9 +85,9 @@ class Tap:
         self._losses = Losses(self._subscription)
 
     def drain(self, *, one_publisher: bool, decode: int) -> tuple[Sample, ...]:
-        """Take all that lies in the queue, and return the newest `decode` messages as samples.
+        """Empty the queue, and return the newest `decode` messages as samples.
 
-        `one_publisher` says that the sequence numbers are of one writer.
+        `one_publisher` says that the sequence numbers come from one writer.
         """
         batch, kept = self._take_all(decode)
         lost = self._take_losses()
@@ -102,7 +102,7 @@ class Tap:
         return tuple(sample for one in kept if (sample := self._sample(*one, now_s)))
 
     def newest(self) -> tuple[Sample, ...]:
-        """Return the newest message that ever came, for somebody who begins to look now."""
+        """Return the newest message ever received, for a screen that begins to look now."""
         if self._last is None:
             return ()
         sample = self._sample(*self._last, time.time())
@@ -111,8 +111,8 @@ class Tap:
     def better_depth(self, *, one_publisher: bool) -> int:
         """Return how deep the queue should be for messages of this size.
 
-        It may be shallow where a single publisher numbers its messages: the rate comes from the
-        numbers then, and only the newest message is of use.
+        It may be shallow if a single publisher numbers its messages: the rate then comes from the
+        numbers, and only the newest message is needed.
         """
         size = self.meter.mean_size_bytes
         if not size:
@@ -132,7 +132,7 @@ class Tap:
         kept: deque[tuple[bytes, float, float]] = deque(maxlen=decode)
         handle = self._subscription.handle
         with handle:
-            # A publisher faster than this loop must not hold it for ever.
+            # A publisher faster than this loop must not keep it busy for ever.
             for _ in range(2 * self.depth):
                 taken = handle.take_message(self._cls, True)
                 if taken is None:
@@ -147,11 +147,11 @@ class Tap:
         return batch, kept
 
     def _take_losses(self) -> int:
-        """Return how many messages were lost since the look before, and add them up."""
+        """Return how many messages were lost since the previous poll, and add them up."""
         lost = self._losses.take()
         if lost is None:
             return 0
-        # A late joiner may be told of what left a latched publisher's memory before it came.
+        # For a late joiner, messages that a latched publisher no longer keeps may count as lost.
         lost = lost if self._hears else 0
         self.meter.lost = (self.meter.lost or 0) + lost
         return lost
@@ -162,7 +162,7 @@ class Tap:
         try:
             value = self._decode(raw)
         except Exception as error:  # noqa: BLE001
-            # Whatever a stranger publishes under this name must not end the observer.
+            # Whatever another program publishes under this name must not end the observer.
             self.broken = not_decoded(self.type_name, error)
             return None
         self.broken = ""
@@ -176,7 +176,7 @@ def first_depth(type_name: str) -> int:
 
 
 def _class_for(type_name: str) -> tuple[type[Any], UnknownTypeError | None]:
-    """Return what to subscribe with, and why its messages cannot be decoded if so."""
+    """Return the class to subscribe with, and why its messages cannot be decoded, if so."""
     try:
         return load_message(type_name), None
     except UnknownTypeError as error:

@@ -1,4 +1,4 @@
-"""Which topics Deck is subscribed to, and the rows and samples that result."""
+"""Deck's subscriptions, and the rows and samples that result."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 
 
 class Taps:
-    """All subscriptions of Deck's, kept in step with the graph and with what the screens want."""
+    """All of Deck's subscriptions, kept in step with the graph and with what the screens want."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._taps: dict[str, Tap] = {}
         self._refused: dict[tuple[str, str, Qos], UnknownTypeError] = {}
         self._rows: dict[str, TopicRow] = {}
-        """What is known without a message, by topic."""
+        """What is known without any message, by topic."""
         self._scan = Scan()
         self._interest = Interest()
         self._fresh: set[str] = set()
-        """Topics whose newest message is owed to somebody who has just begun to look."""
+        """Topics whose newest message is owed to a screen that has just begun to look."""
 
     @property
     def any_open(self) -> bool:
@@ -43,7 +43,7 @@ class Taps:
         return bool(self._taps)
 
     def tune(self, scan: Scan, interest: Interest) -> None:
-        """Open, reopen and close subscriptions, for this graph and this interest."""
+        """Open, reopen and close subscriptions to suit this graph and this interest."""
         self._fresh |= interest.watched - self._interest.watched
         self._fresh |= {
             topic
@@ -64,7 +64,7 @@ class Taps:
         self._rows = dict(sorted(self._rows.items()))
 
     def drain(self, serve_urgent: Callable[[], object]) -> dict[str, tuple[Sample, ...]]:
-        """Take what has come, and return the samples that somebody looks at.
+        """Take what has arrived, and return the samples that some screen wants.
 
         `serve_urgent` is called between two topics.
         """
@@ -83,14 +83,14 @@ class Taps:
         return samples
 
     def need_tuning(self) -> bool:
-        """Tell whether a queue turned out to be of the wrong depth."""
+        """Return whether a queue turned out to have the wrong depth."""
         return any(
             tap.better_depth(one_publisher=self._one_publisher(topic)) != tap.depth
             for topic, tap in self._taps.items()
         )
 
     def rows(self) -> tuple[TopicRow, ...]:
-        """Return a row for each topic there is and each that is wanted, sorted by name."""
+        """Return a row for each topic that exists or is wanted, sorted by name."""
         now_s = time.time()
         return tuple(
             _measured(row, self._taps[topic], now_s) if topic in self._taps else row
@@ -126,7 +126,7 @@ class Taps:
         self._close(topic)
         key = (topic, type_name, qos)
         if key not in self._refused:
-            # Asked twice, rcl would write its complaint on the terminal twice.
+            # A second attempt would make rcl print its complaint on the terminal again.
             try:
                 self._taps[topic] = Tap(self._node, topic, type_name, qos, depth, meter)
             except UnknownTypeError as error:
@@ -195,14 +195,14 @@ def _finding(row: TopicRow, tap: Tap, now_s: float) -> Diagnosis:
     age_s = tap.meter.age_s(now_s)
     if age_s is None and now_s - tap.since_s > QUIET_S:
         return quiet(now_s - tap.since_s, ever=False)
-    # A latched topic has said what it has to say.
+    # A latched topic need not publish again.
     if age_s is not None and tap.meter.is_quiet(now_s) and tap.qos.durability != TRANSIENT_LOCAL:
         return quiet(age_s, ever=True)
     return Diagnosis(row.trouble, row.detail, row.facts)
 
 
 def _type_to_show(ends: TopicEnds) -> str:
-    """Return the type most publishers have, without publishers the first that anybody has."""
+    """Return the type of most publishers; without publishers, the first type that anybody has."""
     if ends.everyone_publishing:
         counted = Counter(end.type_name for end in ends.everyone_publishing)
         return counted.most_common(1)[0][0]

@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 WINDOW_S = 4.0
-"""As long as the rate's."""
+"""As long as the window of the rate."""
 FEWEST = 3
-"""Figures without which a spread says nothing."""
+"""The fewest figures for a meaningful spread."""
 KEPT = 10
-"""Figures that are kept whatever their age, so that a slow topic has a spread too."""
+"""Figures that are kept whatever their age, so that a slow topic has a spread, too."""
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,14 @@ class Arrival:
     """When it came in, unix time."""
     size_bytes: int
     sequence: int | None = None
-    """Its number at the publisher, where the middleware counts them."""
+    """Its sequence number at the publisher, if the middleware counts them."""
     delay_s: float | None = None
-    """Between the stamp in its header and its arrival, where it has one."""
+    """Between the stamp in its header and its arrival, if it has one."""
 
 
 @dataclass(frozen=True)
 class _Batch:
-    """Figures that came together, as sums: how many, their sum and that of their squares."""
+    """Figures that came together: how many, their sum, and the sum of their squares."""
 
     stamp_s: float
     count: int
@@ -42,7 +42,7 @@ class _Batch:
 
 
 class Spread:
-    """Mean and standard deviation of figures in seconds, those of the last `WINDOW_S`."""
+    """Mean and standard deviation of the figures of the last `WINDOW_S`, in seconds."""
 
     def __init__(self) -> None:
         self._batches: deque[_Batch] = deque()
@@ -50,11 +50,11 @@ class Spread:
         self._about = 0.0
 
     def add(self, stamp_s: float, figures_s: Sequence[float]) -> None:
-        """Take what was found by `stamp_s`, and let go of what is too old."""
+        """Add the figures found by `stamp_s`, and drop those that are too old."""
         if not figures_s:
             return
         if not self._batches:
-            # Sums of what is left of a value near the mean keep their digits.
+            # Sums of differences from a value near the mean do not lose precision.
             self._about = figures_s[0]
         off = [figure - self._about for figure in figures_s]
         squares = math.fsum(figure * figure for figure in off)
@@ -64,7 +64,7 @@ class Spread:
             self._count -= self._batches.popleft().count
 
     def clear(self) -> None:
-        """Forget all: what comes next is another story."""
+        """Forget everything: what comes next is unrelated."""
         self._batches.clear()
         self._count = 0
 
@@ -89,17 +89,17 @@ class Spread:
 
 
 class Intervals:
-    """The time between messages that came one after the other."""
+    """The time between consecutive messages."""
 
     def __init__(self) -> None:
         self._spread = Spread()
         self._newest: Arrival | None = None
 
     def add(self, batch: Sequence[Arrival], *, overflowed: bool, numbered: bool) -> None:
-        """Take a batch in order of arrival.
+        """Add a batch in order of arrival.
 
         `overflowed` says that messages may be missing before it, `numbered` that the sequence
-        numbers are of one writer, so that they tell whether any is.
+        numbers come from one writer, so that they show whether any is missing.
         """
         found_s = []
         before, follows = self._newest, not overflowed
@@ -111,7 +111,7 @@ class Intervals:
         self._spread.add(batch[-1].stamp_s, found_s)
 
     def clear(self) -> None:
-        """Forget all, the last message too."""
+        """Forget everything, including the last message."""
         self._spread.clear()
         self._newest = None
 
@@ -122,7 +122,7 @@ class Intervals:
 
 
 def _is_next(before: Arrival, arrival: Arrival, follows: bool, *, numbered: bool) -> bool:
-    """Tell whether no message is missing between the two; `follows` where no number tells."""
+    """Return whether no message is missing between the two; `follows` if they have no numbers."""
     if arrival.stamp_s < before.stamp_s:
         return False
     if numbered and before.sequence is not None and arrival.sequence is not None:

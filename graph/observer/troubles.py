@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from graph.scan.endpoints import TopicEnds
 
 MOST_PAIRS = 5
-"""Pairs that are told in words; the rest are counted."""
+"""Pairs that are described in words; the rest are only counted."""
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Diagnosis:
 
 
 def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> Diagnosis:
-    """Return what is wrong with the topic however its messages come.
+    """Return what is wrong with the topic, regardless of its messages.
 
-    `shown_type` is the one that Deck decodes, `unknown` why it cannot.
+    `shown_type` is the type that Deck decodes, `unknown` why it cannot.
     """
     if unknown is not None:
         return Diagnosis(
@@ -60,8 +60,8 @@ def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | Non
 
 
 def _misfit(found: Sequence[Mismatch]) -> Diagnosis:
-    """Return all that does not fit in words, and the first of it as facts."""
-    # Two endpoints alike of one node read the same.
+    """Return all incompatible pairs in words, and the first one as facts."""
+    # Two identical endpoints of one node give the same sentence.
     told = list(dict.fromkeys(found))
     more = len(told) - MOST_PAIRS
     words = [pair.in_words() for pair in told[:MOST_PAIRS]]
@@ -71,7 +71,7 @@ def _misfit(found: Sequence[Mismatch]) -> Diagnosis:
 
 
 def quiet(seconds: float, *, ever: bool) -> Diagnosis:
-    """Return that nothing has come for `seconds`, and whether anything `ever` did."""
+    """Return that nothing has come for `seconds`; `ever` says whether anything came before."""
     since = "" if ever else ", and never before"
     return Diagnosis(
         Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"}

@@ -1,5 +1,5 @@
-"""Camera messages as pictures to be shown: decoded, coloured, thinned out; never trusted.
+"""Camera messages as pictures for the screen: decoded, coloured, thinned out; never trusted.
 
-From outside: `reading` for any message with a picture, `images` and `picture` for what is drawn,
+Other rooms may import `reading` for any message with a picture, `images` and `picture` for drawing,
 and the errors of `pixels`.
 """

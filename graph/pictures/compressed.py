@@ -20,19 +20,19 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 64 * 1024 * 1024
 MOST_PIXELS = 64 * 1024 * 1024
-"""A few bytes of PNG can ask for terabytes."""
+"""Limit, because a few bytes of PNG can ask for terabytes."""
 JPEG, PNG = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
 JPEG_END, PNG_END = b"\xff\xd9", b"IEND\xaeB`\x82"
 DEPTH_HEAD = struct.Struct("<iff")
-"""Before the PNG of the transport compressedDepth: format, and two numbers for 32FC1."""
+"""Header before the PNG of the transport compressedDepth: format, and two numbers for 32FC1."""
 _SIZED = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
-"""JPEG segments that tell height and width (source: ITU T.81, table B.1)."""
+"""JPEG segments that contain height and width (source: ITU T.81, table B.1)."""
 _ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
-"""Markers without a length."""
+"""JPEG markers without a length."""
 
 
 def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
-    """Return the picture, decoded at the least size that is enough for `fit`.
+    """Return the picture, decoded at the smallest size that suffices for `fit`.
 
     Raises ImageError: neither JPEG nor PNG, too large, cut short, damaged.
     """
@@ -54,7 +54,7 @@ def read_compressed(value: Mapping[str, Value], fit: Fit) -> Picture:
 
 
 def _size(raw: bytes) -> tuple[int, int]:
-    """Width and height as the data say, before anything is decoded."""
+    """Width and height according to the data, before anything is decoded."""
     if not raw:
         raise ImageError(say("the message has no data"))
     if len(raw) > MOST_BYTES:
@@ -80,7 +80,7 @@ def _size(raw: bytes) -> tuple[int, int]:
 
 
 def _jpeg_size(raw: bytes) -> tuple[int, int]:
-    # Not by imagesize: it looks at each byte of what is no JPEG, for half a minute at 64 MiB.
+    # Not with imagesize: it searches every byte of data that is not JPEG, half a minute for 64 MiB.
     at = 2
     while at + 9 <= len(raw):
         if raw[at] != 0xFF:
@@ -99,7 +99,7 @@ def _jpeg_size(raw: bytes) -> tuple[int, int]:
 
 
 def _refuse_if_cut(raw: bytes) -> None:
-    """Refuse what OpenCV would show half of, and complain about on the terminal."""
+    """Refuse what OpenCV would show only half of, with complaints on the terminal."""
     kind, end = ("JPEG", JPEG_END) if raw.startswith(JPEG) else ("PNG", PNG_END)
     if raw.rfind(end, -4096) < 0:
         words = say(
@@ -109,13 +109,13 @@ def _refuse_if_cut(raw: bytes) -> None:
 
 
 def _reduction(width: int, height: int, fit: Fit) -> int:
-    """By how much the decoder may shrink it, 1, 2, 4 or 8, with no fewer pixels than wanted."""
+    """How much the decoder may shrink it (1, 2, 4 or 8) without falling below the wanted pixels."""
     wide, high = fit(width, height)
     return next((by for by in (8, 4, 2) if width >= by * wide and height >= by * high), 1)
 
 
 def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uint8]:
-    """Return pixels of shape (height, width, 3), or (height, width, 1) numbers as they are."""
+    """Return pixels of shape (height, width, 3), or raw numbers of shape (height, width, 1)."""
     import numpy as np
 
     cv2 = opencv()
@@ -140,7 +140,7 @@ def _decoded(raw: bytes, reduction: int, *, as_they_are: bool) -> NDArray[np.uin
 def _depths(
     numbers: NDArray[np.generic], encoding: str, head: tuple[int, float, float]
 ) -> NDArray[np.generic]:
-    """Numbers of the encoding; 32FC1 was sent as inverse depths.
+    """Return the numbers in the encoding; 32FC1 was sent as inverse depths.
 
     Source: compressed_depth_image_transport, codec.cpp.
     """

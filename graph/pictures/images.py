@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def to_rgb(value: Mapping[str, Value]) -> Rgb:
-    """Return the picture of a `sensor_msgs/Image`; its pixels are not copied where that can be.
+    """Return the picture of a `sensor_msgs/Image`; its pixels are not copied if avoidable.
 
     Raises ImageError.
     """
@@ -51,7 +51,7 @@ def to_rgb(value: Mapping[str, Value]) -> Rgb:
 def shrink(rgb: Rgb, width: int, height: int) -> Rgb:
     """Return the picture at this size in pixels, each the mean of four samples of its area.
 
-    Four samples in place of all: a thirtieth of the time, and in a terminal nobody sees more.
+    Four samples instead of all take a thirtieth of the time, and a terminal shows no difference.
     """
     import numpy as np
 

@@ -1,7 +1,7 @@
 """Camera messages as pictures of the size that is shown: thinned out first, coloured after.
 
-A picture of 1280x720 has thirty times the pixels that a terminal shows: to look at no others is
-what makes ten of them a second cheap. numpy is imported in the functions, see
+A picture of 1280x720 has thirty times the pixels that a terminal shows: skipping the others is
+what makes ten pictures a second cheap. numpy is imported in the functions, see
 `graph.pictures.images`.
 """
 
@@ -20,27 +20,27 @@ if TYPE_CHECKING:
     from graph.pictures.pixels import Rgb
 
 Fit: TypeAlias = "Callable[[int, int], tuple[int, int]]"
-"""From width and height of a picture to those that are wanted of it, in pixels."""
+"""From width and height of a picture to the wanted width and height, in pixels."""
 IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 METRES = {"16UC1": 1e-3, "32FC1": 1.0}
 """Metres of one unit of the depth encodings (source: REP-118)."""
 FARTHEST = 99.0
-"""Percent of the readings between `near` and `far`: a stray one must not take all colours."""
+"""Percent of the readings between `near` and `far`: outliers must not use up the colours."""
 RAMP = ((253, 231, 37), (94, 201, 98), (33, 145, 140), (59, 82, 139), (68, 1, 84))
-"""From near to far: it grows darker steadily, so that it is read without colours too (viridis)."""
+"""From near to far: steadily darker, so that it is readable without colours, too (viridis)."""
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture at the size that was wanted."""
+    """A picture at the wanted size."""
 
     rgb: Rgb
     width: int
     height: int
-    """Of the message's own picture, in pixels."""
+    """Size of the message's own picture, in pixels."""
     encoding: str
     range_m: tuple[float, float] | None = None
-    """Of depth: what the first and the last colour of the ramp stand for."""
+    """For depth: the values of the first and the last colour of the ramp."""
 
 
 def numbers_picture(
@@ -63,7 +63,7 @@ def numbers_picture(
 
 
 def ramp_colours(steps: int = 256) -> Rgb:
-    """Return the ramp of depth from near to far, shape (steps, 3)."""
+    """Return the colour ramp of depth from near to far, shape (steps, 3)."""
     import numpy as np
 
     at = np.linspace(0, len(RAMP) - 1, steps)
@@ -73,7 +73,7 @@ def ramp_colours(steps: int = 256) -> Rgb:
 
 
 def rounded(near: float, far: float) -> tuple[float, float]:
-    """Return the range a little wider and round: it must not sway with every picture."""
+    """Return the range widened a little to round numbers: it must not jitter with every picture."""
     import math
 
     span = max(far - near, 0.01 * far, 1e-3)
@@ -84,7 +84,7 @@ def rounded(near: float, far: float) -> tuple[float, float]:
 
 
 def thinned(pixels: NDArray[np.uint8], fit: Fit) -> NDArray[np.uint8]:
-    """Return every so many-th pixel of shape (height, width, bytes); all where fewer are there."""
+    """Return every n-th pixel, shape (height, width, bytes); all pixels if the picture is small."""
     import numpy as np
 
     height, width = pixels.shape[:2]

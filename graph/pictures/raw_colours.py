@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from graph.pictures.pixels import Rgb
 
 NO_COLOUR = 128
-"""U and V of grey."""
+"""The U and V value of grey."""
 BORDER = 2
-"""Pixels put around a Bayer picture: OpenCV leaves one without an inside black."""
+"""Pixels added around a Bayer picture: OpenCV leaves a picture without interior black."""
 
 
 def full_colours(
@@ -44,7 +44,7 @@ def full_colours(
 def _pairs(
     data: bytes | bytearray | memoryview, width: int, height: int, step: int
 ) -> NDArray[np.uint8]:
-    """Return bytes of shape (height, width, 2), one pixel wider where the width is odd.
+    """Return bytes of shape (height, width, 2), one pixel wider if the width is odd.
 
     A row that ends within a pair takes the second half of its last colour from the pair before.
     """
@@ -68,14 +68,14 @@ def _bayer(pattern: str, numbers: NDArray[Any]) -> NDArray[Any]:
     import numpy as np
 
     cv2 = opencv()
-    # By an even number and mirrored, so that the pattern goes on.
+    # By an even number and mirrored, so that the pattern continues.
     wider = np.pad(numbers.astype(numbers.dtype.newbyteorder("=")), BORDER, "reflect")
     colours: NDArray[Any] = cv2.cvtColor(wider, getattr(cv2, f"COLOR_Bayer{pattern}2RGB"))
     return colours[BORDER:-BORDER, BORDER:-BORDER]
 
 
 def _stretched(numbers: NDArray[Any]) -> Rgb:
-    """Return the greatest number as full light: 10 or 12 of 16 bits are what most cameras send."""
+    """Scale the greatest number to full brightness: most cameras send 10 or 12 of 16 bits."""
     import numpy as np
 
     greatest = max(1, int(numbers.max()))

@@ -1,4 +1,4 @@
-"""Any message with a picture in it to the picture that is shown."""
+"""Turns any message that holds a picture into the picture to show."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def read_picture(type_name: str, value: Mapping[str, Value], fit: Fit) -> Picture:
     """Return the picture of a `sensor_msgs/Image` or `CompressedImage`, thinned out to `fit`.
 
-    Raises ImageError. A compressed one takes milliseconds: not to be read where others wait.
+    Raises ImageError. A compressed picture takes milliseconds: do not call this where others wait.
     """
     if type_name == COMPRESSED:
         from graph.pictures.compressed import read_compressed

@@ -1,8 +1,8 @@
 """A dead-man's switch: messages that are repeated only while somebody holds a key.
 
-Each word of whoever holds carries the moment until which it is good. When that moment has passed
-without another word, the message of rest goes out a few times, and then nothing. The moment is
-kept here, on the observer's thread: whoever holds may hang or go without a word.
+Each command carries the moment until which it is valid. When that moment passes without another
+command, the rest message goes out a few times, and then nothing. The observer's thread watches the
+time, as whoever holds the key may hang or vanish.
 """
 
 from __future__ import annotations
@@ -31,27 +31,27 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 RESTS = 3
-"""How often the message of rest goes out: a subscriber may be best effort."""
+"""How often the rest message goes out: a subscriber may be best effort."""
 DEPTH = 1
-"""An older message must not reach anybody after a newer one was made, however slow the line."""
+"""Lifespan: no message may arrive after a newer one was made, however slow the network."""
 LONGEST_S = 2.0
-"""No word is good for longer than this, whoever says so."""
+"""No command is valid for longer than this, whatever it says."""
 
 
 class Holding(NamedTuple):
     """The newest command of whoever holds the key."""
 
     value: Mapping[str, Value]
-    """What is published again and again while it is good."""
+    """Published repeatedly while the command is valid."""
     rest: Mapping[str, Value]
-    """What is published when it is good no more."""
+    """Published when the command has expired."""
     hz: float
     until_s: float
     """On the monotonic clock."""
 
 
 class Grip:
-    """One topic: what is sent when. `send` publishes, and may raise anything."""
+    """Decides what to send on one topic, and when. `send` publishes, and may raise anything."""
 
     def __init__(self, send: Callable[[Mapping[str, Value]], object]) -> None:
         self._send = send
@@ -63,11 +63,11 @@ class Grip:
 
     @property
     def is_held(self) -> bool:
-        """Whether something else than rest goes out."""
+        """Whether anything but the rest message goes out."""
         return self._word is not None
 
     def hold(self, word: Holding, now_s: float) -> None:
-        """Go on with this word; one that is good no more changes nothing."""
+        """Continue with this command; an expired one changes nothing."""
         until_s = min(word.until_s, now_s + LONGEST_S)
         if until_s <= now_s:
             return
@@ -78,13 +78,13 @@ class Grip:
         self.step(now_s)
 
     def let_go(self, now_s: float) -> None:
-        """Rest from now on."""
+        """Send the rest message from now on."""
         if self._word is not None:
             self._word = self._word._replace(until_s=now_s)
             self.step(now_s)
 
     def step(self, now_s: float) -> float | None:
-        """Publish what is due; return when to come again, None if nothing is to come."""
+        """Publish what is due; return when to call again, None if nothing is left."""
         word = self._word
         if word is not None and now_s >= word.until_s:
             self._word, self._rests, self._due_s = None, RESTS, now_s
@@ -93,7 +93,7 @@ class Grip:
         if now_s >= self._due_s:
             self._due_s += self._period_s
             if self._due_s <= now_s:
-                # What was slept through is not made up for.
+                # Missed messages are not made up for.
                 self._due_s = now_s + self._period_s
             self._publish()
         if self._word is not None:
@@ -106,7 +106,7 @@ class Grip:
         try:
             self._send(value)
         except Exception:
-            # What cannot be published is not tried again and again.
+            # A message that cannot be published is not retried.
             self._word, self._rests = None, 0
             raise
 
@@ -134,7 +134,7 @@ class DeadManSwitch:
         return topic in self._lines
 
     def prepare(self, topic: str, type_name: str, ends: TopicEnds | None) -> None:
-        """Make the publisher, and publish nothing. Raises PublishError or UnknownTypeError."""
+        """Create the publisher, and publish nothing. Raises PublishError or UnknownTypeError."""
         if topic in self._lines:
             return
         refuse_other_type(topic, type_name, ends)
@@ -145,21 +145,21 @@ class DeadManSwitch:
         self._lines[topic] = _HeldTopic(publisher, type_name, cls, qos, grip)
 
     def hold(self, topic: str, word: Holding) -> int:
-        """Publish until the word is good no more; return how many are matched now.
+        """Publish until the command expires; return how many subscribers are matched now.
 
-        The topic has been prepared. Raises PublishError, UnknownTypeError or FieldError.
+        The topic must have been prepared. Raises PublishError, UnknownTypeError or FieldError.
         """
         line = self._lines[topic]
         line.grip.hold(word, time.monotonic())
         return line.publisher.get_subscription_count()
 
     def let_go(self, topic: str) -> None:
-        """Rest at once."""
+        """Send the rest message at once."""
         if topic in self._lines:
             self._lines[topic].grip.let_go(time.monotonic())
 
     def tune(self, topics: Mapping[str, TopicEnds]) -> None:
-        """Offer what those who have come to listen ask for; never while something is held."""
+        """Adapt the offered QoS to new subscribers; never while a topic is held."""
         for topic, line in self._lines.items():
             ends = topics.get(topic)
             qos = to_be_heard(ends.subscribers if ends else ())
@@ -179,12 +179,12 @@ class DeadManSwitch:
         try:
             return line.grip.step(time.monotonic())
         except Exception:
-            # It is held no more; the next word tells whoever holds it.
+            # It is no longer held; the next `hold` reports the error to its caller.
             logger.exception("what is held cannot be published")
             return None
 
     def close(self) -> None:
-        """Let go of everything, with a last word."""
+        """Release everything, with a last rest message."""
         for topic in self._lines:
             with contextlib.suppress(PublishError):
                 self.let_go(topic)

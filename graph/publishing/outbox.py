@@ -1,4 +1,4 @@
-"""Publishing once, without losing the message to a subscriber that is still being matched."""
+"""Publishes once, without missing a subscriber that is still being matched."""
 
 from __future__ import annotations
 
@@ -27,41 +27,41 @@ if TYPE_CHECKING:
 MATCH_WITHIN_S = 1.0
 """How long a new publisher waits for its subscribers."""
 DISCOVERY_S = 4.0
-"""How long after its start Deck may not have found everybody yet."""
+"""How long after its start Deck may not have discovered everybody yet."""
 SETTLE_S = 0.2
 """A subscriber is matched here a little before the publisher is matched there."""
 DEPTH = 200
-"""Of messages on their way: a burst must not overwrite what a subscriber has not acknowledged."""
+"""Queue of outgoing messages: a burst must not overwrite what is not acknowledged yet."""
 
 
 class PublishError(Exception):
-    """The message cannot be published; str() says why, `words` so that it can be translated."""
+    """The message cannot be published; str() says why, `words` says it in translatable form."""
 
     def __init__(self, words: str) -> None:
-        """Say why, as `text.sentences.say` makes it."""
+        """Store the reason, made by `text.sentences.say`."""
         super().__init__(words)
         self.words = words
 
 
 @dataclass
 class _PendingPublisher:
-    """One publisher and what waits for its subscribers."""
+    """One publisher and the messages that wait for its subscribers."""
 
     node: Node
     publisher: Publisher
     cls: type[Any]
     qos: Qos
     expected: int
-    """Subscribers that the graph knew when it was made, Deck's own among them."""
+    """Subscribers known when the publisher was made, including Deck's own."""
     patience_ends_s: float
     waiting: deque[tuple[Draft | None, Future[int]]] = field(default_factory=deque)
-    """A message, None if it has gone out, and who wants to know how many it went to."""
+    """A message, None once sent, and the future for the number of its receivers."""
     matched_since_s: float | None = None
     is_settled: bool = False
-    """Whether all that listen do hear it, so that nothing needs to wait any more."""
+    """Whether all subscribers are matched, so that nothing needs to wait any more."""
 
     def advance(self) -> None:
-        """Send what can be sent, and tell those who wait how many it went to."""
+        """Send what can be sent, and report the numbers of receivers."""
         now_s = time.monotonic()
         matched = self.publisher.get_subscription_count()
         if not self.is_settled:
@@ -73,10 +73,10 @@ class _PendingPublisher:
                 future.set_result(max(0, matched - self._onlookers()))
 
     def publish(self, message: Draft, future: Future[int]) -> bool:
-        """Publish; tell whether that went well, and the future if it did not."""
+        """Publish; return whether that succeeded, and pass a failure to the future."""
         try:
             self.publisher.publish(message.dated())
-        except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+        except Exception as error:  # noqa: BLE001 - reported to the caller
             failure = PublishError(f"{self.publisher.topic}: {error}")
             failure.__cause__ = error
             future.set_exception(failure)
@@ -84,7 +84,7 @@ class _PendingPublisher:
         return True
 
     def _onlookers(self) -> int:
-        """Deck's own subscribers, who do not count as somebody who heard it, as of this moment."""
+        """The current number of Deck's own subscribers, which do not count as receivers."""
         subscribed = subscriptions(self.node, self.publisher.topic)
         return sum(end.node.startswith(ONLY_LISTENING) for end in subscribed)
 
@@ -111,7 +111,7 @@ class Outbox:
         return (topic, type_name, True) in self._lines
 
     def prepare(self, topic: str, type_name: str, ends: TopicEnds | None, *, latched: bool) -> None:
-        """Make the publisher now, so that the first message need not wait for it.
+        """Create the publisher now, so that the first message need not wait for it.
 
         Raises PublishError or UnknownTypeError.
         """
@@ -127,14 +127,14 @@ class Outbox:
         *,
         latched: bool,
     ) -> None:
-        """Publish as soon as the subscribers that are there are matched, and then tell how many.
+        """Publish as soon as the existing subscribers are matched, then report how many there are.
 
         Raises PublishError, UnknownTypeError or FieldError.
         """
         line = self._line(topic, type_name, ends, latched=latched)
         message = draft(line.cls, value)
         if latched:
-            # The middleware hands it to those who are matched later: a stop must not wait.
+            # The middleware hands it to those matched later: a stop must not wait.
             if line.publish(message, future):
                 line.waiting.append((None, future))
         else:
@@ -142,14 +142,14 @@ class Outbox:
         line.advance()
 
     def step(self) -> bool:
-        """Send what can be sent now; tell whether anything still waits."""
+        """Send what can be sent now; return whether anything still waits."""
         for line in self._lines.values():
             if line.waiting or not line.is_settled:
                 line.advance()
         return any(line.waiting for line in self._lines.values())
 
     def fail(self, error: Exception) -> None:
-        """Let everything that waits fail."""
+        """Fail everything that waits."""
         for line in self._lines.values():
             while line.waiting:
                 line.waiting.popleft()[1].set_exception(error)
@@ -179,7 +179,7 @@ class Outbox:
 
 
 def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> None:
-    """Raise PublishError if others know the topic, and none of them by this type."""
+    """Raise PublishError if others use the topic, and none of them with this type."""
     others = ends.type_names if ends and not ends.is_deserted else ()
     if others and type_name not in others:
         raise PublishError(
@@ -195,7 +195,7 @@ def refuse_other_type(topic: str, type_name: str, ends: TopicEnds | None) -> Non
 def open_publisher(
     node: Node, topic: str, cls: type[Any], qos: Qos, depth: int = DEPTH
 ) -> Publisher:
-    """Make a publisher. Raises PublishError for a name that is none."""
+    """Create a publisher. Raises PublishError for an invalid name."""
     from rclpy.event_handler import PublisherEventCallbacks
 
     try:

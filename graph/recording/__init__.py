@@ -1,4 +1,4 @@
 """Recording: a node of its own, raw messages, one rosbag2 directory.
 
-From outside: `recorder` alone.
+Other rooms may import only `recorder`.
 """

@@ -1,9 +1,9 @@
-"""One rosbag2 directory that is being written: an MCAP file in chunks, and `metadata.yaml`.
+"""Writes one rosbag2 directory: an MCAP file in chunks, and `metadata.yaml`.
 
-The storage of the library `rosbags` writes the MCAP. Its own `Writer` would leave out what a crash
-makes needful: chunks that are on the disk each second, and metadata from the beginning on. So the
-storage is used by itself, and is told when to close a chunk. What lies before the end of the last
-whole chunk can be read whatever comes after.
+The storage class of the library `rosbags` writes the MCAP file. The library's `Writer` lacks what
+protects a bag in a crash: chunks written to disk every second, and metadata from the beginning. So
+the storage class is used without it, and told when to close a chunk. Everything up to the end of
+the last whole chunk can be read, whatever happens afterwards.
 """
 
 from __future__ import annotations
@@ -31,27 +31,27 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ROOM_BYTES = 2**20
-"""Kept free beside the bag, so that it can be ended in order when the disk is full."""
+"""Reserved beside the bag, so that it can be closed properly when the disk is full."""
 RENEW_S = 5.0
-"""How often `metadata.yaml` is renewed."""
+"""How often `metadata.yaml` is rewritten."""
 
 
 @dataclass
 class _Sound:
-    """Up to where the file is whole."""
+    """How far the file is whole."""
 
     bytes: int
     chunks: int = 0
     last_ns: int = 0
     counts: dict[int, tuple[int, int]] = field(default_factory=dict)
-    """Number of a topic to its messages and bytes."""
+    """Topic number to its messages and bytes."""
 
 
 class BagFile:
-    """Takes topics and their raw messages; not safe for use by two threads at once."""
+    """Stores topics and their raw messages; not thread-safe."""
 
     def __init__(self, folder: Path) -> None:
-        """Make the folder, which must not be there yet. Raises BagError."""
+        """Create the folder, which must not exist yet. Raises BagError."""
         self.topics: list[BagTopic] = []
         self._folder = folder
         self._types: set[str] = set()
@@ -74,7 +74,7 @@ class BagFile:
         return self._storage.path
 
     def add_topic(self, topic: BagTopic, text: str) -> None:
-        """Take up a topic, numbered from 1 on; `text` is the definition of its type."""
+        """Add a topic, numbered from 1; `text` is the definition of its type."""
         connection = Connection(
             topic.number,
             topic.name,
@@ -95,7 +95,7 @@ class BagFile:
         self._renewed_s = 0.0
 
     def write(self, topic: BagTopic, stamp_ns: int, sent_ns: int, raw: bytes) -> None:
-        """Write a message as it is, with the unix times it came and was sent. Raises OSError."""
+        """Write a raw message, with the unix times of its arrival and sending. Raises OSError."""
         chunks = len(self._storage.chunks)
         topic.messages += 1
         topic.bytes += len(raw)
@@ -104,7 +104,7 @@ class BagFile:
             self._chunk_closed()
 
     def flush(self) -> None:
-        """Hand all that was written over to the system. Raises OSError."""
+        """Hand everything written so far to the system. Raises OSError."""
         if self._storage.chunk.msgs:
             self._storage.close_chunk()
             self._chunk_closed()
@@ -112,14 +112,14 @@ class BagFile:
             self._renew()
 
     def close(self) -> None:
-        """End the bag in order. Raises OSError."""
+        """Close the bag properly. Raises OSError."""
         self.flush()
         self._end()
 
     def salvage(self) -> None:
-        """After an OSError: cut the bag after the last whole chunk, and end it as well as can be.
+        """After an OSError: cut the bag after the last whole chunk, and close it if possible.
 
-        What was written since is taken out of the counts.
+        Messages after that chunk are removed from the counts.
         """
         storage, sound = self._storage, self._sound
         with contextlib.suppress(OSError):
@@ -139,7 +139,7 @@ class BagFile:
         except OSError:
             with contextlib.suppress(OSError):
                 storage.bio.close()
-            # Whole chunks alone can be read; half an index would be in the way.
+            # Whole chunks can be read without an index; half an index would be in the way.
             with contextlib.suppress(OSError):
                 os.truncate(storage.path, sound.bytes)
             with contextlib.suppress(OSError):

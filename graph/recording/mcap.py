@@ -1,7 +1,7 @@
-"""The MCAP of a recording: two timestamps per message, and a checksum per chunk.
+"""The MCAP file of a recording: two timestamps per message, and a checksum per chunk.
 
-The library's own writer knows one time, and no checksums: what a bad disk has changed in a chunk
-would be played as if it had been said.
+The library's own writer stores the same time twice and no checksums: data that a bad disk has
+changed would be played back as if they had been published.
 """
 
 from __future__ import annotations
@@ -22,21 +22,29 @@ MESSAGE = 0x05
 HEAD = struct.Struct("<BQHIQQ")
 """Opcode, length, channel, sequence, log time, publish time."""
 FRAME = 9
-"""Opcode and length, which the length does not count."""
+"""Size of opcode and length, which the length does not include."""
 CHECKSUM_AT = FRAME + 24
-"""Where a chunk has that of what is in it, after its two times and its size."""
+"""Offset of the checksum in a chunk's record, after its two times and its size."""
 CHUNK_BYTES = 2**20
 
 
 class McapFile(McapWriter):
-    """An `McapWriter` for messages that carry both the time of sending and that of arrival."""
+    """An MCAP file in uncompressed chunks, named after its folder.
+
+    A chunk ends with `close_chunk`, or by itself once it is larger than 1 MiB. `put` replaces
+    the library's `write`: it takes the time of sending besides that of arrival. Chunk times,
+    indexes and statistics follow the time of arrival.
+    """
 
     def __init__(self, folder: Path) -> None:
-        """Make the file in `folder`. Raises OSError."""
+        """Create the file in `folder`, where it must not exist yet. Raises OSError."""
         super().__init__(folder, CompressionMode.NONE)
 
     def put(self, connection: Connection, stamp_ns: int, sent_ns: int, raw: bytes) -> None:
-        """Write a message that came at `stamp_ns` and was sent at `sent_ns`, unix time."""
+        """Add a message that came at `stamp_ns` and was sent at `sent_ns`, unix time.
+
+        A full chunk is written. Raises OSError.
+        """
         chunk = self.chunk
         self.message_start_time = min(stamp_ns, self.message_start_time)
         self.message_end_time = max(stamp_ns, self.message_end_time)
@@ -51,7 +59,7 @@ class McapFile(McapWriter):
             self.close_chunk()
 
     def close_chunk(self) -> None:
-        """Write the chunk, with its checksum. Raises OSError."""
+        """Write the chunk with its CRC-32. Raises OSError."""
         checksum = crc32(self.chunk.bio.getvalue())
         begin = self.bio.tell()
         super().close_chunk()

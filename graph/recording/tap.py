@@ -1,4 +1,4 @@
-"""One subscription of a recording: its queue is drained in turns, nothing is decoded."""
+"""One subscription of a recording: its queue is drained in turn, nothing is decoded."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ if TYPE_CHECKING:
     from graph.bag.metadata import BagTopic
 
 DEEP = 2000
-"""Between two turns of emptying, at the rate of a fast driver, with a pause of a second."""
+"""Queue between two drains, for the rate of a fast driver and a pause of a second."""
 DEEP_OF_LARGE = 60
 NANOSECONDS = 1_000_000_000
 
 
 class Sequences:
-    """Finds what is missing in the numbers that publishers give their messages.
+    """Finds gaps in the sequence numbers that publishers give their messages.
 
-    The middleware does not say which publisher a number is of: each is taken to go on with the
-    publisher whose last number it follows, and where none does, with the nearest one below.
+    The middleware does not say which publisher a number belongs to: each is assigned to the
+    publisher whose last number it follows, and if there is none, to the nearest one below.
     """
 
     def __init__(self) -> None:
         self._last: list[int] = []
 
     def missing(self, number: int, publishers: Callable[[], int]) -> int:
-        """Take the next number; return how many were left out before it.
+        """Add the next number; return how many are missing before it.
 
-        `publishers` tells how many there have ever been: those who are gone are kept in mind,
-        for nobody can say which they were.
+        `publishers` is how many there have ever been: those that have gone are included, as nobody
+        knows which numbers were theirs.
         """
         if number - 1 in self._last:
             self._last[self._last.index(number - 1)] = number
@@ -62,17 +62,17 @@ class RecordingTap:
         self.topic = topic
         self.qos = qos
         self.lost = 0
-        """Messages that were published and never came."""
+        """Messages that were published but never arrived."""
         self._sequences = Sequences()
         self._ever: set[tuple[int, ...]] = set()
-        """Every publisher so far, by its number in the middleware."""
+        """Every publisher so far, by its identifier in the middleware."""
         self._node = node
         self._cls = load_message(topic.type_name)
         self._depth = DEEP_OF_LARGE if topic.type_name in LARGE_TYPES else DEEP
         self._subscription = self._subscribe()
 
     def reopen(self, qos: Qos) -> None:
-        """Ask for another quality of service, because publishers have changed."""
+        """Request another quality of service, because publishers have changed."""
         self.close()
         self.qos = qos
         self._subscription = self._subscribe()
@@ -90,12 +90,12 @@ class RecordingTap:
         )
 
     def drain(self) -> list[Message]:
-        """Take all that lies in the queue."""
+        """Empty the queue."""
         taken: list[Message] = []
         numbers: list[int] = []
         handle = self._subscription.handle
         with handle:
-            # A publisher faster than this loop must not hold it for ever.
+            # A publisher faster than this loop must not keep it busy for ever.
             for _ in range(2 * self._depth):
                 found = handle.take_message(self._cls, True)
                 if found is None:
@@ -107,13 +107,13 @@ class RecordingTap:
                     numbers.append(number)
                 sent_ns = info["source_timestamp"] or stamp_ns
                 taken.append(Message(stamp_ns, self.topic, raw, sent_ns))
-        # Asked after the messages were taken: by then whoever has sent them is known.
+        # Asked after the messages were taken: by then their senders are known.
         publishers = lru_cache(self._publishers_so_far)
         self.lost += sum(self._sequences.missing(number, publishers) for number in numbers)
         return taken
 
     def know(self, publishers: Sequence[TopicEndpointInfo]) -> None:
-        """Take note of who publishes now."""
+        """Note the current publishers."""
         self._ever.update(tuple(info.endpoint_gid) for info in publishers)
 
     def _publishers_so_far(self) -> int:

@@ -31,12 +31,12 @@ class TopicChoice(NamedTuple):
     topics: frozenset[str] | None = None
     """None for all."""
     hidden: bool = False
-    """Whether all are those with a name that begins with an underscore, too."""
+    """Whether "all" includes names that begin with an underscore."""
     images: bool = True
-    """Whether all are pictures, too."""
+    """Whether "all" includes pictures."""
 
     def takes(self, name: str, types: Sequence[str]) -> bool:
-        """Tell whether a topic is to be recorded."""
+        """Return whether a topic is to be recorded."""
         if self.topics is not None:
             return name in self.topics
         return (self.hidden or not is_hidden(name)) and (self.images or IMAGES.isdisjoint(types))
@@ -55,16 +55,16 @@ class RecordingTopics:
         self._publishers: dict[str, int] = {}
 
     def all(self) -> list[RecordingTap]:
-        """Return every subscription so far, also those that are quiet now."""
+        """Return every subscription so far, including those that are quiet now."""
         return list(self._taps.values())
 
     def absent(self) -> tuple[str, ...]:
-        """Return what was asked for by name and is neither recorded nor skipped."""
+        """Return the topics asked for by name that are neither recorded nor skipped."""
         known = self._taps.keys() | self.skipped.keys()
         return tuple(sorted((self._choice.topics or frozenset()) - known))
 
     def look(self) -> None:
-        """Take up new topics, and follow publishers whose quality of service has changed."""
+        """Subscribe to new topics, and follow publishers whose quality of service has changed."""
         for name, types in self._node.get_topic_names_and_types():
             if self._choice.takes(name, types):
                 count = self._node.handle.get_count_publishers(name)
@@ -73,7 +73,7 @@ class RecordingTopics:
                     self._tune(name, types)
 
     def drain(self) -> list[Message]:
-        """Take what has come on all topics, in the order in which it came."""
+        """Take the messages of all topics, in order of arrival."""
         found = [message for tap in self._taps.values() for message in tap.drain()]
         found.sort(key=lambda message: message.stamp_ns)
         return found
@@ -101,9 +101,9 @@ class RecordingTopics:
     def _open(
         self, name: str, types: Sequence[str], found: Sequence[TopicEndpointInfo]
     ) -> RecordingTap | None:
-        """Subscribe, and tell the bag of the topic; None if it cannot be had."""
+        """Subscribe, and add the topic to the bag; None if that is impossible."""
         named = [info.topic_type for info in found]
-        # The one that most publishers have.
+        # The type that most publishers have.
         type_name = max(types, key=named.count)
         qos = to_hear([_end(info) for info in found])
         digest = next((str(i.topic_type_hash) for i in found if i.topic_type == type_name), "")
@@ -112,7 +112,7 @@ class RecordingTopics:
             len(self._taps) + 1,
             name,
             type_name,
-            # rosbags refuses a whole bag for the hash of a service's type, which it does not know.
+            # rosbags rejects a whole bag because of a service type's hash, which it does not know.
             "" if "/srv/" in type_name else digest or hash_of(type_name),
             [qos_offer(info.qos_profile) for info in found],
         )

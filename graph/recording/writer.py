@@ -1,4 +1,4 @@
-"""The thread that writes a recording, and the bounded queue before it."""
+"""The thread that writes a recording, and the bounded queue in front of it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 BUFFER_BYTES = 256_000_000
 FLUSH_S = 1.0
-"""How much a crash may cost."""
+"""Seconds of data that a crash may cost."""
 
 
 class NewTopic(NamedTuple):
@@ -41,14 +41,14 @@ class Message(NamedTuple):
 
 
 class RecordingWriter:
-    """Writes what it is given; a disk that is too slow costs messages, which are counted."""
+    """Writes messages; those dropped because the disk is too slow are counted."""
 
     def __init__(self, file: BagFile, limit_bytes: int = BUFFER_BYTES) -> None:
-        """Write to `file` with at most `limit_bytes` waiting; begin at once."""
+        """Start at once to write to `file`, with at most `limit_bytes` waiting."""
         self.error: Words | None = None
         """Why nothing is written any more."""
         self.dropped: Counter[str] = Counter()
-        """Topic to how many of its messages found the buffer full."""
+        """Topic to the number of its messages that found the buffer full."""
         self._file = file
         self._limit_bytes = limit_bytes
         self._waiting: deque[NewTopic | Message] = deque()
@@ -61,16 +61,16 @@ class RecordingWriter:
 
     @property
     def waiting_bytes(self) -> int:
-        """What is not written yet."""
+        """Bytes that are not written yet."""
         return self._waiting_bytes
 
     def add_topic(self, topic: BagTopic, text: str) -> None:
-        """Take up a topic; `text` is the definition of its type."""
+        """Add a topic; `text` is the definition of its type."""
         with self._news:
             self._waiting.append(NewTopic(topic, text))
 
     def put(self, messages: Sequence[Message]) -> None:
-        """Take messages in the order of their stamps; never waits."""
+        """Add messages in the order of their stamps; never waits."""
         with self._news:
             for message in messages:
                 size = len(message.raw)
@@ -82,7 +82,7 @@ class RecordingWriter:
             self._news.notify()
 
     def finish(self, within_s: float) -> bool:
-        """Write what waits and end the file; tell whether it was done in time."""
+        """Write what waits and close the file; return whether that was done in time."""
         with self._news:
             self._ending = True
             self._news.notify()
@@ -97,7 +97,7 @@ class RecordingWriter:
             self._give_up(error)
 
     def _give_up(self, error: OSError) -> None:
-        """End the file as well as can be, and count what is not in it."""
+        """Close the file as well as possible, and count what is not in it."""
         with self._news:
             self.error = not_written(self._file.path, error)
             for item in (*self._in_hand, *self._waiting):
@@ -126,14 +126,14 @@ class RecordingWriter:
             flush_at_s = self._flush_at(flush_at_s)
 
     def _flush_at(self, flush_at_s: float) -> float:
-        """Flush if it is time to; return when it is next."""
+        """Flush if it is time; return the next time."""
         if time.monotonic() < flush_at_s:
             return flush_at_s
         self._file.flush()
         return time.monotonic() + FLUSH_S
 
     def _take(self, until_s: float) -> bool:
-        """Take what waits, as soon as anything does; False when nothing will come any more."""
+        """Write what waits, as soon as anything does; return False when nothing more will come."""
         with self._news:
             if not self._waiting and not self._ending:
                 self._news.wait(max(0.0, until_s - time.monotonic()))

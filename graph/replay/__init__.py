@@ -1,4 +1,4 @@
-"""A bag in place of a robot: the same interface as the observer's, without ROS.
+"""A bag instead of a robot: the same interface as the observer's, without ROS.
 
-From outside: `replay.Replay`, and how it stands, `state`.
+Other rooms may import `replay.Replay` and its `state`.
 """

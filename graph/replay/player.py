@@ -1,4 +1,4 @@
-"""The playhead of a replay: which messages are due by now, and where it jumps to."""
+"""The playhead of a replay: which messages are due, and what a jump reads."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from text.sentences import Words
 
 BEFORE_NS = int(WINDOW_S / NANOSECONDS)
-"""What is read before the place that is jumped to: rates and newest messages are there at once."""
+"""Seconds read before the target of a jump, so that rates and newest messages are there at once."""
 LONGEST_TURN_S = 0.2
-"""A bag that cannot be read as fast as it should be played is played slower."""
+"""Limit per step: a bag that cannot be read fast enough is played more slowly."""
 
 
 class Player:
     """Reads a bag in step with a playhead; used by the thread of the replay alone."""
 
     def __init__(self, bag: Bag, stopping: Callable[[], bool]) -> None:
-        """`stopping` tells that nobody wants it any more."""
+        """`stopping` is set when nobody needs the player any more."""
         self.topics = ReplayTopics(bag.topics)
         self.now_ns = bag.start_ns
-        """The playhead, unix time in the bag."""
+        """The playhead, in unix time of the bag."""
         self.ended = False
         self._bag = bag
         self._stopping = stopping
@@ -42,11 +42,11 @@ class Player:
 
     @property
     def damage(self) -> Words | None:
-        """What was left out so far because it cannot be read."""
+        """What has been left out so far as unreadable."""
         return self._bag.damage
 
     def seek(self, position_s: float) -> None:
-        """Put the playhead there, and take what came shortly before."""
+        """Move the playhead there, and take what came shortly before."""
         bag = self._bag
         target_ns = bag.start_ns + round(max(0.0, position_s) / NANOSECONDS)
         target_ns = min(target_ns, bag.end_ns)
@@ -61,7 +61,7 @@ class Player:
         self.ended = self._next is None and target_ns >= bag.end_ns
 
     def advance(self, span_s: float) -> None:
-        """Move the playhead by so many seconds of the bag, as far as can be read in time."""
+        """Move the playhead by this many seconds of the bag, as far as can be read in time."""
         target_ns = self.now_ns + round(span_s / NANOSECONDS)
         self._take_until(target_ns, time.monotonic() + LONGEST_TURN_S)
         if self._next is None and self.now_ns >= self._bag.end_ns:
@@ -69,7 +69,7 @@ class Player:
             self.ended = True
 
     def step(self, wanted: frozenset[str]) -> None:
-        """Take the next message; of these topics, if any are named."""
+        """Take the next message, of these topics if any are named."""
         while self._next is not None and not self._stopping():
             topic, stamp_ns, raw = self._next
             self.topics.take(topic, stamp_ns, raw)

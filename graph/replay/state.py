@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 RATES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
-"""How many times as fast as it was."""
+"""Factors of the original speed."""
 
 
 @dataclass(frozen=True)
@@ -22,19 +22,19 @@ class ReplayState:
     paused: bool = False
     loop: bool = False
     ended: bool = False
-    """Whether it has come to the end and stands there."""
+    """Whether it has stopped at the end."""
     messages: int = 0
-    """All there are in the bag."""
+    """All topics in the bag."""
     cut: str = ""
-    """What is missing of a bag that was cut short, in words that can be translated."""
+    """What is missing from a bag that was cut short, as translatable words."""
     damage: str = ""
-    """What was left out so far because it cannot be read, in words that can be translated."""
+    """What has been left out so far as unreadable, as translatable words."""
     error: str = ""
-    """Why it cannot go on, in words that can be translated."""
+    """Why it cannot continue, as translatable words."""
 
 
 def next_rate(rate: float, *, faster: bool) -> float:
-    """Return the next of `RATES` above or below; the last one stays."""
+    """Return the next of `RATES` above or below; the last one has no next."""
     if faster:
         return next((each for each in RATES if each > rate), RATES[-1])
     return next((each for each in reversed(RATES) if each < rate), RATES[0])

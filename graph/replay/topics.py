@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from graph.observer.interest import Interest
 
 NODE = "/bag"
-"""Who publishes everything in a replay."""
+"""The node that publishes everything in a replay."""
 FOLLOWED = 200
-"""Messages of one turn that a follower gets."""
+"""Messages per turn that a follower gets."""
 NANOSECONDS = 1e-9
 RECORDED = {"recorded": ""}
-"""Fact of a topic that is silent in a bag: there is no node to be looked at."""
+"""Fact of a topic that is silent in a bag: there is no node to look at."""
 
 
 class Newest(NamedTuple):
@@ -65,7 +65,7 @@ class ReplayTopic:
             self._waiting.append(self.newest)
 
     def forget(self, until_ns: int) -> None:
-        """Begin to measure anew, because the playhead has jumped; keep what had come by then."""
+        """Restart the measurement, because the playhead has jumped; keep what had come by then."""
         self._meter = RateMeter()
         self._waiting.clear()
         if self.newest is not None and self.newest.stamp_ns > until_ns:
@@ -124,7 +124,7 @@ class ReplayTopic:
         except BagError as error:
             self._broken = error.words
             return None
-        except Exception as error:  # noqa: BLE001 - whatever a bag holds must not end the replay
+        except Exception as error:  # noqa: BLE001 - no content of a bag must end the replay
             self._broken = not_decoded(self._shown.kind.name, error)
             return None
         self._broken = ""
@@ -173,14 +173,14 @@ class ReplayTopics:
         self._topics[topic.name].take(topic, stamp_ns, raw)
 
     def forget(self, until_ns: int) -> None:
-        """Begin to measure anew at this time in the bag."""
+        """Restart the measurement at this time in the bag."""
         for topic in self._topics.values():
             topic.forget(until_ns)
 
     def samples(
         self, interest: Interest, fresh: frozenset[str], wall_s: float, now_ns: int
     ) -> dict[str, tuple[Sample, ...]]:
-        """Return what is new of the topics that somebody looks at."""
+        """Return the new samples of the topics that a screen wants."""
         found = {}
         for name, topic in self._topics.items():
             wanted = FOLLOWED if name in interest.followed else int(name in interest.watched)

@@ -1,4 +1,4 @@
 """The graph as the middleware of this process knows it: nodes, endpoints, who talks to whom.
 
-From outside: `scan.scan`, and `endpoints` for one topic; only the thread of the node may call them.
+Other rooms may use `scan.scan`, and `endpoints` for one topic, on the node's thread only.
 """

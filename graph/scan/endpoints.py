@@ -1,4 +1,4 @@
-"""Publishers and subscriptions with every policy that the middleware reports."""
+"""Publishers and subscriptions, with every policy that the middleware reports."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 INFINITE_NS = 2**63 - 1
-"""Source: rmw, `RMW_DURATION_INFINITE` in time.h; 0 there stands for a policy left alone."""
+"""Source: rmw, `RMW_DURATION_INFINITE` in time.h; 0 there means that the policy was not set."""
 NANOSECONDS = 1e-9
 HISTORIES = frozenset({"keep_last", "keep_all"})
 FAST_DDS = b"\x01\x0f"
-"""How every identifier that eProsima gives begins. Source: OMG, "DDS Vendor IDs"."""
+"""First bytes of every identifier from eProsima. Source: OMG, "DDS Vendor IDs"."""
 LIVELINESS = frozenset({"automatic", "manual_by_topic"})
 
 
@@ -31,31 +31,31 @@ class TopicEnds:
     subscribers: tuple[EndpointInfo, ...] = ()
     own_publishers: tuple[EndpointInfo, ...] = ()
     onlookers: int = field(default=0, compare=False)
-    """Subscriptions that only show or record; a graph with others of them is the same graph."""
+    """Subscriptions that only show or record; a change among them does not change the graph."""
 
     @property
     def everyone_publishing(self) -> tuple[EndpointInfo, ...]:
-        """All publishers, Deck's own included."""
+        """All publishers, including Deck's own."""
         return self.publishers + self.own_publishers
 
     @property
     def is_deserted(self) -> bool:
-        """Whether nobody but Deck knows this topic."""
+        """Whether nobody but Deck uses this topic."""
         return not self.publishers and not self.subscribers
 
 
 def publishers(node: Node, topic: str) -> list[EndpointInfo]:
-    """Return who publishes the topic, Deck too."""
+    """Return the publishers of the topic, including Deck's."""
     from rclpy.impl.implementation_singleton import rclpy_implementation as rclpy_c
 
-    # rclpy's own objects for it cost four times as much, for a hundred topics 20 ms a scan.
+    # rclpy's own objects cost four times as much: 20 ms per scan of a hundred topics.
     with node.handle:
         told = rclpy_c.rclpy_get_publishers_info_by_topic(node.handle, topic, False)
     return [_endpoint(info) for info in told]
 
 
 def subscriptions(node: Node, topic: str) -> list[EndpointInfo]:
-    """Return who is subscribed to the topic, Deck too."""
+    """Return the subscriptions to the topic, including Deck's."""
     from rclpy.impl.implementation_singleton import rclpy_implementation as rclpy_c
 
     with node.handle:
@@ -91,7 +91,7 @@ def _endpoint(info: dict[str, Any]) -> EndpointInfo:
 def _process(gid: bytes) -> int | None:
     """Return the lower half of the number of the process that an endpoint belongs to.
 
-    Source: Fast DDS, `guid_prefix_create`: vendor, host, process and chance, two bytes each.
+    Source: Fast DDS, `guid_prefix_create`: vendor, host, process and random, two bytes each.
     """
     return int.from_bytes(gid[4:6], "little") if gid.startswith(FAST_DDS) else None
 
@@ -100,7 +100,7 @@ def _process(gid: bytes) -> int | None:
 def _names(
     history: int, reliability: int, durability: int, liveliness: int
 ) -> tuple[str, str, str, str]:
-    """Return the policies of these numbers by their names, empty for a history nobody tells."""
+    """Return the names of these policy numbers, empty for an unreported history."""
     from rclpy.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy
 
     kept = HistoryPolicy(history).name.lower()

@@ -1,6 +1,6 @@
-"""Nodes with what they publish, serve and call; services and actions with who is on them.
+"""Nodes with what they publish, serve and call; services and actions with the nodes that use them.
 
-An action is three services and two topics under a hidden name; here it is one thing again.
+An action consists of three services and two topics under hidden names; here it is one thing again.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 INNER = "/_action/"
 SEND_GOAL = "/_action/send_goal"
 SEND_GOAL_TYPE = "_SendGoal"
-"""Source: ROS 2 design, "Actions", the names of an action's services and of their types."""
+"""Source: ROS 2 design, "Actions", the names of an action's services and their types."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Offers:
 
 @dataclass(frozen=True)
 class Party:
-    """One node on its services and actions."""
+    """The services and actions of one node."""
 
     serves: Offers
     calls: Offers
@@ -55,14 +55,14 @@ def parties(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> di
             serves = node.get_service_names_and_types_by_node(name, namespace)
             calls = node.get_client_names_and_types_by_node(name, namespace)
         except NodeNameNonExistentError:
-            # It went between the questions.
+            # It left between the queries.
             continue
         found[full] = Party(offers(serves), offers(calls))
     return found
 
 
 def offers(names_and_types: Iterable[tuple[str, Iterable[str]]]) -> Offers:
-    """Sort services from those that are the inside of an action."""
+    """Separate ordinary services from those inside an action."""
     sorted_out = Offers()
     for name, types in sorted(names_and_types):
         if INNER not in name:

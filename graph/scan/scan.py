@@ -1,6 +1,6 @@
 """The graph as the middleware of this process knows it: who is there, and who talks to whom.
 
-All of it is answered from local tables: no node has to answer, so none can hold it up.
+Everything comes from local tables: no node has to answer, so none can cause a delay.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 NAMELESS = "_NODE_NAME_UNKNOWN_"
 """Source: rmw, `get_topic_endpoint_info.h`."""
 Signature = tuple[Any, ...]
-"""Changes when the graph has changed; cheap to make."""
+"""Changes when the graph has changed; cheap to compute."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Scan:
 
 
 def is_complete(seen: Scan) -> bool:
-    """Tell whether every endpoint has a node; its name comes a little later than the endpoint."""
+    """Return whether every endpoint has a node; names arrive a little later than endpoints."""
     return not any(
         end.node.endswith(NAMELESS)
         for topic in seen.topics.values()
@@ -68,7 +68,7 @@ def signature(node: Node) -> Signature:
 def scan(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> Scan:
     """Ask the middleware for everything; `own_name` is Deck's node, which is left out.
 
-    It takes a tenth of a second for fifteen nodes: `serve_urgent` is called in between, often.
+    This takes a tenth of a second for fifteen nodes: `serve_urgent` is called often in between.
     """
     topics = {}
     for name, types in node.get_topic_names_and_types():
