@@ -1,7 +1,7 @@
-"""The lesson nodes: one file each, and each runs alone: `python -m nodes.mock_sonar`.
+"""The lesson nodes: one file each, and each runs on its own: `python -m nodes.mock_sonar`.
 
-What they share is in the folders: `parts` (how a node lives and ends, its parameters, its words),
-`drivers` (real devices), `simulated` (devices that are not there), `safety` and `driving`.
+Shared code is in the folders: `parts` (how a node starts and ends, its parameters, its messages),
+`drivers` (real devices), `simulated` (simulated devices), `safety` and `driving`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ def _leave(_number: int, _frame: FrameType | None) -> None:
 
 
 __preload__ = ("parts.runner", "parts.node", "parts.parameters", "parts.speech", "parts.qos")
-"""What nearly every node imports: the launcher's spawn server may import it ahead for all."""
+"""Imports of nearly every node: the launcher's spawn server may import them in advance."""
 __preload_idle__ = (
     "parts.refusals",
     "parts.emergency",
@@ -33,10 +33,10 @@ __preload_idle__ = (
     "drivers.servos",
     "parts.sound",
 )
-"""What some nodes import: the spawn server may import it while nobody waits for a node."""
+"""Imports of some nodes: the spawn server may import them while nobody waits for a node."""
 
 if sys.argv[0] == "-m":
-    # `python -m nodes.x` is importing this package on its way to the node. A Ctrl-C that comes
-    # while rclpy loads finds nothing to clean up, and should not leave a traceback behind.
+    # `python -m nodes.x` imports this package before the node. A Ctrl-C while rclpy loads finds
+    # nothing to clean up, and should not leave a traceback behind.
     signal.signal(signal.SIGINT, _leave)
     signal.signal(signal.SIGTERM, _leave)

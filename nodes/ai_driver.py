@@ -1,8 +1,8 @@
-"""Words to motion: takes `forward`, `налево`, `stop` and their like, and publishes /drive.
+"""Words to motion: takes `forward`, `налево`, `stop` and the like, and publishes /drive.
 
-Once a word, as in the course; with `repeat_for_s`, which a gate needs, ten times a second for so
-long and then a stop. Any other word ends that, an unknown one with a stop, and so does an
-emergency stop.
+Each command is sent once, as in the course; with `repeat_for_s`, which a gate needs, it is sent ten
+times a second for that long, followed by a stop. Any other word ends that, an unknown one with a
+stop, and so does an emergency stop.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _UNKNOWN = N_('Unknown command "{word}", nothing is done. Known: {words}')
 
 
 class AiDriver(LessonNode):
-    """Asks for motion at each known word, and for none at any other."""
+    """Commands a motion for each known word, and none for any other."""
 
     NAME = "ai_driver_translator"
     SETTINGS = (REPEAT_FOR_S,)
@@ -38,7 +38,7 @@ class AiDriver(LessonNode):
         self.say.info(_STARTED, words=self._known)
 
     def before_end(self) -> None:
-        """Leave nothing behind that would still move the robot."""
+        """Leave no command behind that would still move the robot."""
         self._drive.end()
 
     def _hear(self, message: String) -> None:

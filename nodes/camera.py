@@ -1,9 +1,9 @@
-"""A camera, a video file or a stream, by OpenCV: the newest picture, `rate` times a second.
+"""A camera, a video file or a stream, through OpenCV: the newest picture, `rate` times a second.
 
-`source` is the number of a camera (0 is /dev/video0), a /dev path (best one of /dev/v4l/by-id, as
-it stays the same), a video file, or a URL (http, rtsp). What comes in another size is scaled, with
-black bars where the shape differs. It connects again by itself; a file begins anew when it is over.
-How it is goes to /diagnostics once a second.
+`source` is the number of a camera (0 is /dev/video0), a /dev path (best one in /dev/v4l/by-id,
+which never changes), a video file, or a URL (http, rtsp). A picture of another size is scaled, with
+black bars if the shape differs. It reconnects by itself; a file starts again at its end. The state
+goes to /diagnostics once a second.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Camera(LessonNode):
         self._message = Image(height=height, width=width, encoding=encoding, step=CHANNELS * width)
         self._message.header.frame_id = self.text("frame_id")
         self._message.data = array("B", bytes(height * width * CHANNELS))
-        # The picture is written straight into the message, blue first.
+        # The picture is written directly into the message, blue first.
         picture = np.frombuffer(self._message.data, np.uint8).reshape(height, width, CHANNELS)
         self._picture = picture if encoding == "bgr8" else picture[:, :, ::-1]
         self._publisher = self.create_publisher(Image, self.text("topic"), NEWEST)
@@ -83,7 +83,7 @@ class Camera(LessonNode):
         self._capture.start()
 
     def before_end(self) -> None:
-        """Give the camera back."""
+        """Release the camera."""
         self._capture.close()
 
     # ---------------------------------------------------------------- the capture's thread
@@ -132,7 +132,7 @@ class Camera(LessonNode):
         )
 
     def _rates(self) -> dict[str, str]:
-        """Pictures a second since this was asked last."""
+        """Return pictures per second since the last call."""
         now_s, pictures = time.monotonic(), self._capture.pictures
         came, taken = pictures.came, pictures.taken
         before_s, *before = self._told
@@ -148,8 +148,8 @@ def main(args: list[str] | None = None) -> int:
     """Run the node until it is asked to end."""
     code = run(Camera, args)
     if any(thread.name == THREAD for thread in threading.enumerate()):
-        # OpenCV is in a read. If it came back while the interpreter is taken down, the process
-        # would end as by a crash.
+        # OpenCV is in a read. If it returned while the interpreter shuts down, the process would
+        # crash.
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)

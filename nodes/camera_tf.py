@@ -1,7 +1,7 @@
-"""Where the camera sits on the robot: the static transform base_link -> camera_link.
+"""Where the camera is mounted on the robot: the static transform base_link -> camera_link.
 
-Published once, latched: whoever comes later gets it too. Metres forward, left and up, then roll,
-pitch and yaw in radians (REP-103).
+Published once, latched, so that late subscribers get it, too. Metres forward, left and up, then
+roll, pitch and yaw in radians (REP-103).
 """
 
 from __future__ import annotations
@@ -57,11 +57,11 @@ class CameraTf(LessonNode):
         self._publish()
 
     def contradiction(self, values: Mapping[str, Value]) -> str | None:
-        """A frame has no place in itself."""
+        """Refuse a transform from a frame to itself."""
         return _SAME if values["parent"] == values["child"] else None
 
     def parameters_changed(self) -> None:
-        """Tell the new place."""
+        """Publish the new place."""
         self._publish()
 
     def _publish(self) -> None:

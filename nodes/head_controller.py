@@ -1,13 +1,13 @@
-"""The pan and tilt head: a service that takes its time, without anybody having to wait for it.
+"""The pan and tilt head: a slow service that does not block anything else.
 
-Request: `a` pan, `b` tilt, whole degrees from -90 to 90, + is left and up. Answer: `sum` 1 when
-the head is there, 0 when the request was refused. A request that comes while the head moves waits
-for its turn; more than `queue` waiting ones are refused.
+Request: `a` pan, `b` tilt, whole degrees from -90 to 90, + is left and up. Response: `sum` 1 when
+the head has arrived, 0 if the request was refused. A request that comes while the head moves waits
+for its turn; requests beyond `queue` waiting ones are refused.
 
-Without a `port` the head is simulated: a movement is spread over `move_time` seconds. With one, an
-LSC-16 moves two servos at `speed`; nothing moves before the first request, and a request is refused
-while nobody answers at the port. /head_state (radians) is what was commanded, for the servos do not
-tell where they are; it has no positions while nobody knows: before the first movement, and after
+Without a `port` the head is simulated: a movement takes `move_time` seconds. With one, an LSC-16
+moves two servos at `speed`; nothing moves before the first request, and requests are refused while
+the controller does not answer. /head_state (radians) is the commanded position, as the servos do
+not report theirs; it is empty while the position is unknown: before the first movement, and after
 the controller was away.
 """
 
@@ -42,18 +42,18 @@ if TYPE_CHECKING:
     from nodes.parts.parameters import Value
 
 _SETTLE_S = 0.1
-"""A command is 14 ms on the wire, and a servo lags behind what it is told."""
+"""A command takes 14 ms on the wire, and a servo lags behind its command."""
 
 
 @dataclass(frozen=True)
 class HeadPose:
-    """Where the head looks, in degrees."""
+    """The direction of the head, in degrees."""
 
     pan: float
     tilt: float
 
     def towards(self, goal: HeadPose, share: float) -> HeadPose:
-        """The pose at a share (0..1) of the way to another one."""
+        """Return the pose at a share (0..1) of the way to another one."""
         return HeadPose(
             self.pan + (goal.pan - self.pan) * share, self.tilt + (goal.tilt - self.tilt) * share
         )
@@ -75,15 +75,15 @@ class HeadController(LessonNode):
         super().__init__()
         self._servos = ServoClient(self) if self.text("port") else None
         self._pose = self._from = HeadPose(0, 0) if self._servos is None else None
-        """None: nobody knows."""
+        """None if unknown."""
         self._pulses_us: tuple[int, int] | None = None
-        """What the servos were told last."""
+        """The last command to the servos."""
         self._began_s = self._length_s = 0.0
         self._turns: deque[tuple[HeadPose, Future]] = deque()
-        """The first one is being moved to."""
+        """The first request is being carried out."""
         self._read_joints()
         self._publisher = self.create_publisher(JointState, HEAD_STATE, DEPTH)
-        # The request awaits the movement: it must not keep the timer's callback group.
+        # A request waits for its movement: it must not block the timer's callback group.
         self.create_service(
             AddTwoInts, HEAD_SERVICE, self._serve, callback_group=ReentrantCallbackGroup()
         )
@@ -94,16 +94,16 @@ class HeadController(LessonNode):
             self._start(self._servos)
 
     def contradiction(self, values: Mapping[str, Value]) -> str | None:
-        """Two joints at one servo, or one without room."""
+        """Refuse two joints at one servo, or a joint without a range."""
         return words.contradiction(values)
 
     def parameters_changed(self) -> None:
-        """Keep the new rates; a new trim counts from the next movement on."""
+        """Apply the new rates; a new trim applies from the next movement on."""
         self._read_joints()
         self._set_pace()
 
     def before_end(self) -> None:
-        """Give the port back; a movement that has begun comes to its end by itself."""
+        """Release the port; a movement that has begun finishes by itself."""
         if self._servos is not None:
             self._servos.link.close()
 
@@ -162,8 +162,8 @@ class HeadController(LessonNode):
     # ---------------------------------------------------------------- movements
 
     def _begin(self) -> None:
-        """Move to the first of the requests, if there is one that can be moved to."""
-        # The trim may have changed since it came.
+        """Start the first request that can be carried out, if there is one."""
+        # The trim may have changed since the request came.
         while self._turns and not self._reaches(self._turns[0][0]):
             self._answer(arrived=False)
         self._set_pace()
@@ -193,7 +193,7 @@ class HeadController(LessonNode):
             self._give_up(servos)
 
     def _give_up(self, servos: ServoClient) -> None:
-        """Nobody knows where the head looks any more."""
+        """Fail: the direction of the head is no longer known."""
         self._pose = self._pulses_us = None
         if not self._turns:
             return

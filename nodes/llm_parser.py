@@ -1,9 +1,9 @@
 """From an LLM's JSON to motion: checks a whole response, then carries it out in order.
 
-One bad command and none is executed. /drive is published at once; turns of the head are asked for
-one after the other, and a new response drops those that have not begun. With `repeat_for_s`, which
-a gate needs, the last /drive is repeated for so long, then a stop; a new response ends that. What
-came of each response is told on /llm_result as JSON, one object a message:
+One bad command, and none is executed. /drive is published at once; head turns are requested one
+after the other, and a new response drops those that have not begun. With `repeat_for_s`, which a
+gate needs, the last /drive is repeated for that long, then a stop; a new response ends that. The
+outcome of each response is published on /llm_result as JSON, one object per message:
 
     {"event": "accepted", "commands": 2, "thought": "..."}
     {"event": "refused", "problems": [{"field", "line", "column", "message", "code", "args"}]}
@@ -50,7 +50,7 @@ _HEAD_DONE = N_("Head: pan {pan}°, tilt {tilt}° done")
 _HEAD_REFUSED = N_("Head: pan {pan}°, tilt {tilt}° refused")
 _HEAD_TROUBLE = N_("Head: {trouble}")
 _RESULTS = 2 * MAX_COMMANDS
-"""Queue of results: a response brings forth more of them at once than an ordinary queue holds."""
+"""Queue of results: a response causes more of them at once than an ordinary queue holds."""
 
 
 class LlmParser(LessonNode):
@@ -71,7 +71,7 @@ class LlmParser(LessonNode):
         self.say.info(_STARTED, topic=LLM_RAW_JSON)
 
     def before_end(self) -> None:
-        """Leave nothing behind that would still move the robot."""
+        """Leave no command behind that would still move the robot."""
         self._drive.end()
 
     def _receive(self, message: String) -> None:

@@ -1,9 +1,8 @@
 """A simulated microphone and loudspeaker.
 
-Every `period` seconds somebody says a phrase into the microphone, as text in bytes where a real one
-would send sound; what comes for the loudspeaker is written to the log. The first phrase waits for
-somebody to listen, though not longer than a period. How loud a microphone would be meanwhile goes
-to /audio/level.
+Every `period` seconds somebody says a phrase into the microphone, as text in bytes instead of
+sound; what comes for the loudspeaker is written to the log. The first phrase waits for
+a subscriber, but not longer than a period. The level of the simulated voice goes to /audio/level.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ _PLAYED = N_('The loudspeaker plays: "{words}"')
 _PHRASE = N_("VOICE_COMMAND: have a look round and tell me what is there")
 
 _LOOK_EVERY_S = 0.5
-"""For a first listener."""
+"""How long to wait for a first subscriber."""
 
 
 class MockAudio(LessonNode):
@@ -58,7 +57,7 @@ class MockAudio(LessonNode):
         self.say.info(_STARTED)
 
     def parameters_changed(self) -> None:
-        """Keep the new period, from the next phrase on."""
+        """Apply the new period, from the next phrase on."""
         if self._began:
             change_period(self._timer, self.number("period"))
 
@@ -79,9 +78,9 @@ class MockAudio(LessonNode):
         self._levels.publish(Float32(data=mock_level_dbfs(self._words, since_s)))
 
     def _has_listener(self) -> bool:
-        """Whether the first phrase is worth saying: somebody listens, or has had time enough to.
+        """Whether to say the first phrase: somebody is subscribed, or has had enough time to.
 
-        Seen twice in a row, for the two ends do not find each other at the same moment.
+        Checked twice in a row, as the two ends do not discover each other at the same moment.
         """
         listened, self._listened = self._listened, self._publisher.get_subscription_count() > 0
         patience_s = self.number("first_after") + self.number("period")

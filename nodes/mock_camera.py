@@ -1,10 +1,10 @@
 """A simulated camera: publishes a small film with a counting caption, 10 pictures a second.
 
-With `scene` room it publishes what a camera on the simulated robot sees: it follows /mock/pose of
-mock_robot, and turns with /head_state.
+With `scene: room` it publishes the view of a camera on the simulated robot: it follows /mock/pose
+of mock_robot, and turns with /head_state.
 
-In place of an Orbbec Gemini: same topic, same frame, `bgr8` as in the course or `rgb8` as the
-real driver has it.
+It replaces an Orbbec Gemini: same topic, same frame, `bgr8` as in the course or `rgb8` as the real
+driver publishes it.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class MockCamera(LessonNode):
         self._message = Image(height=height, width=width, encoding=encoding, step=3 * width)
         self._message.header.frame_id = self.text("frame_id")
         self._message.data = array("B", bytes(height * width * 3))
-        # The picture is drawn straight into the message.
+        # The picture is drawn directly into the message.
         self._picture = np.frombuffer(self._message.data, np.uint8).reshape(height, width, 3)
         self._number = 0
         self._publisher = self.create_publisher(Image, self.text("topic"), NEWEST)
@@ -63,7 +63,7 @@ class MockCamera(LessonNode):
         )
 
     def parameters_changed(self) -> None:
-        """Keep the new rate."""
+        """Apply the new rate."""
         change_period(self._timer, 1.0 / self.number("rate"))
 
     def _make_scene(self, height: int, width: int, *, blue_first: bool) -> MovingScene | RoomScene:

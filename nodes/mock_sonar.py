@@ -1,8 +1,8 @@
 """A simulated ToF sonar: publishes a distance in metres.
 
-By REP-117 +inf says "nothing in range" (`value:=.inf` makes it constant) and nan says "no valid
-reading" (`dropout` makes some). Three patterns: random distances as in the course, a sweep to and
-fro, and a constant.
+By REP-117, +inf means "nothing in range" (`value:=.inf` makes it constant) and nan means "no valid
+reading" (`dropout` adds some). Three patterns: random distances as in the course, a sweep back and
+forth, and a constant.
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ class MockSonar(LessonNode):
         self.say.info(_STARTED, topic=topic)
 
     def contradiction(self, values: Mapping[str, Value]) -> str | None:
-        """The nearest distance must be nearer than the farthest."""
+        """Refuse a minimum that is not below the maximum."""
         return None if float(values["min_distance"]) < float(values["max_distance"]) else _ORDER
 
     def parameters_changed(self) -> None:
-        """Keep the new rate."""
+        """Apply the new rate."""
         change_period(self._timer, 1.0 / self.number("rate"))
 
     def _tick(self) -> None:

@@ -1,8 +1,8 @@
-"""Where a vision model would be asked: keeps the newest picture, and every 3 s "sends" it.
+"""A placeholder for a vision model: keeps the newest picture, and "sends" it every 3 s.
 
-The stream runs at 10 pictures a second, a model is paid by the picture: so the newest one is
-only remembered as it came, and decoded when it is needed. What would be sent is made for real, a
-JPEG; nothing leaves this machine.
+The stream has 10 pictures a second, but a model is paid per picture: so the newest one is only
+kept as it came, and decoded when needed. The JPEG that would be sent is really made; nothing leaves
+this machine.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class VlmAgentStub(LessonNode):
     def __init__(self) -> None:
         super().__init__()
         self._newest: bytes | None = None
-        """Serialized: decoding ten pictures a second to use one in thirty would be a waste."""
+        """Serialized: decoding ten pictures a second to use one in thirty would be wasteful."""
         self._any = False
         topic = self.text("topic")
         SensorListener(self, Image, topic, self._keep, depth=1, raw=True)
@@ -51,7 +51,7 @@ class VlmAgentStub(LessonNode):
         self.say.info(_STARTED, topic=topic)
 
     def parameters_changed(self) -> None:
-        """Keep the new period."""
+        """Apply the new period."""
         change_period(self._timer, self.number("period"))
 
     def _keep(self, serialized: bytes) -> None:

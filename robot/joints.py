@@ -1,4 +1,4 @@
-"""The joints of the robot by name, as `sensor_msgs/JointState` carries them."""
+"""The names of the robot's joints, as `sensor_msgs/JointState` carries them."""
 
 from __future__ import annotations
 

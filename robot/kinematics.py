@@ -1,7 +1,7 @@
 """The electronic differential: how fast each rear wheel turns on a curve.
 
-The chassis steers like a car (Ackermann) and drives each rear wheel by a motor of its own, with
-no gears between them, so that software has to make the inner wheel slower.
+The chassis steers like a car (Ackermann) and drives each rear wheel with its own motor, without a
+mechanical differential, so the software has to slow down the inner wheel.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ WHEEL_RADIUS_M = 0.0325
 STRAIGHT_BELOW_RAD = 0.01
 """Steering angles smaller than this count as straight ahead."""
 STEERING_LIMIT_RAD = math.pi / 2
-"""At this angle the front wheels stand across: no turning circle exists beyond it."""
+"""At this angle the front wheels are perpendicular: no turning circle exists beyond it."""
 
 
 @dataclass(frozen=True)
 class WheelSpeeds:
-    """Speeds of the rear wheels at their rims, and the circle that the robot drives."""
+    """Rim speeds of the rear wheels, and the circle that the robot drives."""
 
     left_m_s: float
     right_m_s: float
@@ -32,11 +32,11 @@ class WheelSpeeds:
 
     @property
     def fastest_m_s(self) -> float:
-        """Of the faster wheel, without its sign."""
+        """Absolute speed of the faster wheel."""
         return max(abs(self.left_m_s), abs(self.right_m_s))
 
     def slowed_to(self, most_m_s: float) -> WheelSpeeds:
-        """No wheel faster than that, on the same circle: both are slowed in proportion."""
+        """Return both speeds scaled down to this maximum at the faster wheel: the same circle."""
         if self.fastest_m_s <= most_m_s:
             return self
         part = most_m_s / self.fastest_m_s
@@ -44,10 +44,10 @@ class WheelSpeeds:
 
 
 def turning_radius(steering_rad: float, wheelbase_m: float = WHEELBASE_M) -> float:
-    """Radius in metres of the circle of the rear axle: R = L / tan(delta).
+    """Return the radius in metres of the circle of the rear axle: R = L / tan(delta).
 
     Positive to the left, `math.inf` when straight. Raises ValueError if `steering_rad` is not
-    a number smaller than a right angle or `wheelbase_m` not greater than 0.
+    a number smaller than a right angle, or `wheelbase_m` is not greater than 0.
     """
     if not abs(steering_rad) < STEERING_LIMIT_RAD:
         raise ValueError(f"steering must be smaller than a right angle, not {steering_rad} rad")
@@ -64,10 +64,10 @@ def wheel_speeds(
     wheelbase_m: float = WHEELBASE_M,
     track_m: float = TRACK_M,
 ) -> WheelSpeeds:
-    """Speeds of the rear wheels for a speed of the rear axle and a steering angle (+ is left).
+    """Return the rear wheels' speeds for a speed of the rear axle and a steering angle (+ is left).
 
     v_left = v (1 - W / 2R), v_right = v (1 + W / 2R). Raises ValueError for a speed that is not
-    finite, an angle of no circle (see `turning_radius`), or measures that no chassis has.
+    finite, an angle without a circle (see `turning_radius`), or impossible dimensions.
     """
     if not math.isfinite(speed_m_s):
         raise ValueError(f"the speed must be a finite number, not {speed_m_s} m/s")

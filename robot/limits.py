@@ -1,8 +1,8 @@
-"""How far the robot may be asked to go, whoever asks.
+"""Limits of what anybody may ask of the robot.
 
-Each step on the way to the motors holds to these, and none trusts the one before it. What lies
-beyond them nobody can have meant: it is refused, which is a stop. Parameters of nodes may set
-lower limits; to those a command is slowed. To make a robot faster, change this file.
+Every step on the way to the motors enforces them, and none trusts the previous one. A command
+beyond them must be an error: it is refused, which is a stop. Node parameters may set lower limits;
+commands are slowed down to those. To make a robot faster, change this file.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from robot.kinematics import WHEEL_RADIUS_M, wheel_speeds
 
 _ROUNDING = 1e-6
-"""A share of the limit: 0.3 is a little more in the 32 bits of a /drive."""
+"""Tolerance as a share of the limit: 0.3 is a little more in the 32 bits of a /drive."""
 
 
 @dataclass(frozen=True)
@@ -24,37 +24,37 @@ class Limits:
     unit: str
 
     def __contains__(self, value: object) -> bool:
-        """Whether a number lies inside; nan never does."""
+        """Whether a number is within the range; nan never is."""
         return isinstance(value, (int, float)) and self.low <= value <= self.high
 
     def allow(self, value: float) -> bool:
-        """Whether a number lies inside, but for what rounding has added to it."""
+        """Whether a number is within the range, apart from rounding."""
         more = _ROUNDING * max(abs(self.low), abs(self.high))
         return self.low - more <= value <= self.high + more
 
     def clamped(self, value: float) -> float:
-        """The nearest number inside."""
+        """Return the nearest number within the range."""
         return max(self.low, min(self.high, value))
 
 
 SPEED = Limits(-0.5, 0.5, "m/s")
-"""Of the middle of the rear axle."""
+"""Speed of the middle of the rear axle."""
 STEERING = Limits(-0.5, 0.5, "rad")
 RIM_M_S = wheel_speeds(SPEED.high, STEERING.high).right_m_s
-"""No wheel is driven faster, at its rim: the outer one of the tightest curve at full speed is."""
+"""Maximum rim speed of a wheel: reached by the outer one in the tightest curve at full speed."""
 PICO_RAD_S = 17.907
-"""What the Pico lets a wheel be asked for, as in firmware/pico2/config.py."""
+"""What the Pico accepts for a wheel, as in firmware/pico2/config.py."""
 
 
 def wheel_limits(radius_m: float = WHEEL_RADIUS_M) -> Limits:
-    """How fast a wheel of this radius may turn: its rim goes by `RIM_M_S` at the most."""
+    """Return how fast a wheel of this radius may turn: its rim moves at `RIM_M_S` at most."""
     most = RIM_M_S / radius_m
     return Limits(-most, most, "rad/s")
 
 
 @dataclass(frozen=True)
 class Excess:
-    """A number that was asked for and lies beyond its limits, or is none."""
+    """A requested value that is beyond its limits, or not a number."""
 
     value: float
     limits: Limits
@@ -66,13 +66,13 @@ class Excess:
 
 
 def first_excess(*asked: tuple[float, Limits]) -> Excess | None:
-    """The first of these numbers that is no number or lies beyond its limits, None if all fit."""
+    """Return the first value that is not a number or beyond its limits, None if all are fine."""
     return next((Excess(*one) for one in asked if not one[1].allow(one[0])), None)
 
 
 HEAD_ANGLE = Limits(-90, 90, "deg")
 """Pan and tilt, in whole degrees."""
 MAX_COMMANDS = 32
-"""Commands in one response of an LLM."""
+"""Maximum commands in one response of an LLM."""
 MAX_BYTES = 64 * 1024
-"""Size of one response of an LLM."""
+"""Maximum size of one response of an LLM."""

@@ -1,6 +1,6 @@
-"""The topics and services of the robot by name: nodes and screens meet on them.
+"""The names of the robot's topics and services, shared by nodes and screens.
 
-A name stands here once. What ROS itself names (/rosout, /clock) is not the robot's.
+Each name is defined only here. ROS's own names (/rosout, /clock) are not the robot's.
 """
 
 from __future__ import annotations
@@ -39,4 +39,4 @@ TF_STATIC = "/tf_static"
 WHEEL_COMMANDS = "/wheel_commands"
 
 COMMAND_SOURCES = (DRIVE_TELEOP, DRIVE_ACTION, DRIVE)
-"""Of commands for the gate: a person's keys, a drive to a point, words and the model; by rank."""
+"""Commands for the gate, by rank: a person's keys, a drive to a point, words and the model."""

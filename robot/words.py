@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class DriveSetpoint:
-    """What the chassis is asked to do."""
+    """A command to the chassis."""
 
     speed_m_s: float
-    """At the rear axle, negative backwards."""
+    """Speed of the rear axle, negative backwards."""
     steering_rad: float
-    """Of the front wheels, + is left."""
+    """Angle of the front wheels, + is left."""
 
 
 STOP = DriveSetpoint(0.0, 0.0)
@@ -30,7 +30,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "ru": ("вперед", "налево", "направо", "назад", "стоп"),
     "en": ("forward", "left", "right", "back", "stop"),
 }
-"""Language code to the words it knows, in one order: forward, left, right, back, stop."""
+"""Language code to its words, in the same order: forward, left, right, back, stop."""
 
 _MEANING = {
     word: setpoint
@@ -40,9 +40,9 @@ _MEANING = {
 
 
 def parse_word(text: str) -> DriveSetpoint | None:
-    """What a word of either language asks for, None if it is no such word.
+    """Return what a word of either language commands, None if it is no such word.
 
-    Case, blanks around it, a final full stop or exclamation mark, and ё for е do not matter.
+    Case, surrounding blanks, a final full stop or exclamation mark, and ё for е do not matter.
     """
     word = unicodedata.normalize("NFC", text).strip().rstrip("!.").strip()
     return _MEANING.get(word.casefold().replace("ё", "е"))

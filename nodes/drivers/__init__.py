@@ -1,4 +1,4 @@
-"""What real devices need: serial ports, cameras and sound that come and go.
+"""Support for real devices: serial ports, cameras and sound devices that come and go.
 
-For nodes of real devices; no simulated one needs anything of it.
+For nodes of real devices; the simulated ones do not use it.
 """

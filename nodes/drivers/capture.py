@@ -1,8 +1,8 @@
-"""A source of pictures that comes and goes: a thread of its own reads it, and reopens it when lost.
+"""A picture source that comes and goes: its own thread reads it, and reopens it when lost.
 
-Every picture is taken as it comes, so that none waits in a queue; those that nobody wants are not
-even unpacked. The callback runs on the thread. A read may block for seconds inside of OpenCV: the
-end does not wait for it.
+Every picture is taken as it comes, so that none waits in a queue; unwanted ones are not even
+decoded. The callback runs on the thread. A read may block for seconds inside OpenCV: `close` does
+not wait for it.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 
 THREAD = "capture"
 SILENT_S = 2.0
-"""Open, and yet no picture for so long, is trouble."""
+"""An open source without a picture for this long is in trouble."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.25, 4.0
 _EARLY = 0.25
-"""A picture may be this share of a period early."""
+"""A picture may be early by this share of a period."""
 _SAY_EVERY_S = 10.0
 _MOST_FPS = 240.0
 
@@ -68,15 +68,15 @@ class Capture:
         *,
         loop: bool,
     ) -> None:
-        """`size` is width and height to ask for; at most `rate_hz()` pictures are `taken`."""
+        """`size` is the width and height to request; at most `rate_hz()` pictures are `taken`."""
         self._say, self.source, self._size = say, source, size
         self._rate_hz, self._taken, self._loop = rate_hz, taken, loop
         self.pictures = Pictures()
         self.connected = self.over = False
         self.since = ""
-        """When the connection began, ISO 8601, empty without one."""
+        """When it was connected, ISO 8601, empty if it is not."""
         self.problem = ""
-        """Why there is none."""
+        """Why it is not connected."""
         self.changed_s = self.seen_s = time.monotonic()
         """When it came or went, and when the newest picture came."""
         self._next_s = 0.0
@@ -85,15 +85,15 @@ class Capture:
 
     @property
     def silent(self) -> bool:
-        """Whether it is open and yet gives no pictures."""
+        """Whether it is open but gives no pictures."""
         return self.connected and time.monotonic() - self.seen_s > SILENT_S
 
     def start(self) -> None:
-        """Begin to open it."""
+        """Start opening it."""
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread, unless it is in a read that does not come back."""
+        """End the thread, unless it is in a read that does not return."""
         self._ending.set()
         if self._thread.is_alive():
             self._thread.join(0.3)
@@ -117,7 +117,7 @@ class Capture:
             wait_s = min(2 * wait_s, _LONGEST_WAIT_S)
 
     def _show(self) -> int:
-        """Open it and take its pictures until there are no more; how many there were."""
+        """Open it and take its pictures until there are no more; return how many there were."""
         film = self._open()
         if film is None:
             return 0
@@ -144,7 +144,7 @@ class Capture:
     def _read(self, film: cv2.VideoCapture) -> None:
         pace_s = self._pace_s(film)
         due_s = time.monotonic()
-        # Every file that OpenCV opens it knows a rate of; only files are read by the clock.
+        # OpenCV knows a rate for every file that it opens; only files are paced by the clock.
         while not self._ending.is_set() and film.grab():
             self._came()
             if self._is_wanted():
@@ -157,7 +157,7 @@ class Capture:
                 self._ending.wait(max(0.0, due_s - time.monotonic()))
 
     def _pace_s(self, film: cv2.VideoCapture) -> float:
-        """Seconds between two pictures of a file, 0 for what has a pace of its own."""
+        """Return seconds between two pictures of a file, 0 for a source with its own pace."""
         import cv2
 
         if self.source.kind is not SourceKind.FILE:
@@ -209,7 +209,7 @@ class Capture:
 
 
 def _silence_opencv() -> None:
-    """It and FFmpeg write to stderr in words of their own; what matters is told in ours."""
+    """Silence OpenCV and FFmpeg, which write to stderr; what matters is logged by this node."""
     os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
     os.environ.setdefault("OPENCV_LOG_LEVEL", "OFF")
     import cv2

@@ -1,4 +1,4 @@
-"""What the Pico reports, as ROS messages."""
+"""The Pico's reports as ROS messages."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from robot.wire.pico import Telemetry
 
 _LONGEST_GAP_S = 1.0
-"""Over a longer silence nobody knows where the robot went."""
+"""After a longer silence the robot's motion is unknown."""
 _SHARPEST_RAD = 1.4
 
 
 class DeadReckoning:
-    """Adds up where the wheels have taken the robot."""
+    """Integrates the motion of the wheels."""
 
     def __init__(self, wheelbase_m: float, radius_m: float) -> None:
         self._wheelbase_m, self._radius_m = wheelbase_m, radius_m
@@ -39,7 +39,7 @@ class DeadReckoning:
         self.pose = Pose()
 
     def take(self, telemetry: Telemetry) -> None:
-        """Go on to the time of this telemetry."""
+        """Advance to the time of this telemetry."""
         before, self._uptime_ms = self._uptime_ms, telemetry.uptime_ms
         passed_s = ((telemetry.uptime_ms - before) % 2**32) / 1000 if before is not None else 0.0
         if passed_s > _LONGEST_GAP_S:
@@ -49,7 +49,7 @@ class DeadReckoning:
             self._angles[side] += speed * passed_s
 
     def joints(self, telemetry: Telemetry, stamp: Time) -> JointState:
-        """For /joint_states: positions and speeds in the order of `DRIVE_JOINTS`."""
+        """Return /joint_states: positions and speeds in the order of `DRIVE_JOINTS`."""
         message = JointState(name=list(DRIVE_JOINTS))
         message.header.stamp = stamp
         message.position = [*self._angles, telemetry.steering_rad]
@@ -57,7 +57,7 @@ class DeadReckoning:
         return message
 
     def odometry(self, telemetry: Telemetry, stamp: Time) -> Odometry:
-        """For /odom: the same message each time, filled anew."""
+        """Return /odom: the same message object each time, refilled."""
         message = self._odometry
         message.header.stamp = stamp
         message.pose.pose.position.x = self.pose.x_m
@@ -70,7 +70,7 @@ class DeadReckoning:
         return message
 
     def transform(self, stamp: Time) -> TransformStamped:
-        """For /tf: odom to base_link."""
+        """Return /tf: odom to base_link."""
         message = TransformStamped()
         message.header = Header(stamp=stamp, frame_id=ODOM)
         message.child_frame_id = FRAME
@@ -84,21 +84,21 @@ class DeadReckoning:
         return Quaternion(x=turn.x, y=turn.y, z=turn.z, w=turn.w)
 
     def _command(self, telemetry: Telemetry) -> DriveSetpoint:
-        """What the robot does, as a drive."""
+        """Return the robot's actual motion as a drive command."""
         mean_rad_s = (telemetry.left_rad_s + telemetry.right_rad_s) / 2
         steering = max(-_SHARPEST_RAD, min(_SHARPEST_RAD, telemetry.steering_rad))
         return DriveSetpoint(mean_rad_s * self._radius_m, steering)
 
 
 def battery(telemetry: Telemetry, stamp: Time) -> BatteryState:
-    """For /battery; nan for what is not measured."""
+    """Return /battery; nan for what is not measured."""
     message = BatteryState()
     message.header.stamp = stamp
     known = telemetry.battery_v is not None
     message.voltage = telemetry.battery_v if known else math.nan
     currents = (telemetry.left_a, telemetry.right_a)
     told = [current for current in currents if current is not None]
-    # By the message: negative while it is discharged.
+    # The message defines it as negative while discharging.
     message.current = -sum(told) if told else math.nan
     for field in ("temperature", "charge", "capacity", "design_capacity", "percentage"):
         setattr(message, field, math.nan)

@@ -1,4 +1,4 @@
-"""The computer's side of the Pico: shakes hands, drives, keeps count of what comes back.
+"""The computer's side of the Pico protocol: handshake, drive lines, counts of the replies.
 
 `heard` runs on the reader's thread, everything else on the node's.
 """
@@ -43,7 +43,7 @@ _SILENT = N_("{port} is open, but no Pico answers: another device, or no firmwar
 
 
 class PicoClient:
-    """Talks over a `SerialLink`; `start` and `close` it."""
+    """Communicates over a `SerialLink`; `start` and `close` that."""
 
     def __init__(self, node: LessonNode, baud: int, heard: Callable[[Telemetry], None]) -> None:
         self._say, self._heard = node.say, heard
@@ -54,36 +54,36 @@ class PicoClient:
         self._greeted_s = 0.0
         self._heard_s, self._opened_s = 0.0, math.inf
         self.telemetry: Telemetry | None = None
-        """The newest one, None while there is no connection."""
+        """The newest telemetry, None while there is no connection."""
         self.frames = 0
-        """Lines of use that came."""
+        """Valid lines received."""
         self.lost = 0
-        """Lines of the Pico that never came, by their numbers."""
+        """Lines from the Pico that were lost, by their numbers."""
 
     @property
     def errors(self) -> int:
-        """Lines that were of no use, on either side, or did not come."""
+        """Lines that were invalid, on either side, or lost."""
         refused = self.telemetry.refused if self.telemetry is not None else 0
         return self._decoder.errors + self.lost + refused
 
     @property
     def answers(self) -> bool:
-        """Whether telemetry comes."""
+        """Whether telemetry arrives."""
         return self.telemetry is not None and time.monotonic() - self._heard_s < SILENT_AFTER_S
 
     @property
     def silent(self) -> bool:
-        """Whether the port is open and yet nothing of use has come for a while."""
+        """Whether the port is open but nothing valid has come for a while."""
         known_s = max(self._heard_s, self._opened_s)
         return self.link.connected and time.monotonic() - known_s > SILENT_AFTER_S
 
     def drive(self, left_rad_s: float, right_rad_s: float, steering_rad: float) -> None:
-        """Say what the wheels shall do; first of all who we are, if that is not known there."""
+        """Command the wheels; before that, greet the Pico if it does not know us yet."""
         telemetry = self.telemetry
         if not self.answers or (telemetry is not None and "H" in telemetry.flags):
             self._greet_again()
         if telemetry is not None and "A" in telemetry.flags:
-            # The firmware wants to see a stop before it obeys anew.
+            # The firmware requires a stop before it obeys again.
             left_rad_s = right_rad_s = 0.0
         self._send(lambda seq: Drive(seq, left_rad_s, right_rad_s, steering_rad))
         if self.silent:

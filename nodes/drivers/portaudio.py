@@ -1,12 +1,12 @@
-"""A microphone or a loudspeaker, in a process of its own: `portaudio.py in|out DEVICE HZ MS`.
+"""A microphone or a loudspeaker in its own process: `portaudio.py in|out DEVICE HZ MS`.
 
-PortAudio lists the devices once, when it begins; when one is pulled it has been seen to hang, to
-spin and to abort, and it writes to stderr as it likes. So it runs here, where it can be killed and
-begun anew without harm to the node. Nothing of the project and no numpy is imported.
+PortAudio lists the devices only once, at its start; when one is unplugged it has been seen to hang,
+to spin and to abort, and it writes to stderr. So it runs here, where it can be killed and restarted
+without harm to the node. Neither the project nor numpy is imported.
 
-16-bit mono samples come out of stdout or go into stdin. Stderr has a line of JSON for whatever is
-to be told: {"opened": NAME, "rate": HZ}, then {"faults": N} once a second, and at the end perhaps
-{"problem": WORD, "detail": TEXT}. Other lines there are the libraries' own.
+16-bit mono samples come out of stdout or go into stdin. Stderr carries reports as lines of JSON:
+{"opened": NAME, "rate": HZ}, then {"faults": N} once a second, and at the end possibly
+{"problem": WORD, "detail": TEXT}. Other lines there come from the libraries.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 IN, OUT = "in", "out"
 SAMPLE = 2
 KEPT_BLOCKS = 20
-"""Of the microphone, while the node does not take them."""
+"""Buffer for the microphone, while the node does not read it."""
 AHEAD_BLOCKS = 2
-"""For the loudspeaker; more waits with the node, where it can be dropped."""
+"""Buffer for the loudspeaker; the node holds the rest, where it can be dropped."""
 SILENT_S = 2.0
-"""A device that moves nothing for so long is gone, whatever it says."""
+"""A device without any data for this long is gone, whatever it reports."""
 _TICK_S = 0.05
 _TELL_S = 1.0
 _INVALID_RATE = -9997
@@ -42,14 +42,14 @@ _PR_SET_PDEATHSIG = 1
 
 
 class Flags(Protocol):
-    """What sounddevice says went wrong with a block."""
+    """sounddevice's error flags for a block."""
 
     input_overflow: bool
     output_underflow: bool
 
 
 class Stream(Protocol):
-    """An open device, as sounddevice has it."""
+    """An open sounddevice stream."""
 
     active: bool
     samplerate: float
@@ -61,9 +61,9 @@ class Stream(Protocol):
 def choose(
     devices: Sequence[Mapping[str, object]], wanted: str, way: str, default: int
 ) -> int | None:
-    """The index of the device that is wanted, None if there is none.
+    """Return the index of the wanted device, None if there is none.
 
-    `wanted` is an index, a name, a part of a name, or empty for the default or else the first.
+    `wanted` is an index, a name, part of a name, or empty for the default or else the first.
     """
     fit = [at for at, device in enumerate(devices) if device[f"max_{way}put_channels"] != 0]
     if not wanted:
@@ -87,7 +87,7 @@ class AudioPipe:
         self._part = b""
         self._moved = threading.Event()
 
-    # PortAudio's thread: it must not wait for anything.
+    # On PortAudio's thread, which must not wait for anything.
 
     def hear(self, data: memoryview, _frames: int, _time: object, status: Flags) -> None:
         """Take a block from the microphone."""
@@ -96,7 +96,7 @@ class AudioPipe:
         self._stir()
 
     def play(self, data: memoryview, _frames: int, _time: object, status: Flags) -> None:
-        """Fill a block for the loudspeaker, with silence where nothing waits."""
+        """Fill a block for the loudspeaker, with silence if nothing waits."""
         self.faults += bool(status.output_underflow)
         want = len(data)
         while len(self._part) < want and self._blocks:
@@ -111,10 +111,10 @@ class AudioPipe:
         self.stirred_s = time.monotonic()
         self._moved.set()
 
-    # The main thread.
+    # On the main thread.
 
     def give(self) -> None:
-        """Write out what was heard."""
+        """Write out the microphone's sound."""
         self._moved.wait(_TICK_S)
         self._moved.clear()
         while self._blocks:
@@ -123,7 +123,7 @@ class AudioPipe:
                 block = block[os.write(1, block) :]
 
     def take(self, most: int) -> None:
-        """Read what is to be played, as long as little waits."""
+        """Read what to play, while little is waiting."""
         if len(self._blocks) >= AHEAD_BLOCKS:
             self._moved.wait(_TICK_S)
             self._moved.clear()
@@ -140,14 +140,14 @@ def tell(**words: object) -> None:
 
 
 def end(problem: str, detail: object = "") -> NoReturn:
-    """Say why, and be gone; PortAudio is not asked to tidy up, for that is where it hangs."""
+    """Report why, and exit; PortAudio must not clean up, as that is where it hangs."""
     tell(problem=problem, detail=" ".join(str(detail).split()))
     os._exit(1)
 
 
 def load() -> ModuleType:
     """Import sounddevice, which starts PortAudio."""
-    # Devices of the kernel by way of ALSA's converter of rates, channels and formats.
+    # Kernel devices through ALSA's converter of rates, channels and formats.
     os.environ.setdefault("PA_ALSA_PLUGHW", "1")
     try:
         import sounddevice
@@ -155,7 +155,7 @@ def load() -> ModuleType:
         end("package", error)
     except OSError as error:
         end("library", error)
-    except Exception as error:  # noqa: BLE001 - its own type of error comes with the import
+    except Exception as error:  # noqa: BLE001 - its own error type comes with the import
         end("other", error)
     module: ModuleType = sounddevice
     return module
@@ -164,7 +164,7 @@ def load() -> ModuleType:
 def open_stream(
     sound: ModuleType, way: str, wanted: str, rate_hz: int, block_ms: int, line: AudioPipe
 ) -> Stream:
-    """Open and start the device, at its own rate if it cannot do the one that is asked for."""
+    """Open and start the device, at its own rate if it does not support the requested one."""
     devices = sound.query_devices()
     at = choose(devices, wanted, way, sound.default.device[way == OUT])
     if at is None:
@@ -193,7 +193,7 @@ def open_stream(
 
 
 def run(way: str, wanted: str, rate_hz: int, block_ms: int) -> NoReturn:
-    """Move sound until the node is gone or the device is."""
+    """Move sound until the node or the device is gone."""
     line = AudioPipe()
     stream = open_stream(load(), way, wanted, rate_hz, block_ms, line)
     most = int(stream.samplerate) * block_ms // 1000 * SAMPLE
@@ -214,7 +214,7 @@ def run(way: str, wanted: str, rate_hz: int, block_ms: int) -> NoReturn:
 
 
 def main(words: Sequence[str]) -> NoReturn:
-    """Go as the node goes, by whatever way it goes."""
+    """Run, and end when the node ends, however it ends."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, ctypes.c_ulong(signal.SIGKILL), 0, 0, 0)
@@ -227,6 +227,6 @@ def main(words: Sequence[str]) -> NoReturn:
 
 
 if __name__ == "__main__":
-    # Beside this file lie the nodes, which are nobody's libraries.
+    # The nodes beside this file must not be importable as libraries.
     del sys.path[0]
     main(sys.argv[1:])

@@ -1,6 +1,6 @@
-"""`~/frames`: what goes over a serial port, in words, while somebody is subscribed.
+"""`~/frames`: the traffic of a serial port, in words, while somebody is subscribed.
 
-While nobody is subscribed, bytes are not even kept. See robot/frames/lines.py for the format.
+Without subscribers, bytes are not even kept. See robot/frames/lines.py for the format.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 
 FRAMES = "~/frames"
 _LOOK_EVERY_S = 1.0
-"""How often it is looked whether somebody is subscribed."""
+"""How often to check whether somebody is subscribed."""
 _TELL_EVERY_S = 0.2
 _MOST_OCTETS = 16_384
-"""Bytes of one batch that are kept: of more, nobody could read the frames."""
+"""Bytes kept per batch: nobody could read the frames of more."""
 
 
 class SerialFrames:
-    """Keeps bytes for a batch, and publishes it from the node's thread."""
+    """Collects bytes for a batch, and publishes it from the node's thread."""
 
     def __init__(self, node: LessonNode, make: Callable[[str], FrameReader]) -> None:
-        """`make` makes what reads the frames of this device and speaks a language."""
+        """`make` creates a reader of this device's frames for a language."""
         self._publisher = node.quick_publisher(String, FRAMES)
         self._batcher = FrameBatcher(make, node.say.language)
         self._wanted = False
@@ -43,7 +43,7 @@ class SerialFrames:
         self._timer = node.every(_LOOK_EVERY_S, self._look)
 
     def note(self, way: str, octets: bytes) -> None:
-        """Bytes went `in` or `out`. From any thread."""
+        """Note bytes that went `in` or `out`. From any thread."""
         if not self._wanted:
             return
         chunk = Chunk(time.time(), way, octets)

@@ -1,4 +1,4 @@
-"""Reading an open port: one wait and one read for whatever has come.
+"""Reads an open port: one wait and one read for whatever has come.
 
 pyserial's own `read` waits and reads once for the first byte and once more for the rest.
 """
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     import serial
 
 _WAIT_MS = 100
-"""So long a read may wait before the thread looks whether it shall end."""
+"""How long a read may wait before the thread checks whether it should end."""
 _CHUNK = 4096
 _STALE_S = 0.5
-"""Who has not read for longer throws away what has waited: it is of the past."""
+"""After a longer pause the waiting bytes are discarded as outdated."""
 
 
 class SerialReads:
-    """Reads one port from the time it is opened until it is closed."""
+    """Reads one port from opening until closing."""
 
     def __init__(self, port: serial.Serial) -> None:
         self._port, self._handle = port, port.fileno()
@@ -31,7 +31,7 @@ class SerialReads:
         self._read_s = time.monotonic()
 
     def read(self) -> bytes:
-        """What has come, nothing if that lasts too long; raises OSError if the port is gone."""
+        """Return what has come, nothing after a time-out; raises OSError if the port is gone."""
         before_s, ready = self._read_s, self._poll.poll(_WAIT_MS)
         self._read_s = time.monotonic()
         if self._read_s - before_s > _STALE_S:

@@ -22,10 +22,10 @@ _LAST_WAIT_S = 0.2
 
 
 class SoundChild:
-    """Runs from its making until `close`; raises OSError if it cannot be started."""
+    """Runs from its creation until `close`; raises OSError if it cannot be started."""
 
     def __init__(self, way: str, device: str, rate_hz: int, block_ms: int) -> None:
-        # It dies with the thread that made it: that has to be the one that serves it.
+        # It dies with the thread that created it, which must be the one that serves it.
         self._process = subprocess.Popen(
             [sys.executable, str(PROGRAM), way, device, str(rate_hz), str(block_ms)],
             bufsize=0,
@@ -37,18 +37,18 @@ class SoundChild:
         assert pipe is not None
         assert self._process.stderr is not None
         self.sound, self.words = pipe.fileno(), self._process.stderr.fileno()
-        """Descriptors, which do not block."""
+        """Non-blocking file descriptors."""
         if way == OUT:
-            # What is in the pipe cannot be dropped any more.
+            # What is in the pipe can no longer be dropped.
             fcntl.fcntl(self.sound, fcntl.F_SETPIPE_SZ, select.PIPE_BUF)
         os.set_blocking(self.sound, False)
         os.set_blocking(self.words, False)
         self._line = b""
         self.last_words = ""
-        """The last line that is no message: what a library said before it died."""
+        """The last line that is not a message: a library's output before it died."""
 
     def hear(self) -> bytes:
-        """Sound from the microphone; raises OSError at its end."""
+        """Return sound from the microphone; raises OSError at its end."""
         with contextlib.suppress(BlockingIOError):
             data = os.read(self.sound, _CHUNK)
             if not data:
@@ -57,13 +57,13 @@ class SoundChild:
         return b""
 
     def play(self, sound: bytes) -> bytes:
-        """Send sound to the loudspeaker; what did not fit comes back. Raises OSError at its end."""
+        """Send sound to the loudspeaker; return what did not fit. Raises OSError at its end."""
         with contextlib.suppress(BlockingIOError):
             return sound[os.write(self.sound, sound) :]
         return sound
 
     def messages(self) -> list[dict[str, object]] | None:
-        """What it has told since the last time, None when it tells no more."""
+        """Return the messages since the last call, None when there will be no more."""
         try:
             data = os.read(self.words, _CHUNK)
         except BlockingIOError:
@@ -83,16 +83,16 @@ class SoundChild:
         return None
 
     def await_end(self) -> None:
-        """Wait a moment for one that has closed its pipes."""
+        """Wait a moment for a process that has closed its pipes."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_LAST_WAIT_S)
 
     def close(self) -> None:
-        """End it whatever it does."""
+        """Kill the process if need be."""
         self._process.kill()
         self.await_end()
         if self._process.returncode is None:
-            # A device that hangs holds even a killed one: it is collected when it lets go.
+            # A hanging device delays even a killed process, which is collected later.
             threading.Thread(target=self._process.wait, daemon=True).start()
         if not self.last_words and self._process.returncode:
             self.last_words = f"exit code {self._process.returncode}"

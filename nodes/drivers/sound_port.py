@@ -1,7 +1,7 @@
-"""A microphone or a loudspeaker that comes and goes: a thread of its own keeps it open.
+"""A microphone or a loudspeaker that comes and goes: its own thread keeps it open.
 
-PortAudio runs in a process beside this one (`portaudio`), which is begun anew for each try. The
-callback `heard` runs on the thread.
+PortAudio runs in a separate process (`portaudio`), restarted for each attempt. The callback `heard`
+runs on the thread.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
     from nodes.parts.speech import Speech
 
 NOWHERE = "none"
-"""The name of the device that is not wanted."""
+"""The device name that means no device."""
 CARDS = Path("/proc/asound/cards")
 """Changes when a sound card comes or goes."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.25, 15.0
 _LOOK_S = 0.25
 _OPEN_S = 15.0
-"""PortAudio tries every device there is while it begins."""
+"""Time limit: PortAudio probes every device at its start."""
 _ANSWER_S = 5.0
-"""It tells something once a second; after so long without, it hangs."""
+"""It reports once a second; after this long without a report, it hangs."""
 _PATIENCE_S = 3.0
-"""Sound waits so long for a loudspeaker that is being opened."""
+"""How long sound waits for a loudspeaker that is being opened."""
 _SAY_EVERY_S = 10.0
 
 
@@ -54,7 +54,7 @@ class SoundPort:
         heard: Callable[[bytes], None] | None = None,
         queue_s: float = 0.0,
     ) -> None:
-        """`heard` gets blocks of the microphone; `queue_s` of sound may wait for a loudspeaker."""
+        """`heard` gets the microphone's blocks; `queue_s` of sound may wait for a loudspeaker."""
         self._say, self.way, self.wanted = say, way, device
         self.rate_hz, self._block_ms = rate_hz, block_ms
         self._heard = heard
@@ -64,22 +64,22 @@ class SoundPort:
         """Bytes moved, blocks missed and connections, since the start."""
         self.device, self.device_hz, self.problem = "", 0, say.text(OPENING)
         self.connected, self.since_s, self.since = False, time.monotonic(), ""
-        """Since when it is as it is; while connected that moment as ISO 8601, too."""
+        """Start of the current state; while connected also as ISO 8601."""
         self._resampler: Resampler | None = None
         self._missed = 0
         self._part = b""
-        """Of a block that was heard, or of what is to be written."""
+        """Half a sample left over from a read block, or from sound to write."""
         self._ending = threading.Event()
         self._stirred = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
         self._thread = threading.Thread(target=self._live, name=f"sound {way}", daemon=True)
 
     @property
     def wants(self) -> bool:
-        """Whether there shall be a device at all."""
+        """Whether a device is wanted at all."""
         return self.wanted.casefold() != NOWHERE
 
     def start(self) -> None:
-        """Begin to open the device."""
+        """Start opening the device."""
         if self.wants:
             self._thread.start()
 
@@ -91,7 +91,7 @@ class SoundPort:
             self._thread.join(0.4)
 
     def play(self, sound: bytes) -> tuple[int, bool]:
-        """Have whole samples played; returns (bytes dropped, whether there is a loudspeaker)."""
+        """Queue whole samples; return (bytes dropped, whether there is a loudspeaker)."""
         if not self.connected and time.monotonic() - self.since_s > _PATIENCE_S:
             return len(sound), False
         dropped = self._queue.put(sound)
@@ -115,7 +115,7 @@ class SoundPort:
             wait_s = min(2 * wait_s, _LONGEST_WAIT_S)
 
     def _rest(self, wait_s: float, cards: bytes) -> None:
-        """Wait for the next try, at once if there are other cards than when this one began."""
+        """Wait for the next attempt; no longer than until the sound cards change."""
         until_s = time.monotonic() + wait_s
         while time.monotonic() < until_s and _cards() == cards:
             if self._ending.wait(min(_LOOK_S, wait_s)):
@@ -129,7 +129,7 @@ class SoundPort:
             self._say.warn(CANNOT[self.way], every_s=_SAY_EVERY_S, problem=self.problem)
 
     def _serve(self) -> tuple[str, str]:
-        """Try once, and move sound as long as that goes well; (problem, detail) comes back."""
+        """Open the device, and move sound until that fails; return (problem, detail)."""
         try:
             child = SoundChild(self.way, self.wanted, self.rate_hz, self._block_ms)
         except OSError as error:
@@ -137,7 +137,7 @@ class SoundPort:
         try:
             problem, detail = self._move(child)
         except OSError:
-            # The end of its sound is seen before that of its words.
+            # Its sound ends before its messages do.
             child.await_end()
             problem, detail = self._hear_words(child) or ("died", "")
         finally:
@@ -172,7 +172,7 @@ class SoundPort:
         return "", ""
 
     def _hear_words(self, child: SoundChild) -> tuple[str, str] | None:
-        """Take what PortAudio's process tells; (problem, detail) if that is its end."""
+        """Take the messages of PortAudio's process; return (problem, detail) if it has ended."""
         told = child.messages()
         if told is None:
             child.await_end()
@@ -200,7 +200,7 @@ class SoundPort:
         return self.connected and bool(self._part or len(self._queue))
 
     def _carry(self, child: SoundChild) -> None:
-        """Move what can be moved now."""
+        """Move the sound that can be moved now."""
         if self.way == OUT:
             self._part = self._part or self._resampled(self._queue.take(self._block))
             left = child.play(self._part)
@@ -220,7 +220,7 @@ class SoundPort:
 
 
 def _watch(selector: selectors.BaseSelector, descriptor: int, events: int) -> None:
-    """Have a descriptor watched for these events; 0: for none."""
+    """Watch a descriptor for these events; 0 for none."""
     watched = descriptor in selector.get_map()
     if watched and events != selector.get_key(descriptor).events:
         selector.unregister(descriptor)

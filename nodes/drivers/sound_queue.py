@@ -6,7 +6,7 @@ import threading
 
 
 class SoundQueue:
-    """Holds so many bytes at most; to be used from several threads."""
+    """Holds at most `most` bytes; thread-safe."""
 
     def __init__(self, most: int) -> None:
         self._most = most
@@ -14,11 +14,11 @@ class SoundQueue:
         self._lock = threading.Lock()
 
     def __len__(self) -> int:
-        """Bytes that wait."""
+        """Return the number of waiting bytes."""
         return len(self._sound)
 
     def put(self, sound: bytes) -> int:
-        """Add to the end; the bytes that were dropped for it come back as a number."""
+        """Append sound; return how many bytes were dropped to make room."""
         with self._lock:
             self._sound += sound
             dropped = max(0, len(self._sound) - self._most)
@@ -26,7 +26,7 @@ class SoundQueue:
             return dropped
 
     def take(self, most: int) -> bytes:
-        """Take so many bytes at most from the beginning."""
+        """Take at most this many bytes from the front."""
         with self._lock:
             sound = bytes(self._sound[:most])
             del self._sound[:most]

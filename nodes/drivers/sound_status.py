@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class PortStatus:
-    """Makes the message: what is connected, since when, bytes and errors a second."""
+    """Makes the message: the device, time connected, bytes and errors per second."""
 
     def __init__(self, say: Speech, name: str, port: SoundPort) -> None:
         self._say, self._name, self._port = say, name, port
         self._told = (time.monotonic(), 0, 0)
 
     def message(self) -> DiagnosticStatus:
-        """The state of the moment; rates are those since the last message."""
+        """Return the current state; rates are those since the last message."""
         port, now_s = self._port, time.monotonic()
         counts = port.octets, port.faults
         passed_s = max(1e-3, now_s - self._told[0])

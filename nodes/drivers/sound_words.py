@@ -56,7 +56,7 @@ _PROBLEMS = {
 
 
 def explain(say: Speech, problem: str, device: str, detail: str) -> str:
-    """What is wrong with a device, and the mend."""
+    """Return what is wrong with a device, and the fix."""
     if problem == "missing" and not (device and detail):
         problem = "none"
     return say.text(_PROBLEMS.get(problem, _PROBLEMS["other"]), device=device, detail=detail)

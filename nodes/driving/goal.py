@@ -1,4 +1,4 @@
-"""One goal of `drive_to_point` on its way: what is known of it, and how it ends."""
+"""One active goal of `drive_to_point`: its state and its end."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class DriveGoal:
         self.handle = handle
         self.approach = approach
         self.over = Future()
-        """Gets the result of the action."""
+        """The future of the action's result."""
         self._patience_s = patience_s
         self._progress: ApproachProgress | None = None
         self._began_s = time.monotonic()
@@ -35,15 +35,15 @@ class DriveGoal:
 
     @property
     def age_s(self) -> float:
-        """Seconds since it was accepted."""
+        """Return the seconds since it was accepted."""
         return time.monotonic() - self._began_s
 
     def distance_m(self, pose: Pose | None) -> float:
-        """Metres still to go; nan if it is not known where the robot is."""
+        """Return the metres still to go; nan if the robot's position is unknown."""
         return math.nan if pose is None else pose.distance_to(self.approach.goal)
 
     def watch(self, pose: Pose) -> ApproachProgress:
-        """How it gets on, with the newest pose taken into account."""
+        """Return its progress, including the newest pose."""
         now_s = time.monotonic()
         if self._progress is None:
             longest_m = self.approach.longest_way_m(pose)
@@ -52,14 +52,14 @@ class DriveGoal:
         return self._progress
 
     def tell(self, pose: Pose) -> None:
-        """Send the distance as feedback, now and then."""
+        """Send the distance as feedback, at a limited rate."""
         now_s = time.monotonic()
         if now_s - self._told_s >= _FEEDBACK_EVERY_S:
             self._told_s = now_s
             self.handle.publish_feedback(DriveToPoint.Feedback(distance=self.distance_m(pose)))
 
     def finish(self, reached: bool, pose: Pose | None, message: str) -> None:
-        """End it: reached, else cancelled if that was asked for, else aborted."""
+        """End it: reached, or else cancelled if requested, or else aborted."""
         if reached:
             self.handle.succeed()
         elif self.handle.is_cancel_requested:

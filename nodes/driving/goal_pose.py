@@ -1,4 +1,4 @@
-"""/goal_pose: the point that `drive_to_point` drives to, for whoever draws it on a map."""
+"""/goal_pose: the point that `drive_to_point` drives to, for drawing it on a map."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ if TYPE_CHECKING:
 
 
 class GoalPose:
-    """Publishes one goal at a time; a pose without a frame says that there is none."""
+    """Publishes one goal at a time; a pose without a frame means that there is none."""
 
     def __init__(self, node: LessonNode) -> None:
         self._node = node
         self._publisher = node.create_publisher(PoseStamped, GOAL_POSE, LATCHED)
 
     def tell(self, point: Point) -> None:
-        """A drive to this point has begun; it may arrive with any heading."""
+        """Publish a new goal point; the robot may arrive with any heading."""
         message = self._message()
         message.header.frame_id = ODOM
         message.pose.position.x, message.pose.position.y = point.x_m, point.y_m
         self._publisher.publish(message)
 
     def forget(self) -> None:
-        """The drive has ended."""
+        """Publish that there is no goal any more."""
         self._publisher.publish(self._message())
 
     def _message(self) -> PoseStamped:

@@ -1,4 +1,4 @@
-"""/diagnostics, where every driver says how it is."""
+"""/diagnostics, where every driver reports its state."""
 
 from __future__ import annotations
 

@@ -25,5 +25,5 @@ def to_message(node: LessonNode, setpoint: DriveSetpoint) -> AckermannDriveStamp
 
 
 def from_message(message: AckermannDriveStamped) -> DriveSetpoint:
-    """Take what it asks for; the values come as they are, nan included."""
+    """Return its command; values are taken unchanged, nan included."""
     return DriveSetpoint(message.drive.speed, message.drive.steering_angle)

@@ -1,7 +1,7 @@
 """The emergency stop as a node obeys it: latched until it is released by an explicit false.
 
-What stops the node is acted upon first; then it is told on /emergency_stop_state, and then kept on
-disk, from where the node takes it up again at its next start.
+A stop takes effect first; then it is published on /emergency_stop_state, and then saved to disk,
+from where the node restores it at its next start.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
 
 TOPIC, PICO = "topic", "pico"
-"""Who engages it."""
+"""What engaged it."""
 _TOLD_EVERY_S = 1.0
 _UNKNOWN = "_UNKNOWN_"
-"""In the names of a node that has been heard but is not known yet (rmw)."""
+"""In the names of a node whose endpoint is known but whose name is not yet (rmw)."""
 
 _REMEMBERED = N_(
     "EMERGENCY STOP, given before this node was started ({at}): nothing moves until it is released"
@@ -50,16 +50,16 @@ _FREE = N_("no emergency stop")
 
 
 class EmergencyStopListener:
-    """Listens to /emergency_stop, and remembers what was heard.
+    """Subscribes to /emergency_stop, and remembers its state.
 
-    Listens twice: the latched subscription learns of a stop that came before this node, but ROS
-    does not match it with a volatile publisher, and `ros2 topic pub` is one. It must stop the robot
-    too. What came before this node can only stop: of two publishers one may have released a stop
-    long before the other gave the one that is on, and their words come in any order.
+    There are two subscriptions: the latched one receives a stop from before this node, but ROS does
+    not match it with a volatile publisher such as `ros2 topic pub`, which must stop the robot too.
+    Messages from before this node can only stop: with two publishers, one may have released a stop
+    long before the other sent the current one, and their messages arrive in any order.
     """
 
     def __init__(self, node: LessonNode, changed: Callable[[bool], None]) -> None:
-        """Begin with the stop that is remembered, of which `changed` is not told."""
+        """Start with the saved stop, for which `changed` is not called."""
         self._node, self._changed = node, changed
         name = node.get_fully_qualified_name()
         self._memory = StopMemory(node.context.get_domain_id(), name)
@@ -70,7 +70,7 @@ class EmergencyStopListener:
         )
         self._released_s = 0.0
         self._suspects: set[bytes] = set()
-        """Publishers of the topic when it was stopped whose names are not known yet."""
+        """Publishers of the topic at the time of the stop whose names are not known yet."""
         self._stop = self._memory.recall()
         if self._stop is not None:
             self._tell_remembered(self._stop)
@@ -85,7 +85,7 @@ class EmergencyStopListener:
         return self._stop is not None
 
     def engage(self, by: str) -> None:
-        """Stop until it is released, whoever has asked for it; for the node's own thread."""
+        """Stop until released, whatever the cause; call this on the node's own thread."""
         if self._stop is not None:
             return
         self._stop = KeptStop(time.time(), by)
@@ -103,7 +103,7 @@ class EmergencyStopListener:
             self._released_s = time.time()
             self._changed(False)
             self._publish()
-        # Also what another node has left that could not hear of it any more.
+        # Also the file of another node that could not receive the release any more.
         problem = self._memory.forget()
         if problem:
             self._node.say.error(_NOT_FORGOTTEN, every_s=10.0, problem=problem)
@@ -126,7 +126,7 @@ class EmergencyStopListener:
             self._keep(self._stop)
 
     def _name_suspects(self, stop: KeptStop) -> None:
-        """Tell who may have said it; the name of a new publisher is known a little later."""
+        """Report who may have sent it; the name of a new publisher is known a little later."""
         names = set(stop.publishers.split())
         unnamed = set()
         for one in self._publishers():

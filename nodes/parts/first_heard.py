@@ -1,8 +1,8 @@
-"""Whether a node that has just started may have missed a latched word of somebody it has not found.
+"""Whether a node that has just started may have missed a latched message of an undiscovered node.
 
-Discovery takes tenths of a second, now and then seconds, and a latched word comes a little after
-it; the command of another may come first. What was commanded already when the node started is to
-be told from what is commanded later: its first message is among the first things that are heard.
+Discovery takes tenths of a second, sometimes seconds, and a latched message arrives a little later;
+the command of another node may come first. A source that was already sending when the node started
+is recognised by its first message, which is among the first messages received.
 """
 
 from __future__ import annotations
@@ -10,18 +10,18 @@ from __future__ import annotations
 import time
 
 _WATCH_S = 5.0
-"""Who is heard for the first time later than this after the start came later too."""
+"""A source first heard later than this after the start was also started later."""
 
 
 class FirstHeard:
-    """Watches who is heard for the first time after the start."""
+    """Watches which sources are heard for the first time after the start."""
 
     def __init__(self) -> None:
         self._started_s = self._newest_s = time.monotonic()
         self._known: set[str] = set()
 
     def hear(self, name: str) -> None:
-        """Somebody says something, perhaps not for the first time."""
+        """Note a message of this source, perhaps not its first."""
         now_s = time.monotonic()
         if name not in self._known and now_s - self._started_s < _WATCH_S:
             self._newest_s = now_s
@@ -29,5 +29,5 @@ class FirstHeard:
 
     @property
     def quiet_s(self) -> float:
-        """Seconds since the start, or since the last one arrived."""
+        """Return the seconds since the start, or since the last new source."""
         return time.monotonic() - self._newest_s

@@ -1,6 +1,6 @@
-"""Asks the head to turn, one request after the other, and never waits for it.
+"""Asks the head to turn, one request after the other, without blocking.
 
-A service that is not there (yet), and an answer that does not come, end in a word after a while.
+A missing service or answer is reported in words after a while.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
 
 APPEAR_S = 1.0
-"""How long a service that is not there may take to appear: discovery has a tail."""
+"""How long a missing service may take to appear: discovery is sometimes slow."""
 _CHECK_EVERY_S = 0.1
 
 ABSENT = N_("the service {service} is not there: is head_controller running?")
@@ -34,14 +34,14 @@ DROPPED = N_("dropped for newer commands")
 
 @dataclass(frozen=True)
 class HeadAnswer:
-    """What came of one request."""
+    """The outcome of one request."""
 
     pan: int
     tilt: int
     sum: int | None = None
     """1 done, 0 refused, None if there was no answer."""
     trouble: str = ""
-    """Why there was none, in the language of the node."""
+    """Why there was no answer, in the language of the node."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class _Request:
 
 
 class HeadClient:
-    """A queue of requests to the head of which one is under way."""
+    """A queue of requests to the head, one of them under way."""
 
     def __init__(self, node: LessonNode, timeout_s: Callable[[], float]) -> None:
         self._node = node
@@ -65,13 +65,13 @@ class HeadClient:
         self._timer.cancel()
 
     def turn(self, pan: int, tilt: int, report: Callable[[HeadAnswer], None]) -> None:
-        """Ask for a pose, in degrees, after those asked for before; `report` tells the end."""
+        """Queue a request for a pose, in degrees; `report` is called with the outcome."""
         self._queue.append(_Request(pan, tilt, report))
         if len(self._queue) == 1:
             self._ask()
 
     def forget(self) -> None:
-        """Drop what has not been asked yet."""
+        """Drop requests that have not been sent yet."""
         under_way = self._queue.popleft() if self._queue else None
         dropped, self._queue = self._queue, deque([under_way] if under_way else [])
         for request in dropped:
@@ -102,7 +102,7 @@ class HeadClient:
             self._finish(trouble=late)
 
     def _answered(self, call: Future) -> None:
-        # An answer may come in after it was given up.
+        # An answer may arrive after its request was given up.
         if call is self._call:
             response = call.result()
             self._finish(total=None if response is None else response.sum)

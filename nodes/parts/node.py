@@ -32,11 +32,11 @@ _BAD_VALUE = N_(
 _UNKNOWN_NEAR = N_("there is no parameter {name}; did you mean {near}?")
 _UNKNOWN = N_("there is no parameter {name}; there are: {known}")
 _OWN_TO_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")
-"""Beginnings of names that rclpy sees to by itself."""
+"""Prefixes of names that rclpy handles by itself."""
 
 
 class NodeUsageError(Exception):
-    """The node cannot start as it was asked to; nothing is wrong with its code."""
+    """The node cannot start with these arguments; its code is not at fault."""
 
     def __init__(self, phrase: str, **values: object) -> None:
         super().__init__(say(phrase, **values))
@@ -45,7 +45,7 @@ class NodeUsageError(Exception):
 
 
 def change_period(timer: Timer, period_s: float) -> None:
-    """Let a timer run at another pace from now on."""
+    """Change the period of a timer."""
     timer.timer_period_ns = int(period_s * 1e9)
     timer.reset()
 
@@ -81,31 +81,31 @@ class LessonNode(Node):
         return bool(self._values[name])
 
     def contradiction(self, _values: Mapping[str, Value]) -> str | None:
-        """What is wrong with these values taken together, None if nothing is."""
+        """Return what is wrong with this combination of values, None if nothing is."""
         return None
 
     def parameters_changed(self) -> None:
-        """New values have just been taken, at run time."""
+        """Called after new values have been accepted at run time."""
 
     def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
-        """Call back by a clock that never jumps: a Pi sets its own when it finds a network."""
+        """Call back on a clock that never jumps: a Pi sets its clock when it finds a network."""
         return self.create_timer(period_s, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def quick_publisher(self, kind: type, topic: str) -> Publisher:
-        """A publisher that does not tell of subscriptions that do not fit: they do so themselves.
+        """Create a publisher without events for incompatible subscriptions, which report it too.
 
-        A node looks at all that may be told each time it wakes up, which is most of what waking up
-        costs: worth it for one that does so 20 times a second and more.
+        A node checks all its event handlers each time it wakes up, which is most of the cost of
+        waking up: worthwhile for one that wakes up 20 times a second or more.
         """
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         return self.create_publisher(kind, topic, DEPTH, event_callbacks=quiet)
 
     def before_end(self) -> None:
-        """The node is about to end; the graph can still be talked to."""
+        """Called before the node ends, while the graph can still be used."""
 
     @classmethod
     def usage(cls) -> str:
-        """What the node is for and which parameters it has, for a terminal."""
+        """Return the node's purpose and parameters, for a terminal."""
         module = sys.modules[cls.__module__]
         name = module.__spec__.name if module.__spec__ else cls.__module__
         lines = [
@@ -159,7 +159,7 @@ class LessonNode(Node):
         }
 
     def _with_points(self, parameters: Sequence[Parameter]) -> list[Parameter]:
-        """Take `rate:=2` for `rate:=2.0`: ROS itself is strict about it."""
+        """Accept `rate:=2` for `rate:=2.0`, about which ROS itself is strict."""
         return [self._with_point(parameter) for parameter in parameters]
 
     def _with_point(self, parameter: Parameter) -> Parameter:

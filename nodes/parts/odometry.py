@@ -1,4 +1,4 @@
-"""/odom as a node hears it: where the robot is, how old that is, and who says so."""
+"""/odom as a node receives it: the robot's pose, its age, and its publisher."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
 
 ODOM = "odom"
-"""The frame in which /odom tells where the robot is (REP-105)."""
+"""The frame of the poses on /odom (REP-105)."""
 _NO_NUMBER = N_("{topic} is not a number, not believed")
 
 
 class OdometryListener:
-    """Keeps the newest pose; one with nan or infinity counts as none."""
+    """Keeps the newest pose; one with nan or infinity is ignored."""
 
     def __init__(self, node: LessonNode) -> None:
         self._say = node.say
         self._heard_s = time.monotonic()
         self.pose: Pose | None = None
-        """The newest one, None before the first."""
+        """The newest pose, None before the first."""
         node.create_subscription(Odometry, ODOMETRY, self._hear, NEWEST_OF_ANY)
 
     @property
     def age_s(self) -> float:
-        """Seconds since the newest pose, or since the start if there is none."""
+        """Return the seconds since the newest pose, or since the start if there is none."""
         return time.monotonic() - self._heard_s
 
     def _hear(self, message: Odometry) -> None:

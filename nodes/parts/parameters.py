@@ -1,7 +1,7 @@
-"""Parameters that are described, and that refuse invalid values.
+"""Parameters with descriptions, which refuse invalid values.
 
-A node lists its parameters as data. ROS gets descriptors with ranges from that list, and a value
-that does not fit is refused at the start and at run time, with a sentence that names the mend.
+A node lists its parameters as data. ROS gets descriptors with ranges from that list, and an invalid
+value is refused at the start and at run time, with a sentence that names the fix.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from rclpy.parameter import Parameter
 from text.i18n import N_
 from text.sentences import say
 
-Value = Union[bool, int, float, str]  # noqa: UP007 - evaluated, and Python 3.10 takes it
+Value = Union[bool, int, float, str]  # noqa: UP007 - evaluated, and valid in Python 3.10
 
 _KINDS = {
     bool: Parameter.Type.BOOL,
@@ -26,12 +26,12 @@ _KINDS = {
 
 
 class BadValueError(ValueError):
-    """A value that a parameter cannot take."""
+    """A value that a parameter does not accept."""
 
     def __init__(self, expected: str, **values: object) -> None:
         super().__init__(say(expected, **values))
         self.expected = expected
-        """What would be right, to follow "is X, but must be"."""
+        """A description of valid values, to follow "is X, but must be"."""
         self.values = values
 
 
@@ -43,23 +43,23 @@ class Setting:
     default: Value
     about: str
     fixed: bool = False
-    """Whether it can be set at the start only."""
+    """Whether it can be set only at the start."""
 
     @property
     def kind(self) -> Parameter.Type:
-        """The type that ROS shows."""
+        """Return the type that ROS shows."""
         return _KINDS[type(self.default)]
 
     def accept(self, value: object) -> Value:
-        """The value as this parameter keeps it; raises `BadValueError`."""
+        """Return the value as this parameter stores it; raises `BadValueError`."""
         raise NotImplementedError
 
     def expected(self) -> str:
-        """What it takes, in a few words, for the help."""
+        """Describe the accepted values in a few words, for the help."""
         raise NotImplementedError
 
     def descriptor(self) -> ParameterDescriptor:
-        """How it describes itself to ROS tools."""
+        """Return its descriptor for ROS tools."""
         return ParameterDescriptor(
             name=self.name,
             type=self.kind.value,
@@ -78,7 +78,7 @@ class Number(Setting):
     unit: str = ""
 
     def accept(self, value: object) -> float:
-        """A float inside the range."""
+        """Return a float within the range."""
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             number = float(value)
             # Written so that nan is refused.
@@ -86,7 +86,7 @@ class Number(Setting):
                 return number
         raise BadValueError(
             N_("a number from {low} to {high} {unit}"),
-            # As one types them.
+            # As a user types them.
             low=f"{self.low:g}",
             high=f"{self.high:g}",
             unit=self.unit,
@@ -97,7 +97,7 @@ class Number(Setting):
         return f"{self.low:g} .. {self.high:g} {self.unit}".rstrip()
 
     def descriptor(self) -> ParameterDescriptor:
-        """With a floating point range."""
+        """Return a descriptor with a floating-point range."""
         descriptor = super().descriptor()
         descriptor.floating_point_range = [
             FloatingPointRange(from_value=float(self.low), to_value=float(self.high))
@@ -114,7 +114,7 @@ class Whole(Setting):
     unit: str = ""
 
     def accept(self, value: object) -> int:
-        """An int inside the range."""
+        """Return an int within the range."""
         if (
             isinstance(value, int)
             and not isinstance(value, bool)
@@ -133,7 +133,7 @@ class Whole(Setting):
         return f"{self.low} .. {self.high} {self.unit}".rstrip()
 
     def descriptor(self) -> ParameterDescriptor:
-        """With an integer range."""
+        """Return a descriptor with an integer range."""
         descriptor = super().descriptor()
         descriptor.integer_range = [IntegerRange(from_value=self.low, to_value=self.high)]
         return descriptor
@@ -144,30 +144,30 @@ class Switch(Setting):
     """True or false."""
 
     def accept(self, value: object) -> bool:
-        """A bool, and nothing that is merely like one."""
+        """Return a bool; accept nothing that is merely similar."""
         if isinstance(value, bool):
             return value
         raise BadValueError(N_("true or false"))
 
     def expected(self) -> str:
-        """The two values."""
+        """Name the two values."""
         return N_("true, false")
 
 
 @dataclass(frozen=True)
 class Text(Setting):
-    """A text; an empty one only where `may_be_empty`."""
+    """A text, which may be empty only if `may_be_empty`."""
 
     may_be_empty: bool = False
 
     def accept(self, value: object) -> str:
-        """A str."""
+        """Return a str."""
         if isinstance(value, str) and (value.strip() or self.may_be_empty):
             return value
         raise BadValueError(N_("a text (in quotes if it looks like a number)"))
 
     def expected(self) -> str:
-        """Whether it may be empty."""
+        """Say whether it may be empty."""
         return N_("text, may be empty") if self.may_be_empty else N_("text")
 
 
@@ -178,11 +178,11 @@ class Choice(Setting):
     choices: tuple[str, ...] = ()
 
     def accept(self, value: object) -> str:
-        """One of `choices`."""
+        """Return one of `choices`."""
         if isinstance(value, str) and value in self.choices:
             return value
         raise BadValueError(N_("one of: {choices}"), choices=self.expected())
 
     def expected(self) -> str:
-        """The words."""
+        """List the words."""
         return ", ".join(self.choices)

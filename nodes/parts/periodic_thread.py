@@ -1,6 +1,6 @@
-"""Something done at a rate on a thread of its own, which costs less than a timer of a node.
+"""Calls a function at a fixed rate on its own thread, which costs less than a node's timer.
 
-Each round of an executor looks at all that a node listens to; at 50 Hz that is most of its work.
+Each round of an executor checks everything a node waits for; at 50 Hz that is most of its work.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ class PeriodicThread:
         self._thread = threading.Thread(target=self._live, name="pace", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def close(self) -> None:
-        """End; the callback of the moment is waited for."""
+        """End the thread, after its current callback."""
         self._ending = True
         if self._thread.is_alive():
             self._thread.join(2 * self.period_s + 0.1)
@@ -36,6 +36,6 @@ class PeriodicThread:
         due_s = time.monotonic()
         while not self._ending:
             self._call()
-            # What is late is not caught up.
+            # Missed calls are not made up for.
             due_s = max(due_s + self.period_s, time.monotonic())
             time.sleep(max(0.0, due_s - time.monotonic()))

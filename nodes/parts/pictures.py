@@ -19,7 +19,7 @@ _BAD_SIZE = N_("{width}x{height} pixels, {step} bytes a row and {size} bytes do 
 
 
 class BadPictureError(ValueError):
-    """A message that is no picture; `phrase` and `values` say why."""
+    """A message that is not a valid picture; `phrase` and `values` say why."""
 
     def __init__(self, phrase: str, **values: object) -> None:
         super().__init__(say(phrase, **values))
@@ -28,7 +28,7 @@ class BadPictureError(ValueError):
 
 
 def bgr(message: Image) -> NDArray[np.uint8]:
-    """The picture as (rows, columns, 3), blue first; a view where that is possible.
+    """Return the picture as (rows, columns, 3), blue first; a view if possible.
 
     Raises `BadPictureError` for another encoding, or sizes that contradict each other.
     """
@@ -48,7 +48,7 @@ def bgr(message: Image) -> NDArray[np.uint8]:
 def fit(picture: NDArray[np.uint8], into: NDArray[np.uint8]) -> None:
     """Copy a picture into an array of (rows, columns, 3), blue first.
 
-    One of another size is scaled, with black bars where the shape differs; a grey one is taken too.
+    One of another size is scaled, with black bars if the shape differs; grey ones are accepted too.
     """
     if picture.shape == into.shape:
         into[:] = picture

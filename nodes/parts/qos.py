@@ -7,9 +7,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 DEPTH = 10
 """Queue of an ordinary topic, as everywhere in the course."""
 NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
-"""For those who want the latest message only."""
+"""Queue for subscribers that want only the latest message."""
 NEWEST_OF_ANY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""The latest of a topic that may be published reliably or not: both fit."""
+"""The latest message, from reliable and best-effort publishers alike."""
 LATCHED = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,

@@ -1,8 +1,8 @@
 """Which commands a node refuses, why, and how it reports that.
 
-A command with a number beyond the limits, or with a stamp that does not belong to this moment, is
-refused, and what is refused is a stop. That holds for the gate, the electronic differential and the
-chassis alike; none of them trusts the one before it.
+A command with a number beyond the limits, or with a stamp from another time, is refused, and a
+refused command counts as a stop. That holds for the gate, the electronic differential and the
+chassis alike; none of them trusts the previous one.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ MAX_WHEEL_SPEED = Number(
     high=200.0,
     unit="rad/s",
 )
-"""The parameter of who commands the wheels."""
+"""The parameter of nodes that command the wheels."""
 
 _REMEMBER_S = 1.5
-"""So long a state tells of it: a little longer than from one state to the next."""
+"""How long the state reports a refusal: a little longer than its period."""
 _LONGEST_WAY_S = 2.0
-"""For who lets commands grow as old as they like: that long one may have been on its way."""
+"""The maximum transport delay of a command, for nodes without an age limit."""
 _AHEAD_S = 0.5
 _ANOTHER_CLOCK_S = 30.0
-"""Nothing is so long on its way."""
+"""No message takes this long to arrive."""
 
 _NO_NUMBER = N_("{source} asks for {value:g} {unit}, which is not a number: refused, stop")
 _BEYOND = N_("{source} asks for {value:g} {unit}, the limit is {limit:g} {unit}: refused, stop")
@@ -57,7 +57,7 @@ _SHORT_STAMP = N_("stamp {age:.1f} s old")
 
 
 class Refusal(NamedTuple):
-    """What was asked for and refused, in few words."""
+    """A refused command, in a few words."""
 
     told: str
     """For programs, in English."""
@@ -66,21 +66,21 @@ class Refusal(NamedTuple):
 
 
 class CommandRefusals:
-    """What this node has refused lately."""
+    """The recent refusals of this node."""
 
     def __init__(self, node: LessonNode) -> None:
-        """Say it with the voice of `node`, and go by its clock."""
+        """Log through `node`, and use its clock."""
         self._node = node
         self._last: Refusal | None = None
         self._at_s = -math.inf
 
     @property
     def recent(self) -> Refusal | None:
-        """What was refused in the last moments, None if nothing was."""
+        """Return the last recent refusal, None if there is none."""
         return self._last if time.monotonic() - self._at_s < _REMEMBER_S else None
 
     def beyond(self, source: str, *asked: tuple[float, Limits]) -> bool:
-        """Whether one of these numbers is none, or is beyond its limits; that is told."""
+        """Whether one of these values is not a number or beyond its limits; that is logged."""
         excess = first_excess(*asked)
         if excess is None:
             return False
@@ -93,9 +93,9 @@ class CommandRefusals:
         return True
 
     def untimely(self, source: str, stamp: Time, max_age_s: float) -> bool:
-        """Whether it is stamped longer ago than that, or ahead; a stamp of zero tells nothing.
+        """Whether its stamp is older than that, or in the future; a stamp of zero is ignored.
 
-        With a `max_age_s` of 0 it may still not have been on its way for seconds.
+        Even with a `max_age_s` of 0 it must not have been under way for seconds.
         """
         if not (stamp.sec or stamp.nanosec):
             return False

@@ -1,9 +1,9 @@
-"""How a node lives: it starts or says in one line why not, and ends when asked to, in order.
+"""Runs a node: it starts or says in one line why not, and ends properly when asked to.
 
-Signals do not interrupt a node anywhere in its code. They reach a thread through a pipe
-(`signal.set_wakeup_fd`), which asks the loop to end after the callback of the moment; the context
-is still valid then, so a node that moves something can send a last stop. A callback that does not
-come back is not waited for.
+Signals do not interrupt a node's code. They reach a thread through a pipe
+(`signal.set_wakeup_fd`), which asks the loop to end after the current callback; the context is
+still valid then, so a node that moves something can send a last stop. A callback that does not
+return is not waited for.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 GRACE_S = 0.7
-"""How long the callback of the moment, and the good-byes after it, may take."""
+"""How long the current callback and `before_end` may take."""
 DDS_GRACE_S = 3.0
 """How long the middleware may take to close a node."""
 USAGE = 2
-"""Exit code for arguments and parameters that make no sense."""
+"""Exit code for invalid arguments and parameters."""
 
 _FAILED = "{problem}"
 _NO_ARGUMENTS = N_(
@@ -46,10 +46,10 @@ _NO_ARGUMENTS = N_(
 
 
 def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
-    """Live as a node until SIGINT or SIGTERM; the exit code comes back.
+    """Run a node until SIGINT or SIGTERM; return the exit code.
 
-    `args` are the arguments without the program's name, by default those of this process. The
-    process belongs to the node from here on, signal handlers included.
+    `args` are the arguments without the program's name, by default those of this process. From
+    here on the process belongs to the node, signal handlers included.
     """
     arguments = sys.argv[1:] if args is None else list(args)
     if {"-h", "--help"} & set(arguments):
@@ -72,7 +72,7 @@ def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> 
     try:
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
-        # rclpy's own error types are not public; the tail of the message is a place in C code.
+        # rclpy's own error types are not public; the message ends with a place in C code.
         raise NodeUsageError(_FAILED, problem=str(error).split(", at /")[0]) from None
     extra = [word for word in remove_ros_args(arguments) if word]
     if extra:
@@ -81,7 +81,7 @@ def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> 
         node = node_type()
     except NameValidationException as error:
         raise NodeUsageError(_FAILED, problem=" ".join(str(error).split())) from None
-    # What is there by now stays: to look through it for garbage would hold up a callback.
+    # Existing objects stay: searching them for garbage would delay a callback.
     gc.freeze()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -101,19 +101,19 @@ def _live(node_type: type[LessonNode], arguments: list[str], ending: Ending) -> 
 def _give_dds_time() -> None:
     """End the process, with code 1, if closing the node takes longer than `DDS_GRACE_S`.
 
-    Fast DDS 2.14 has been seen to spin without end while it closes a participant, in C with the
-    interpreter's lock held: no Python thread gets to end the process then, faulthandler's does.
+    Fast DDS 2.14 has been seen to spin for ever while closing a participant, in C with the
+    interpreter lock held: then no Python thread can end the process, but faulthandler's can.
     """
     nowhere = os.open(os.devnull, os.O_WRONLY)
     faulthandler.dump_traceback_later(DDS_GRACE_S, exit=True, file=nowhere)
 
 
 class Ending:
-    """Turns the first SIGINT or SIGTERM into a request to end, and sees that the node ends."""
+    """Turns the first SIGINT or SIGTERM into a request to end, and ensures that the node ends."""
 
     def __init__(self) -> None:
         self.asked = False
-        """Whether a signal came."""
+        """Whether a signal has come."""
         self._wake: Callable[[], object] = _nothing
         self._done = threading.Event()
         self._pipe, writer = os.pipe()
@@ -129,7 +129,7 @@ class Ending:
         self._wake = wake
 
     def done(self) -> None:
-        """Everything is said and closed."""
+        """Note that everything has been sent and closed."""
         self._done.set()
 
     def _watch(self) -> None:
@@ -145,4 +145,4 @@ def _nothing() -> None:
 
 
 def _ignore(_number: int, _frame: FrameType | None) -> None:
-    """Let the signal go through the pipe alone."""
+    """Do nothing, so that the signal only goes through the pipe."""

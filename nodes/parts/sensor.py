@@ -1,7 +1,8 @@
-"""Hearing a sensor, whether its driver publishes reliably, as those of the course, or not.
+"""Subscribes to a sensor, whether its driver is a reliable publisher, as in the course, or not.
 
-A request for best effort would fit both, but of large pictures, which travel in many pieces, a
-reliable publisher's would mostly get lost then. So it is asked for where nothing else is offered.
+A best-effort request would match both, but would then lose most large pictures, which travel in
+many fragments, of a reliable publisher. So best effort is requested only if nothing else is
+offered.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class SensorListener:
-    """Subscribes reliably, and by best effort from the first publisher on that offers no more."""
+    """Subscribes reliably, or as best effort from the first publisher on that offers no more."""
 
     def __init__(
         self,
@@ -35,7 +36,7 @@ class SensorListener:
         depth: int = DEPTH,
         raw: bool = False,
     ) -> None:
-        """`hear` is called with each message, with its bytes if `raw`."""
+        """`hear` is called with each message, or with its bytes if `raw`."""
         self._node, self._kind, self._topic = node, kind, topic
         self._hear, self._depth, self._raw = hear, depth, raw
         self._relaxed = False

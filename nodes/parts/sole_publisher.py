@@ -1,7 +1,7 @@
-"""Whether somebody else publishes what only this node should, and so bypasses it.
+"""Checks whether another node publishes what only this node should, and so bypasses it.
 
-ROS lets anybody publish anything; all that a node can do is to name who does. It does not refuse to
-go on: of a node that was killed the endpoint stays for up to 20 s, and its successor must drive.
+ROS lets anybody publish anything; a node can only name who does. It does not refuse to run: the
+endpoint of a killed node stays for up to 20 s, and its successor must drive.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ _SAY_EVERY_S = 10.0
 _NAMELESS = "_NODE_NAME_UNKNOWN_"
 """Source: rmw, `get_topic_endpoint_info.h`."""
 _NAMED_WITHIN_S = 3.0
-"""The name of an endpoint comes a little later than the endpoint; one of a program that is no node
-of ROS never does."""
+"""The name of an endpoint is known a little later than the endpoint; that of a program without a
+ROS node never is."""
 _FOUND_WITHIN_S = 5.0
-"""What is found so soon after the start may have been left by a node of this name that died."""
+"""Endpoints found this soon after the start may be left over from a dead node of this name."""
 _FORGOTTEN_S = 25.0
-"""After which the middleware has forgotten that."""
+"""By then the middleware has removed such an endpoint."""
 
 _OTHERS = N_("{topic} is also published by {others}: the wheels obey whoever spoke last")
 _NO_NODE = N_("a program without a node's name")
@@ -35,7 +35,7 @@ _NAMESAKE = N_("another {name}")
 
 
 class SolePublisher:
-    """Looks once a second for other publishers of what `publisher` publishes, and names them."""
+    """Looks once a second for other publishers on the topic of `publisher`, and names them."""
 
     def __init__(self, node: LessonNode, publisher: Publisher) -> None:
         self._node, self._topic = node, publisher.topic_name

@@ -1,6 +1,6 @@
-"""What a node says: its English is in the code, marked by `N_`; the catalogue has its Russian.
+"""The log messages of a node: English in the code, marked by `N_`; Russian in the catalogue.
 
-One line a message, whatever is put into it.
+One line per message, whatever its values.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from rclpy.impl.rcutils_logger import RcutilsLogger
 
 LONGEST = 400
-"""Characters of a message; the rest is cut off."""
+"""Maximum characters of a message; the rest is cut off."""
 
 
 def printable(text: str) -> str:
-    """Make one line of it in which nothing is hidden, cut to length."""
+    """Make it a single line without control characters, cut to length."""
     clean = plain(text)
     return clean if len(clean) <= LONGEST else clean[: LONGEST - 1] + "…"
 
@@ -34,10 +34,10 @@ class Speech:
         self._said_s: dict[str, float] = {}
 
     def text(self, phrase: str, **values: object) -> str:
-        """The phrase in this language, printable."""
+        """Return the phrase in this language, printable."""
         return printable(said(say(phrase, **values), self.language))
 
-    # One line for each severity: rclpy remembers the severity of each line that logs.
+    # One line per severity: rclpy remembers the severity for each logging line of code.
 
     def info(self, phrase: str, *, every_s: float = 0.0, **values: object) -> None:
         """Log; not more often than every `every_s` seconds."""
@@ -45,7 +45,7 @@ class Speech:
             self._logger.info(self.text(phrase, **values))
 
     def warn(self, phrase: str, *, every_s: float = 0.0, **values: object) -> bool:
-        """Log a warning; not more often than every `every_s` seconds. Tell whether it was."""
+        """Log a warning; not more often than every `every_s` seconds. Return whether it was."""
         if is_due := self._is_due(phrase, every_s):
             self._logger.warning(self.text(phrase, **values))
         return is_due

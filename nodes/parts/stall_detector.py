@@ -1,10 +1,10 @@
-"""Whether this process was held up, so that what waits in its queues may be older than it looks.
+"""Detects whether this process was held up, so that waiting messages may be older than they seem.
 
-A process that was stopped, or starved, for seconds finds commands and readings in its queues that
-it would take for new ones: a command to drive whose stop waits behind it. For a moment it takes
-nothing in. A machine under load may take longer than that to hand over what has waited; then the
-stamp of a message tells, if it has one. Clocks of two machines differ, so stamps are asked only
-for the first seconds.
+A process that was suspended or starved for seconds finds commands and readings in its queues that
+seem new: a drive command whose stop waits behind it. So it ignores all messages for a moment. A
+machine under load may need longer than that to deliver what has waited; then the stamp of a message
+shows its age, if it has one. Clocks of two machines differ, so stamps are checked only for the
+first seconds.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
 
 _DRAIN_S = 0.5
-"""How long it takes to get rid of what has waited, on a machine that is busy besides."""
+"""How long it takes to deliver what has waited, on a machine that is also busy."""
 _DRAIN_UNDER_LOAD_S = 3.0
 _ANOTHER_CLOCK_S = 30.0
-"""A difference of more than that is one of clocks, and tells nothing of how long it waited."""
+"""A greater difference comes from the clocks, and does not show how long it waited."""
 
 
 class StallDetector:
-    """To be asked in every callback, and by a timer: the time between two is the time asleep."""
+    """Ask it in every callback and from a timer: the time between two calls is the time asleep."""
 
     def __init__(self) -> None:
         self._last_s = time.monotonic()
         self._woke_s = -math.inf
 
     def lasted(self, longest_s: float) -> bool:
-        """Whether to take nothing in now, having just slept for more than `longest_s`."""
+        """Return whether to ignore messages now, after a sleep of more than `longest_s`."""
         now_s = time.monotonic()
         if now_s - self._last_s > longest_s:
             self._woke_s = now_s
@@ -39,7 +39,7 @@ class StallDetector:
         return now_s - self._woke_s < _DRAIN_S
 
     def kept_waiting(self, stamp: Time) -> bool:
-        """Whether a message of this stamp was sent while this process slept."""
+        """Return whether a message with this stamp was sent while this process slept."""
         awake_s = time.monotonic() - self._woke_s
         if awake_s > _DRAIN_UNDER_LOAD_S or not (stamp.sec or stamp.nanosec):
             return False

@@ -1,8 +1,8 @@
-"""The emergency stop on disk: one small file a domain, from the stop until its release.
+"""The emergency stop on disk: one small file per domain, from the stop until its release.
 
-Every node that obeys the stop writes it and reads it at its start, so that a stop outlives
-whoever gave it, every node, and the computer's power. The file is written all-or-nothing, next to
-its place first. What cannot be read counts as a stop: when in doubt nothing moves.
+Every node that obeys the stop writes it, and reads it at its start, so that a stop outlives its
+sender, every node, and a power failure. The file is written atomically, through a temporary file
+beside it. An unreadable file counts as a stop: when in doubt nothing moves.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ _LONGEST = 4096
 
 
 class KeptStop(NamedTuple):
-    """An emergency stop that is on."""
+    """An emergency stop that is in effect."""
 
     since_s: float
     """Unix time."""
     by: str
-    """What has engaged it: `topic`, or `pico`."""
+    """What engaged it: `topic` or `pico`."""
     publishers: str = ""
-    """Full names of the nodes that could have said it on the topic, with blanks between them."""
+    """Full names of the nodes that could have sent it on the topic, separated by blanks."""
     remembered: bool = False
     """Whether it comes from before the start of this node."""
     unreadable: str = ""
-    """Why nothing more is known of it."""
+    """Why nothing more is known about it."""
 
 
 class StopMemory:
-    """What is remembered of the stop in one domain."""
+    """The saved stop of one domain."""
 
     def __init__(self, domain: int, writer: str) -> None:
         """`writer` is the full name of the node."""
@@ -44,7 +44,7 @@ class StopMemory:
         self._draft = f".{domain}{writer.replace('/', '.')}"
 
     def recall(self) -> KeptStop | None:
-        """Return the stop that is remembered, None if none is."""
+        """Return the saved stop, None if there is none."""
         try:
             with self._place().open("rb") as file:
                 text = file.read(_LONGEST)
@@ -55,7 +55,7 @@ class StopMemory:
         return _read(text)
 
     def keep(self, stop: KeptStop) -> str:
-        """Write it down, unless a stop is remembered already; return why that failed."""
+        """Save it, unless a stop is saved already; return why that failed."""
         document = {"since": stop.since_s, "by": stop.by, "publishers": stop.publishers}
         try:
             place = self._place()
@@ -74,7 +74,7 @@ class StopMemory:
         return stop_place(self._domain)
 
     def forget(self) -> str:
-        """Remember no stop any more; return why that failed."""
+        """Remove the saved stop; return why that failed."""
         try:
             place = self._place()
             with contextlib.suppress(FileNotFoundError):
@@ -111,7 +111,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _flush(folder: Path) -> None:
-    """Let the disk have it: the power may go at any moment."""
+    """Flush it to disk: the power may fail at any moment."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         os.fsync(descriptor)

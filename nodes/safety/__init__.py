@@ -1,4 +1,4 @@
-"""The gate of the safety node: what it sees, what it lets through, what it says.
+"""The gate of the safety node: its sensors, the commands that it lets through, its messages.
 
-For `safety_stop` alone.
+For `safety_stop` only.
 """

@@ -1,4 +1,4 @@
-"""What the safety node sees: the newest reading of each distance sensor, and what it means."""
+"""The sensors of the safety node: the newest reading of each, and what it means."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from robot.safety.distance import Reading, SafetyZone, Shares, Sight, look, shar
 
 
 class View(NamedTuple):
-    """What one sensor shows."""
+    """The result of one sensor."""
 
     place: str
     """`front` or `rear`."""
     sight: Sight
     reading: Reading
     share: float
-    """How much of the asked speed is allowed that way, 0 to 1."""
+    """The share of the requested speed that is allowed that way, 0 to 1."""
 
 
 class DistanceSensor:
-    """One distance sensor, as it is now."""
+    """The current state of one distance sensor."""
 
     def __init__(self, place: str) -> None:
         self._place = place
@@ -28,22 +28,22 @@ class DistanceSensor:
         self._seen_s = time.monotonic()
 
     def see(self, distance_m: float) -> None:
-        """Take a new reading."""
+        """Add a new reading."""
         self._distance_m = distance_m
         self._seen_s = time.monotonic()
 
     @property
     def reading(self) -> Reading:
-        """The newest reading and its age."""
+        """Return the newest reading and its age."""
         return Reading(self._distance_m, time.monotonic() - self._seen_s)
 
     def view(self, zone: SafetyZone) -> View:
-        """What it shows now."""
+        """Return its current result."""
         reading = self.reading
         sight = look(reading, zone.critical_m, zone.stale_after_s)
         part = share(reading, zone)
         if sight == Sight.FREE and not part:
-            # At the critical distance itself, where it slows before that: nothing is let through.
+            # At the critical distance itself, if it slows before that: nothing is let through.
             sight = Sight.CLOSE
         return View(self._place, sight, reading, part)
 
@@ -56,10 +56,10 @@ class Eyes:
         self.rear = DistanceSensor("rear") if rear else None
 
     def views(self, zone: SafetyZone) -> tuple[View, ...]:
-        """What each of them shows now, the front first."""
+        """Return the current result of each, the front first."""
         return tuple(eye.view(zone) for eye in (self.front, self.rear) if eye is not None)
 
 
 def shares(views: tuple[View, ...]) -> Shares:
-    """How fast it may go each way; without a sensor behind, backing off is free."""
+    """Return the allowed shares each way; without a rear sensor, backing off is unrestricted."""
     return Shares(*(view.share for view in views))

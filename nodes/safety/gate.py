@@ -1,7 +1,7 @@
-"""The gate: relays what the ranked sources ask for to /drive_safe, as far as it is allowed.
+"""The gate: relays the commands of the ranked sources to /drive_safe, as far as they are allowed.
 
-A word that makes the robot slower goes out at once, in the callback that brought it about; what is
-allowed at the moment is repeated with every tick, so that who obeys can tell a dead gate.
+A command that makes the robot slower goes out at once, in the callback that caused it; the current
+allowed command is repeated with every tick, so that its receivers notice a dead gate.
 """
 
 from __future__ import annotations
@@ -35,23 +35,23 @@ if TYPE_CHECKING:
     from robot.safety.sources import SourceCommand
 
 _LAST_STOP = Duration(seconds=0.2)
-"""How long the last stop may take to reach everybody."""
+"""How long the last stop may take to reach all subscribers."""
 _FINEST_M_S = 0.01
-"""A smaller loss of speed waits for the next tick."""
+"""A smaller reduction of speed waits for the next tick."""
 _REMEMBER_IGNORED_S = 1.0
 _HOLDING = (Verdict.EMERGENCY_STOP, Verdict.STARTING)
-"""After these everybody has to ask anew."""
+"""After these every source has to send a new command."""
 
 
 class CommandGate:
-    """Hears the sources of `node`, and says what passes."""
+    """Subscribes to the sources of `node`, and publishes what passes."""
 
     def __init__(
         self, node: LessonNode, look: Callable[[], None], reason: Callable[[], str]
     ) -> None:
-        """Ask for a fresh `look`, which calls `rule`, before a command is judged.
+        """Call `look`, which calls `rule`, before each command is judged.
 
-        `reason` says in words why something was stopped.
+        `reason` returns in words why something was stopped.
         """
         self._node, self._look, self._reason = node, look, reason
         self._verdict, self._shares = Verdict.STARTING, Shares(0.0, 0.0)
@@ -71,11 +71,11 @@ class CommandGate:
 
     @property
     def starting(self) -> bool:
-        """Whether it may not have heard of an emergency stop yet, having just come."""
+        """Whether it has just started and may not know of an emergency stop yet."""
         return self._arrivals.quiet_s < self._node.number("settle_s")
 
     def held_up(self) -> bool:
-        """Whether to take nothing in now, for it may have waited for too long already."""
+        """Whether to ignore messages now, as they may have waited too long."""
         ages_s = (self._node.number("max_age_s") or math.inf, self._node.number("stale_after_s"))
         held_up = self._nap.lasted(min(ages_s) + 1.0 / self._node.number("rate"))
         if held_up:
@@ -83,7 +83,7 @@ class CommandGate:
         return held_up
 
     def rule(self, verdict: Verdict, shares: Shares) -> None:
-        """Obey a new judgement; if it asks for less speed, at once."""
+        """Apply a new judgement; at once if it demands less speed."""
         self._verdict, self._shares = verdict, shares
         if verdict in _HOLDING:
             self._sources.forget()
@@ -92,18 +92,18 @@ class CommandGate:
             self._pass_on(order)
 
     def tick(self) -> None:
-        """Let go of a command that is too old, and repeat what is allowed."""
+        """Drop a command that is too old, and repeat what is allowed."""
         now_s = time.monotonic()
         self._sources.let_age(self._node.number("max_age_s"), now_s)
         self._pass_on(self._sources.driving(now_s))
 
     def stop(self) -> None:
-        """Leave the robot standing."""
+        """Stop the robot."""
         self._send(STOP)
         self._publisher.wait_for_all_acked(_LAST_STOP)
 
     def snapshot(self) -> GateSnapshot:
-        """What it does just now."""
+        """Return its current state."""
         now_s = time.monotonic()
         order = self._sources.driving(now_s)
         asked_m_s = order.setpoint.speed_m_s if order else 0.0
@@ -118,7 +118,7 @@ class CommandGate:
         )
 
     def _hear(self, source: str, message: AckermannDriveStamped) -> None:
-        # Taken first: if this process is held up from here on, the command has grown old by then.
+        # Read first: if this process is held up after this, the command will count as old.
         arrived_s = time.monotonic()
         if self.held_up() or self._nap.kept_waiting(message.header.stamp):
             return
@@ -137,7 +137,7 @@ class CommandGate:
         self._node.say.warn(words.IGNORED, every_s=2.0, ignored=source, source=driving.source)
 
     def _granted(self, source: str, message: AckermannDriveStamped) -> DriveSetpoint:
-        """What it asks for, a stop if that is refused."""
+        """Return the command, a stop if it is refused."""
         asked = from_message(message)
         refused = self._refusals.beyond(
             source, (asked.speed_m_s, SPEED), (asked.steering_rad, STEERING)
@@ -176,7 +176,7 @@ class CommandGate:
 
 
 def _is_calmer(new: DriveSetpoint, old: DriveSetpoint) -> bool:
-    """Whether the new one stops or slows what the old one drives."""
+    """Whether the new command stops or slows the motion of the old one."""
     if new.speed_m_s == 0 or new.speed_m_s * old.speed_m_s < 0:
         return old.speed_m_s != 0
     return abs(new.speed_m_s) < abs(old.speed_m_s) - _FINEST_M_S

@@ -1,4 +1,4 @@
-"""What the gate does just now, for its log and /safety_state."""
+"""The current state of the gate, for its log and /safety_state."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ class GateSnapshot(NamedTuple):
     """The current state of the gate."""
 
     source: str = ""
-    """Who drives, empty if nobody does."""
+    """The source that drives, empty if none does."""
     ignored: str = ""
-    """Who has been ignored in the last second."""
+    """The sources ignored in the last second."""
     asked_m_s: float = 0.0
     allowed: float = 1.0
-    """How much of that passes, 0 to 1; of no speed, how much of one forward would."""
+    """The share of that which passes, 0 to 1; for zero speed, the forward share."""
     age_s: float | None = None
-    """Of the newest command that counts."""
+    """Age of the newest active command."""
     refused: Refusal | None = None
-    """What was asked for in the last moments and refused."""
+    """Recently refused commands."""

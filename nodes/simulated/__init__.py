@@ -1,4 +1,4 @@
 """Simulated devices and rooms.
 
-For the `mock_` nodes, and for `drive_to_point` where it moves a robot that is not there.
+For the `mock_` nodes, and for `drive_to_point` when it moves a simulated robot.
 """

@@ -1,8 +1,8 @@
 """A simulated base: obeys drive commands by the bicycle model, publishes /odom and /tf.
 
-With `auto` it takes the place of a real one only if nobody publishes /odom for two seconds after
-the start, and steps back when somebody does: a robot with two odometries drives into a wall. Once
-a real one was there it never comes back: where a robot really is cannot be made up.
+With `auto` it replaces a real base only if nobody publishes /odom for two seconds after the start,
+and turns itself off when somebody does: a robot with two odometries drives into a wall. After a
+real one has appeared it never comes back: a real robot's position cannot be invented.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
 
 AUTO, ALWAYS, NEVER = "auto", "always", "never"
-"""Not `yes` and `no`: YAML, and with it ROS, takes those for true and false."""
+"""Not `yes` and `no`: YAML, and thus ROS, reads those as true and false."""
 WAIT_S = 2.0
-"""How long somebody else has to bring an odometry."""
+"""How long to wait for another odometry."""
 _PERIOD_S = 0.05
 _LOOK_EVERY_S = 0.5
 
@@ -45,7 +45,7 @@ _STEPPED_BACK = N_("Somebody else publishes {topic}: the simulated base is off")
 
 
 class SimulatedBase:
-    """Drives as it is told by `commands`, until it is told otherwise."""
+    """Obeys each command on `commands` until the next."""
 
     def __init__(
         self,
@@ -55,7 +55,7 @@ class SimulatedBase:
         wheelbase_m: float,
         held: Callable[[], bool],
     ) -> None:
-        """Read /drive or another topic of `commands`; stand and hear nothing while `held`."""
+        """Read /drive or another topic of `commands`; stand and ignore commands while `held`."""
         self._node, self._commands, self._held = node, commands, held
         self._wheelbase_m = wheelbase_m
         self._pose, self._command = Pose(), STOP
@@ -72,7 +72,7 @@ class SimulatedBase:
 
     @property
     def is_on(self) -> bool:
-        """Whether it is this base that tells /odom."""
+        """Whether this base publishes /odom."""
         return self._publishers is not None
 
     def stop(self) -> None:

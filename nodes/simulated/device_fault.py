@@ -1,4 +1,4 @@
-"""What can be wrong with a device: done to the bytes on their way to and from it."""
+"""Simulates faults of a device by changing the bytes to and from it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 FINE, UNPLUGGED, SILENT, NOISE, SLOW = "fine", "unplugged", "silent", "noise", "slow"
 FAULTS = (FINE, UNPLUGGED, SILENT, NOISE, SLOW)
 SLOW_S = 0.2
-"""How long a slow device keeps what it says."""
+"""How long a slow device delays its output."""
 _NOISY = 0.02
-"""Share of bytes that noise turns into others."""
+"""Share of bytes that noise changes."""
 
 
 class FaultyLine:
@@ -26,7 +26,7 @@ class FaultyLine:
         self._late: deque[tuple[float, bytes]] = deque()
 
     def set_fault(self, fault: str) -> None:
-        """Become one of `FAULTS`; raises OSError if it cannot be plugged in again."""
+        """Switch to one of `FAULTS`; raises OSError if it cannot be plugged in again."""
         self._fault = fault
         if fault == UNPLUGGED:
             self._serial.unplug()
@@ -34,15 +34,15 @@ class FaultyLine:
             self._serial.plug()
 
     def close(self) -> None:
-        """Be gone."""
+        """Remove the device."""
         self._serial.unplug()
 
     def read(self) -> bytes:
-        """What has come for the device."""
+        """Return the bytes that have come for the device."""
         return self._spoil(self._serial.read())
 
     def write(self, data: bytes, now_s: float) -> None:
-        """Send what the device says, at a time that only ever grows."""
+        """Send the device's output; `now_s` must never decrease."""
         if self._fault == SILENT:
             self._late.clear()
             return

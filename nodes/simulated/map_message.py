@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from robot.world.grid import CellMap
 
 FRAME = "odom"
-"""The simulated robot starts where its odometry does, so one frame is enough."""
+"""The simulated robot starts at the origin of its odometry, so one frame is enough."""
 
 
 def occupancy_grid(grid: CellMap, stamp: Time) -> OccupancyGrid:
-    """Put a grid into a message, with its time."""
+    """Put a grid into a message with this stamp."""
     message = OccupancyGrid()
     message.header.frame_id = FRAME
     message.header.stamp = message.info.map_load_time = stamp

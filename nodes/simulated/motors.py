@@ -1,4 +1,4 @@
-"""/mock/motors: what the motors of the simulated robot really do, whatever is reported."""
+"""/mock/motors: the true motion of the simulated robot's motors, whatever is reported."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _EVERY = 2
 
 
 class MockMotors:
-    """Publishes 50 times a second, while somebody listens.
+    """Publishes 50 times a second, while somebody is subscribed.
 
-    `velocity` is rad/s of each wheel, `position` how far it has turned so far, in rad: the smallest
-    motion between two messages is to be seen there for good. `effort` is the fastest that the motor
-    was driven with since the last message, rad/s, 0 while it is off. The last joint is the
+    `velocity` is the speed of each wheel in rad/s, `position` its total rotation in rad, which
+    includes even the smallest motion between two messages. `effort` is the highest speed that the
+    motor was driven at since the last message, rad/s, 0 while it is off. The last joint is the
     steering.
     """
 
@@ -35,7 +35,7 @@ class MockMotors:
         self._publisher = node.create_publisher(JointState, MOCK_MOTORS, DEPTH)
 
     def step(self) -> None:
-        """Take in what `STEP_S` has brought."""
+        """Add the motion of one `STEP_S`."""
         wheels, asked = self._world.wheels, self._world.asked
         self._turned[0] += wheels.left_rad_s * STEP_S
         self._turned[1] += wheels.right_rad_s * STEP_S

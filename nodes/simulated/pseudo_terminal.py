@@ -1,4 +1,4 @@
-"""A simulated serial device: a pseudo-terminal behind a permanent name."""
+"""A simulated serial device: a pseudo-terminal with a permanent name."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class PseudoSerial:
         self.plug()
 
     def plug(self) -> None:
-        """Be there."""
+        """Create the device."""
         if self._ends is not None:
             return
         ours, theirs = pty.openpty()
         tty.setraw(theirs)
         os.set_blocking(ours, False)
-        # Keeping the other end open spares an error whenever a program closes it.
+        # Keeping the other end open avoids an error whenever a program closes it.
         self._ends = ours, theirs
         fresh = self.path.with_name(f".{self.path.name}.{os.getpid()}")
         for path in (self.path, fresh):
@@ -47,7 +47,7 @@ class PseudoSerial:
         fresh.replace(self.path)
 
     def unplug(self) -> None:
-        """Be gone, as if the cable was pulled."""
+        """Remove the device, as if the cable was pulled."""
         if self._ends is None:
             return
         ours, theirs = self._ends
@@ -59,7 +59,7 @@ class PseudoSerial:
         os.close(ours)
 
     def read(self) -> bytes:
-        """What has come, most often nothing."""
+        """Return the bytes that have come, usually none."""
         if self._ends is None:
             return b""
         try:
@@ -68,14 +68,14 @@ class PseudoSerial:
             return b""
 
     def write(self, data: bytes) -> None:
-        """Send; what nobody has read for long gets lost, as on a real wire."""
+        """Send; bytes that nobody reads for long are lost, as on a real wire."""
         if self._ends is not None and data:
             with contextlib.suppress(OSError):
                 os.write(self._ends[0], data)
 
 
 def _is_free(path: Path) -> bool:
-    """Whether there is nothing by this name, or the link of a pseudo-terminal."""
+    """Whether nothing has this name, or only the link of a pseudo-terminal."""
     try:
         return str(path.readlink()).startswith(_TERMINALS)
     except FileNotFoundError:

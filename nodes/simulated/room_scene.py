@@ -1,4 +1,4 @@
-"""What the simulated camera sees of the room that the simulated robot stands in."""
+"""The simulated camera's view of the room around the simulated robot."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class RoomScene:
             self._say.warn(_NO_POSE, every_s=30.0, topic=MOCK_POSE)
         eye = CameraPose.on(self._pose, self._pan_rad, self._tilt_rad)
         if eye != self._drawn:
-            # A robot that stands sees what it saw.
+            # A standing robot keeps its picture.
             self._view.draw(picture, eye)
             self._drawn = eye
 
@@ -58,7 +58,7 @@ class RoomScene:
 
     def _take_head(self, message: JointState) -> None:
         angles = dict(zip(message.name, message.position, strict=False))
-        # A head of which nobody knows where it looks counts as one that looks straight ahead.
+        # A head with an unknown direction counts as looking straight ahead.
         looks = angles.get(HEAD_PAN, 0.0), angles.get(HEAD_TILT, 0.0)
         if all(map(math.isfinite, looks)):
             self._pan_rad, self._tilt_rad = looks

@@ -1,7 +1,7 @@
-"""What the mock camera sees: a plain, a sky, a ball that bounces, and a caption that counts.
+"""The film of the mock camera: a plain, a sky, a bouncing ball, and a counting caption.
 
-Drawn with numpy alone, into the bytes of the message itself: a picture costs well under a
-millisecond, and an OpenCV in memory just for letters would cost more than the whole node.
+Drawn with numpy alone, directly into the bytes of the message: a picture takes well under a
+millisecond, and loading OpenCV just for letters would cost more memory than the whole node.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class MovingScene:
                 np.linspace(_GROUND_FAR, _GROUND_NEAR, self._height - horizon),
             )
         )
-        # A dark band, for the caption to be read on.
+        # A dark band, to make the caption readable.
         rows[self._height // 12 - 2 * self._scale :][: (_GLYPH_ROWS + 4) * self._scale] = _BAND
         colours = rows.astype(np.uint8)[:, self._order]
         return np.repeat(colours[:, None, :], self._width, axis=1)

@@ -1,5 +1,5 @@
-"""What may be asked of the robot in words or JSON: the schema, and what is wrong with a text.
+"""Commands to the robot in words or JSON: the schema, and the errors in a text.
 
-From outside: `schema`, the one door for an LLM's JSON, `problems`, and `brain`; `explain` and
-`json_places` are theirs.
+Other rooms may import `schema`, the only entry point for an LLM's JSON, `problems`, and `brain`;
+`explain` and `json_places` are internal.
 """

@@ -1,6 +1,6 @@
-"""What the lesson's brain decides when it has heard a voice: the part that needs no ROS.
+"""Decides what the lesson's brain does after hearing a voice: the part that needs no ROS.
 
-It stands where an LLM will be asked. It never drives forward into what it does not see.
+It takes the place of an LLM. It never drives forward without a clear view ahead.
 """
 
 from __future__ import annotations
@@ -14,32 +14,32 @@ if TYPE_CHECKING:
     from robot.words import DriveSetpoint
 
 CALL = "voice_command:"
-"""What the mock microphone puts before the words."""
+"""Prefix that the mock microphone puts before the words."""
 
 
 class Decision(Enum):
-    """What to do about what was heard."""
+    """The reaction to what was heard."""
 
     LOOK_AND_GO = "look and go"
     """Turn the head, drive forward."""
     OBSTACLE = "obstacle"
-    """Stop: something is near."""
+    """Stop: an obstacle is near."""
     BLIND = "blind"
-    """Stop: the distance is not known."""
+    """Stop: the distance is unknown."""
     OBEY = "obey"
-    """Do what the word says: it was a word that drives, and one that is safe now."""
+    """Obey the word: it is a drive command, and safe now."""
 
 
 def spoken(sound: bytes) -> str:
-    """The words in the bytes of the mock microphone; broken UTF-8 is replaced."""
+    """The words in the mock microphone's bytes; invalid UTF-8 is replaced."""
     text = sound.decode("utf-8", "replace").strip()
     return text[len(CALL) :].strip() if text.casefold().startswith(CALL) else text
 
 
 def decide(order: DriveSetpoint | None, front: Sight) -> Decision:
-    """Decide by what was ordered, if anything, and by the look ahead.
+    """Decide by the order, if there is one, and by the sonar ahead.
 
-    Any request that is no order is answered by looking round and driving on.
+    Any request that is not a drive command is answered by looking around and driving on.
     """
     if order is not None and order.speed_m_s <= 0:
         return Decision.OBEY

@@ -1,7 +1,7 @@
-"""From pydantic's errors to problems that name one field, one place and the fix.
+"""Turns pydantic's errors into problems that name one field, one place and the fix.
 
-A command is one of several models; pydantic tells what is wrong with it as every one of them.
-Here the `action` decides which model was meant, and only that one is asked.
+A command is one of several models; pydantic reports the errors against each of them. Here the
+`action` decides which model was meant, and only that one is checked.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _CODES = {
 
 
 class Explainer:
-    """Asks the models again, one by one, about a JSON that was refused."""
+    """Checks a refused JSON text again, against one model at a time."""
 
     def __init__(
         self,
@@ -56,10 +56,10 @@ class Explainer:
         self._found = found
         self._envelope = envelope
         self._commands = commands
-        """Value of `action` to the model of that command."""
+        """Value of `action` to the model of the command."""
 
     def problems(self) -> tuple[Problem, ...]:
-        """At most `MAX_PROBLEMS`, in the order of the text."""
+        """At most `MAX_PROBLEMS` problems, in the order of the text."""
         everything = [*self._of_envelope(), *self._of_commands()]
         everything.sort(key=lambda problem: (problem.line, problem.column))
         return tuple(everything[:MAX_PROBLEMS])
@@ -119,7 +119,7 @@ class Explainer:
 
 
 def _finite(value: float) -> float:
-    """Arguments may travel as JSON, which has no infinities."""
+    """Return a finite number: arguments may be sent as JSON, which has no infinities."""
     return max(-sys.float_info.max, min(sys.float_info.max, float(value)))
 
 

@@ -1,7 +1,7 @@
-"""JSON with the place of every value in the text, so that an error can point at it.
+"""Parses JSON and keeps the place of every value, so that an error can point at it.
 
-The standard parser tells where a syntax error is, but not where a value stood; it also lets nan,
-infinities and duplicate keys pass, and text nested deeply enough exhausts its stack. RFC 8259.
+The standard parser reports where a syntax error is, but not where a value was; it also accepts nan,
+infinities and duplicate keys, and deeply nested text overflows its stack. RFC 8259.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\b", re.IGNORECASE)
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")
 _CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
 _LONGEST_INT = 18
-"""Digits of the longest number that is kept as an integer."""
+"""Maximum digits of a number that is kept as an integer."""
 
 
 class JsonError(ValueError):
-    """The text is not the JSON of RFC 8259 that this module takes."""
+    """The text is not the JSON of RFC 8259 that this module accepts."""
 
     def __init__(self, code: str, offset: int, path: Path = (), **details: str | int) -> None:
         super().__init__(code)
@@ -44,7 +44,7 @@ class JsonError(ValueError):
 
 @dataclass(frozen=True)
 class PlacedJson:
-    """A JSON text as plain values, with the offset of each."""
+    """A JSON text as plain values, with their offsets."""
 
     value: Any
     values: dict[Path, int] = field(default_factory=dict)
@@ -130,7 +130,7 @@ class _JsonScanner:
                 return items, at
 
     def separator(self, at: int, path: Path, closing: str) -> tuple[int, bool]:
-        """Step over a comma, or over the closing bracket (then True comes back)."""
+        """Step over a comma, or over the closing bracket (then return True)."""
         at = self.blank(at)
         if self.text.startswith(closing, at):
             return at + 1, True
@@ -154,7 +154,7 @@ class _JsonScanner:
             raise JsonError(code, at, path)
         comma = _DECIMAL_COMMA.match(self.text, at)
         if comma and not (path and isinstance(path[-1], int)):
-            # In a list it stands between two numbers; elsewhere no number can follow a comma.
+            # In a list a comma may separate two numbers; elsewhere no number can follow a comma.
             raise JsonError("decimal_comma", at, path, mended=".".join(comma.groups()))
         digits = match.group()
         if match.group(1) or match.group(2) or len(digits) > _LONGEST_INT:

@@ -1,8 +1,8 @@
-"""What an LLM may ask of the robot: the schema, and the one door through which its JSON comes in.
+"""What an LLM may ask of the robot: the schema, and the only entry point for its JSON.
 
-`LlmResponse.model_json_schema()` obeys the rules of strict structured output as it stands (every
-field required, no additional properties, `anyOf` and no `oneOf`, no defaults), so the class can
-be handed to an API as a response format. The ranges are enforced here whatever the API did.
+`LlmResponse.model_json_schema()` already obeys the rules of strict structured output (every field
+required, no additional properties, `anyOf` and no `oneOf`, no defaults), so the class can be given
+to an API as a response format. The ranges are enforced here, whatever the API does.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ __all__ = [
 
 
 def _whole(value: object) -> object:
-    """Take 45.0 for 45: JSON knows one kind of number."""
+    """Accept 45.0 for 45: JSON has only one kind of number."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
@@ -55,7 +55,7 @@ Steering = Annotated[
         description="Steering angle in radians, from -0.5 (right) to 0.5 (left)",
     ),
 ]
-# The order matters: a range outside of the `BeforeValidator` would be missing in the schema.
+# The order matters: a range outside the `BeforeValidator` would be missing from the schema.
 Degrees = Annotated[
     int,
     Field(strict=True, ge=int(HEAD_ANGLE.low), le=int(HEAD_ANGLE.high)),
@@ -87,7 +87,7 @@ class LlmResponse(_Strict):
     """What the model thinks, and what it wants done, in order."""
 
     thought: Annotated[str, Field(strict=True, description="Why these commands were chosen")]
-    # A discriminator would be the usual way to tell the two apart, but it makes a `oneOf`.
+    # A discriminator would be the usual way to tell the two apart, but it produces a `oneOf`.
     commands: Annotated[
         list[Union[DriveCommand, HeadCommand]],  # noqa: UP007 - the schema's own words
         Field(max_length=MAX_COMMANDS, description="What to do, in order"),
@@ -95,7 +95,7 @@ class LlmResponse(_Strict):
 
 
 def parse_llm(text: str | bytes) -> LlmResponse:
-    """Read and check a response; raises `CommandError` with every problem found and its place."""
+    """Parse and check a response; raises `CommandError` with every problem found and its place."""
     decoded = _decode(text)
     try:
         found = json_places.read(decoded)

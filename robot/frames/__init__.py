@@ -1,4 +1,4 @@
-"""Frames of the serial devices in words, for a person who looks on.
+"""Frames of the serial devices in words, for a person who watches.
 
-From outside: `batches` and a device's own module for drivers, `lines` for screens.
+Drivers may import `batches` and a device's own module, screens may import `lines`.
 """

@@ -1,4 +1,4 @@
-"""From the bytes of a serial port to batches of frames in words, bounded whatever comes."""
+"""Turns the bytes of a serial port into batches of frames in words, bounded for any input."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robot.frames.protocols import FramePiece, FrameReader
 
 GIVE_UP_S = 0.3
-"""The rest of a frame that has not come after this long does not come any more."""
+"""After this long, the rest of an incomplete frame is no longer expected."""
 _PHRASES = {
     "frames": N_("{count} more"),
     "bytes": N_("{count} more bytes"),
@@ -32,24 +32,24 @@ class Chunk(NamedTuple):
 
 
 class FrameBatcher:
-    """Keeps a reader for each direction."""
+    """Collects frames, with one reader for each direction."""
 
     def __init__(self, make: Callable[[str], FrameReader], language: str) -> None:
-        """`make` makes a reader that speaks a language (en or ru)."""
+        """`make` creates a reader for a language (en or ru)."""
         self._make, self._language = make, language
         self._words = FramePhrases(language, _PHRASES)
         self.restart()
 
     def restart(self) -> None:
-        """Begin anew, somewhere in the stream."""
+        """Start again, anywhere in the stream."""
         self._readers = {way: self._make(self._language) for way in WAYS}
         self._heard_s = dict.fromkeys(WAYS, 0.0)
         self._fresh = set(WAYS)
 
     def tell(self, chunks: Iterable[Chunk], now_s: float, missed: int = 0) -> list[FrameLine]:
-        """The frames that these bytes complete, at most `MOST`, and how many more there were.
+        """Return the frames that these bytes complete, at most `MOST`, and the number of others.
 
-        `missed` bytes have come after them that were not kept. Times are Unix seconds.
+        `missed`: bytes that came after them but were not kept. Times are Unix seconds.
         """
         lines: list[FrameLine] = []
         more: Counter[str] = Counter()
@@ -70,7 +70,7 @@ class FrameBatcher:
         if pieces and way in self._fresh:
             self._fresh.discard(way)
             if pieces[0].kind is not FrameKind.FRAME:
-                # Most likely the end of a frame whose beginning nobody was there to see.
+                # Most likely the end of a frame whose beginning was missed.
                 return pieces[1:]
         return pieces
 

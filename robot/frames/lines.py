@@ -1,7 +1,7 @@
-"""How drivers tell of frames on `~/frames`: lines of JSON, one a frame.
+"""The format in which drivers report frames on `~/frames`: one line of JSON per frame.
 
 `{"t": 1700000000.123, "way": "in", "kind": "frame", "hex": "5959...", "text": "distance 1.23 m"}`
-with the time in Unix seconds. A batch has at most `MOST` frames; a last line of kind `more` tells
+with the time in Unix seconds. A batch has at most `MOST` frames; a last line of kind `more` says
 how many more there were.
 """
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 MOST = 200
-"""Frames of one batch."""
+"""Maximum frames per batch."""
 MOST_OCTETS = 128
-"""Bytes of one frame that are told; the text tells how many there were of noise."""
+"""Reported bytes per frame; for noise the text says how many there were."""
 LONGEST_TEXT = 400
 WAYS = ("in", "out")
 
 
 @dataclass(frozen=True)
 class FrameLine:
-    """One frame as it is told."""
+    """One reported frame."""
 
     time_s: float
     way: str
@@ -36,11 +36,11 @@ class FrameLine:
     octets: bytes
     text: str
     count: int = 0
-    """Of kind `more`: how many frames."""
+    """For kind `more`: the number of frames."""
 
 
 def encode(lines: Sequence[FrameLine]) -> str:
-    """The lines of a batch."""
+    """Encode the lines of a batch."""
     return "\n".join(map(_encoded, lines))
 
 
@@ -58,9 +58,9 @@ def _encoded(line: FrameLine) -> str:
 
 
 def decode(text: str) -> tuple[list[FrameLine], int]:
-    """The frames of a batch, whoever sent it, and how many of its lines made no sense.
+    """Return the frames of an untrusted batch, and how many of its lines were invalid.
 
-    Lines beyond twice of `MOST` are not looked at, but counted among the latter.
+    Lines beyond twice `MOST` are not parsed, but counted as invalid.
     """
     lines = text.split("\n") if text else []
     read = [_decoded(line) for line in lines[: 2 * MOST]]

@@ -1,7 +1,7 @@
-"""What goes over a serial wire, cut into frames and said in words, for a person who looks on.
+"""Cuts the traffic of a serial line into frames and puts them in words, for a person who watches.
 
-A reader gets the bytes of one direction in any cuts. What is no frame is shown all the same: a
-frame whose check failed as such, loose bytes as noise.
+A reader gets the bytes of one direction in arbitrary pieces. What is not a valid frame is shown
+too: a frame with a failed check as such, loose bytes as noise.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class FrameKind(str, Enum):
-    """What a piece of a stream is."""
+    """The kind of a piece of a stream."""
 
     FRAME = "frame"
     BAD = "bad"
@@ -26,12 +26,12 @@ class FrameKind(str, Enum):
     NOISE = "noise"
     """Bytes that belong to no frame."""
     MORE = "more"
-    """A mark: frames that are counted, not shown."""
+    """A marker: frames that are counted, not shown."""
 
 
 @dataclass(frozen=True)
 class FramePiece:
-    """Some bytes of a stream, and what they say in one line."""
+    """Some bytes of a stream, and their meaning in one line."""
 
     octets: bytes
     text: str
@@ -39,7 +39,7 @@ class FramePiece:
 
 
 class FrameReader(Protocol):
-    """Cuts one direction of a wire into pieces; keeps less than one frame."""
+    """Cuts one direction of a serial line into pieces; buffers less than one frame."""
 
     def feed(self, data: bytes) -> list[FramePiece]:
         """The pieces that these bytes complete, oldest first."""
@@ -56,7 +56,7 @@ class FramePhrases:
         self._language, self._phrases = language, phrases
 
     def __call__(self, key: str, **values: object) -> str:
-        """The phrase with its values."""
+        """Return the phrase with its values."""
         return said(say(self._phrases[key], **values), self._language)
 
 
@@ -75,11 +75,11 @@ def noise(octets: bytes, language: str) -> FramePiece:
 
 
 _ENOUGH = 4
-"""Bytes by which the length of a frame can be told."""
+"""Bytes from which the length of a frame can be read."""
 
 
 class HeadedReader:
-    """Reads frames that begin with a head of two bytes."""
+    """Reads frames that begin with a two-byte header."""
 
     def __init__(
         self,
@@ -88,10 +88,10 @@ class HeadedReader:
         length: Callable[[bytes], int],
         piece: Callable[[bytes], FramePiece],
     ) -> None:
-        """`length`: how long a frame is that begins so, 0 if that cannot be told yet.
+        """`length`: the length of a frame that begins like this, 0 if not known yet.
 
-        It is the length of the head alone if no frame begins so. `piece` says what so many bytes
-        are: a frame or, if they are none, what is wrong with them.
+        It is the length of the header alone if no frame begins like this. `piece` describes that
+        many bytes: as a frame or, if they are not one, what is wrong with them.
         """
         self._language, self._head, self._length, self._piece = language, head, length, piece
         self._rest = b""
@@ -121,7 +121,7 @@ class HeadedReader:
         piece = self._piece(stream[start : start + size])
         if piece.kind is FrameKind.FRAME:
             return piece
-        # With a head inside of it, the frame has lost its end, and the next one may be whole.
+        # With a header inside, the frame has lost its end, and the next one may be whole.
         inner = stream.find(self._head, start + 1, start + size + 1)
         if inner >= 0 or size <= len(self._head):
             return noise(stream[start : inner if inner >= 0 else start + size], self._language)
@@ -129,7 +129,7 @@ class HeadedReader:
 
 
 def _find(stream: bytes, head: bytes, at: int) -> int:
-    """Where the next head begins, or may begin; the end if there is none."""
+    """Return where the next header begins, or may begin; the end if there is none."""
     found = stream.find(head, at)
     if found >= 0:
         return found
@@ -137,7 +137,7 @@ def _find(stream: bytes, head: bytes, at: int) -> int:
 
 
 class RawReader:
-    """Shows bytes as they come, where nobody knows what they mean."""
+    """Shows bytes as they come, if their meaning is unknown."""
 
     _PHRASES = {"raw": N_("bytes: {count}")}  # noqa: RUF012
 
@@ -145,9 +145,9 @@ class RawReader:
         self._words = FramePhrases(language, self._PHRASES)
 
     def feed(self, data: bytes) -> list[FramePiece]:
-        """One piece."""
+        """Return one piece."""
         return [FramePiece(data, self._words("raw", count=len(data)))] if data else []
 
     def flush(self) -> list[FramePiece]:
-        """Nothing: nothing was kept."""
+        """Return nothing: nothing is buffered."""
         return []

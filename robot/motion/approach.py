@@ -1,10 +1,10 @@
-"""How to drive a car-like robot to a point: the law, and when to give up.
+"""How to drive a car-like robot to a point: the control law, and when to give up.
 
 A point that lies on a drivable circle through the robot is reached along that circle (pure
-pursuit), forward if it is ahead, in reverse if it is close behind. A far point behind is turned
-to first. A point beside the robot, inside of its tightest circle, cannot be driven to at once: the
+pursuit), forward if it is ahead, in reverse if it is close behind. The robot turns towards a far
+point behind first. A point beside it, inside its tightest circle, cannot be reached directly: the
 robot backs away from it with the wheels turned the other way, as in a three-point turn, until it
-can.
+can be.
 """
 
 from __future__ import annotations
@@ -22,26 +22,26 @@ if TYPE_CHECKING:
 
 SPEED_STEP_M_S = 0.05
 STEERING_STEP_RAD = 0.02
-"""Commands are rounded to these: a new one only when it makes a difference."""
+"""Commands are rounded to these, so that a new one is sent only if it makes a difference."""
 _SLOWING_1_S = 0.8
-"""Speed for each metre that is left."""
+"""Speed per metre that is left."""
 _COMFORT = 0.7
-"""The share of the steering's limit at which backing away has been enough."""
+"""The share of the steering limit at which the robot has backed away enough."""
 _REVERSE_WITHIN_M = 1.0
 _REVERSE_WITHIN_CIRCLES = 2.5
-"""A point behind is reversed to within the larger of these, the second in turning radii."""
+"""The robot reverses to a point within the larger of these, the second in turning radii."""
 
 
 @dataclass(frozen=True)
 class ApproachLimits:
-    """What the law must know of the robot and may ask of it."""
+    """What the control law knows about the robot and may demand of it."""
 
     max_speed_m_s: float = 0.3
     max_steering_rad: float = STEERING.high
     wheelbase_m: float = WHEELBASE_M
 
     def __post_init__(self) -> None:
-        """Refuse with a ValueError what no command may ask for."""
+        """Raise ValueError for what no command may demand."""
         if not (0.0 < self.max_speed_m_s <= SPEED.high):
             raise ValueError(f"speed must be up to {SPEED.high} m/s, not {self.max_speed_m_s}")
         if not (0.0 < self.max_steering_rad <= STEERING.high):
@@ -57,7 +57,7 @@ class ApproachLimits:
 
 
 class Approach:
-    """One way to one point; asked again with every new pose."""
+    """One way to one point; called again with every new pose."""
 
     def __init__(self, goal: Point, tolerance_m: float, chassis: ApproachLimits) -> None:
         self.goal = goal
@@ -66,11 +66,11 @@ class Approach:
         self._backing_away = False
 
     def reached(self, pose: Pose) -> bool:
-        """Whether the robot is as near as was asked."""
+        """Whether the robot is within the tolerance."""
         return pose.distance_to(self.goal) <= self.tolerance_m
 
     def command(self, pose: Pose) -> DriveSetpoint:
-        """What to do now; a stop once the point is reached."""
+        """Return what to do now; a stop once the point is reached."""
         if self.reached(pose):
             return STOP
         ahead_m, left_m = pose.sees(self.goal)
@@ -85,12 +85,12 @@ class Approach:
         return self._limited(gear * distance_m * _SLOWING_1_S, steering)
 
     def _gear(self, ahead_m: float, distance_m: float) -> int:
-        """1 forward, -1 in reverse."""
+        """Return 1 for forward, -1 for reverse."""
         near_m = max(_REVERSE_WITHIN_M, _REVERSE_WITHIN_CIRCLES * self._chassis.tightest_m)
         return -1 if ahead_m < 0 and distance_m < near_m else 1
 
     def _must_back_away(self, along_m: float, left_m: float, steering_rad: float) -> bool:
-        """Whether the tightest circle would miss a point so far along the way and to the left."""
+        """Whether the tightest circle would miss a point this far along the way and to the left."""
         if self._backing_away:
             enough = abs(steering_rad) <= _COMFORT * self._chassis.max_steering_rad
             self._backing_away = not enough
@@ -101,7 +101,7 @@ class Approach:
         return self._backing_away
 
     def _limited(self, speed_m_s: float, steering_rad: float) -> DriveSetpoint:
-        """Rounded, not slower than a step, not more than the chassis may do."""
+        """Return the command rounded, at least one step fast, within the limits of the chassis."""
         fastest, sharpest = self._chassis.max_speed_m_s, self._chassis.max_steering_rad
         speed = max(SPEED_STEP_M_S, _rounded(abs(speed_m_s), SPEED_STEP_M_S))
         steering = _rounded(steering_rad, STEERING_STEP_RAD)
@@ -111,13 +111,13 @@ class Approach:
         )
 
     def longest_way_m(self, start: Pose) -> float:
-        """More metres than any way from there takes, turns and three-point turns included."""
+        """Return an upper bound for any way from there, turns and three-point turns included."""
         circle_m = math.tau * self._chassis.tightest_m
         return 2.0 * start.distance_to(self.goal) + 3.0 * circle_m + 1.0
 
 
 class ApproachProgress:
-    """Sees that a robot stands although it should drive, or drives and does not arrive."""
+    """Notices a robot that stands although it should drive, or drives but does not arrive."""
 
     def __init__(self, longest_way_m: float, patience_s: float, pose: Pose, now_s: float) -> None:
         self.stands = False
@@ -129,11 +129,11 @@ class ApproachProgress:
 
     @property
     def wanders(self) -> bool:
-        """Whether it has driven farther than any way there is long."""
+        """Whether it has driven farther than any way there could be."""
         return self._left_m < 0
 
     def take(self, pose: Pose, now_s: float) -> None:
-        """Take the newest pose, and the seconds of a clock that never jumps."""
+        """Add the newest pose, and the time in seconds of a clock that never jumps."""
         self._left_m -= self._last.distance_to(pose)
         self._last = pose
         turned = abs(math.remainder(pose.heading_rad - self._resting.heading_rad, math.tau))
@@ -144,7 +144,7 @@ class ApproachProgress:
 
 STIR_M = 0.02
 STIR_RAD = 0.05
-"""Less is a wheel that slips or odometry that trembles."""
+"""Less than this is a slipping wheel or jittering odometry."""
 
 
 def _rounded(value: float, step: float) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quaternion:
-    """A rotation, of length 1."""
+    """A rotation as a unit quaternion."""
 
     x: float
     y: float
@@ -17,7 +17,7 @@ class Quaternion:
 
 
 def quaternion_from_rpy(roll_rad: float, pitch_rad: float, yaw_rad: float) -> Quaternion:
-    """Roll about x, then pitch about y, then yaw about z, all about fixed axes (REP-103)."""
+    """Return roll about x, then pitch about y, then yaw about z, all about fixed axes (REP-103)."""
     sr, cr = math.sin(roll_rad / 2), math.cos(roll_rad / 2)
     sp, cp = math.sin(pitch_rad / 2), math.cos(pitch_rad / 2)
     sy, cy = math.sin(yaw_rad / 2), math.cos(yaw_rad / 2)

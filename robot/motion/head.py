@@ -1,4 +1,4 @@
-"""The joints of the pan and tilt head: which pulse is which angle, and how long a turn takes."""
+"""The joints of the pan and tilt head: pulses for angles, and the duration of a turn."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robot.limits import HEAD_ANGLE, Limits
 from robot.wire.lsc16 import CENTRE_US, PULSE, TIME
 
 _LEAST_MS = 20
-"""A servo gets a new pulse no more often."""
+"""Minimum time between two pulses to a servo."""
 
 
 @dataclass(frozen=True)
@@ -21,28 +21,28 @@ class HeadJoint:
     limits: Limits = HEAD_ANGLE
     """How far the head may turn."""
     trim_deg: float = 0.0
-    """What the servo has to turn for the head to look straight ahead."""
+    """Trim: the servo's angle at which the head looks straight ahead."""
     reversed: bool = False
-    """Whether a longer pulse turns the head right, or down."""
+    """Whether a longer pulse turns the head right or down."""
     turn_deg: float = 180.0
     """How far the servo turns from the shortest pulse to the longest."""
 
     @property
     def reach(self) -> Limits:
-        """The angles that are allowed and that the servo gets to with its trim."""
+        """The angles that are allowed and within the servo's reach, including its trim."""
         ends = (self._way * (side * self.turn_deg / 2 - self.trim_deg) for side in (-1, 1))
         low, high = sorted(ends)
         return Limits(max(low, self.limits.low), min(high, self.limits.high), "deg")
 
     def pulse_us(self, angle_deg: float) -> int:
-        """The pulse for an angle; raises ValueError for one out of `reach`."""
+        """Return the pulse for an angle; raises ValueError for one outside `reach`."""
         if angle_deg not in self.reach:
             raise ValueError(f"{angle_deg} is not within {self.reach.low} .. {self.reach.high}")
         servo_deg = self._way * angle_deg + self.trim_deg
         return round(CENTRE_US + servo_deg * self._us_per_deg)
 
     def way_deg(self, start_us: int | None, goal_deg: float) -> float:
-        """How far it is to an angle; the farthest it can be if nobody knows from which pulse."""
+        """Return the way to an angle; the longest possible if the starting pulse is unknown."""
         if start_us is None:
             return max(goal_deg - self.reach.low, self.reach.high - goal_deg)
         return abs(self.pulse_us(goal_deg) - start_us) / self._us_per_deg
@@ -57,5 +57,5 @@ class HeadJoint:
 
 
 def turn_ms(way_deg: float, speed_deg_s: float) -> int:
-    """How long a turn takes at a speed, as the controller takes it."""
+    """Return the duration of a turn at a speed, within what the controller accepts."""
     return min(int(TIME.high), max(_LEAST_MS, math.ceil(1000 * way_deg / speed_deg_s)))

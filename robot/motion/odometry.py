@@ -1,7 +1,7 @@
 """Where the robot is on the floor, and where a command takes it: the bicycle model.
 
-The frame is the one that odometry counts in (x forward at the start, y to the left, metres); the
-robot's own point is the middle of its rear axle.
+The frame is that of the odometry (x forward at the start, y to the left, metres); the robot's
+reference point is the middle of its rear axle.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ class Point:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where the robot stands and which way it looks."""
+    """The robot's position and heading."""
 
     x_m: float = 0.0
     y_m: float = 0.0
     heading_rad: float = 0.0
-    """From the x axis, + is left; between -pi and pi."""
+    """Angle from the x axis, + is left; between -pi and pi."""
 
     @property
     def is_finite(self) -> bool:
-        """Whether all three are numbers."""
+        """Whether all three are finite numbers."""
         return all(map(math.isfinite, (self.x_m, self.y_m, self.heading_rad)))
 
     def distance_to(self, point: Point | Pose) -> float:
-        """Metres as the crow flies."""
+        """Return the straight-line distance in metres."""
         return math.hypot(point.x_m - self.x_m, point.y_m - self.y_m)
 
     def sees(self, point: Point) -> tuple[float, float]:
-        """How far a point lies ahead and how far to the left of the robot, metres."""
+        """Return how far a point lies ahead and to the left of the robot, metres."""
         east, north = point.x_m - self.x_m, point.y_m - self.y_m
         cos, sin = math.cos(self.heading_rad), math.sin(self.heading_rad)
         return cos * east + sin * north, cos * north - sin * east
@@ -52,9 +52,9 @@ class Pose:
 def advance(
     pose: Pose, command: DriveSetpoint, seconds: float, wheelbase_m: float = WHEELBASE_M
 ) -> Pose:
-    """The pose after obeying a command for some seconds, along the exact arc.
+    """Return the pose after obeying a command for some seconds, along the exact arc.
 
-    Raises ValueError for a steering angle of no circle (see `turning_radius`).
+    Raises ValueError for a steering angle without a circle (see `turning_radius`).
     """
     travelled_m = command.speed_m_s * seconds
     radius_m = turning_radius(command.steering_rad, wheelbase_m)
@@ -74,7 +74,7 @@ def advance(
 
 
 def yaw_from_quaternion(x: float, y: float, z: float, w: float) -> float:
-    """The turn about z in radians, of a rotation of any length; nan for one of length 0."""
+    """Return the rotation about z in radians, for a quaternion of any length; nan for length 0."""
     length = x * x + y * y + z * z + w * w
     if not 0.0 < length < math.inf:
         return math.nan

@@ -1,4 +1,4 @@
 """When the robot may move: distances, sources, the emergency stop.
 
-Each module is one rule, and may be used by itself.
+Each module is one rule, and may be used on its own.
 """

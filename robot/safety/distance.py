@@ -1,8 +1,8 @@
-"""When the robot may move: what a distance means, and what becomes of a command.
+"""When the robot may move: what a distance means, and how it changes a command.
 
-When in doubt it stops: a sensor that is silent or broken counts as an obstacle. Between the slow
-and the critical distance a command is slowed in proportion, so that the robot comes to its stop
-gently; the steering is left as it is.
+When in doubt it stops: a silent or broken sensor counts as an obstacle. Between the slow and the
+critical distance a command is slowed in proportion, so that the robot stops gently; the steering
+is left unchanged.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from robot.words import STOP, DriveSetpoint
 
 
 class Sight(str, Enum):
-    """What a distance sensor tells about the way ahead of it."""
+    """What a distance sensor reports about the way ahead of it."""
 
     FREE = "free"
     CLOSE = "close"
     """An obstacle nearer than the critical distance."""
     INVALID = "invalid"
-    """The newest reading is no distance."""
+    """The newest reading is not a distance."""
     SILENT = "silent"
     """No reading yet, or none for too long."""
 
@@ -36,7 +36,7 @@ class Verdict(str, Enum):
     """Neither forward nor backward."""
     EMERGENCY_STOP = "emergency_stop"
     STARTING = "starting"
-    """The gate has just come and may not have heard of an emergency stop yet."""
+    """The gate has just started and may not know of an emergency stop yet."""
 
 
 _CLOSED = (Verdict.BLOCKED, Verdict.EMERGENCY_STOP, Verdict.STARTING)
@@ -44,24 +44,24 @@ _CLOSED = (Verdict.BLOCKED, Verdict.EMERGENCY_STOP, Verdict.STARTING)
 
 @dataclass(frozen=True)
 class Reading:
-    """The newest word of a distance sensor."""
+    """The newest reading of a distance sensor."""
 
     distance_m: float | None = None
     """By REP-117: +inf nothing in range, -inf too close to measure, nan no valid reading; None if
-    there was none at all."""
+    there has been none at all."""
     age_s: float = 0.0
 
 
 @dataclass(frozen=True)
 class SafetyZone:
-    """How near is near, and how long is too long."""
+    """The distances and the silence at which the robot slows or stops."""
 
     critical_m: float = 0.5
-    """Nearer than this nothing moves that way."""
+    """Nearer than this, the robot does not move that way."""
     slow_m: float = 0.0
-    """Nearer than this it is slowed; not above `critical_m`: no slowing."""
+    """Nearer than this, it is slowed; no slowing unless above `critical_m`."""
     stale_after_s: float = 2.5
-    """The longest silence that is no danger."""
+    """The longest harmless silence."""
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,12 @@ class Shares:
     backward: float = 1.0
 
     def towards(self, speed_m_s: float) -> float:
-        """The share for this speed; of a robot that stands, that of going forward."""
+        """Return the share for this speed; for a standing robot, the forward share."""
         return self.backward if speed_m_s < 0 else self.forward
 
 
 def look(reading: Reading, critical_m: float, stale_after_s: float) -> Sight:
-    """Judge a reading; `stale_after_s` is the longest silence that is no danger."""
+    """Judge a reading; `stale_after_s` is the longest harmless silence."""
     if reading.distance_m is None or not reading.age_s <= stale_after_s:
         return Sight.SILENT
     if math.isnan(reading.distance_m) or -math.inf < reading.distance_m < 0.0:
@@ -86,10 +86,10 @@ def look(reading: Reading, critical_m: float, stale_after_s: float) -> Sight:
 
 
 def share(reading: Reading, zone: SafetyZone) -> float:
-    """How much of a speed towards that sensor's side is allowed, 0 to 1.
+    """Return the share of a speed towards that sensor's side that is allowed, 0 to 1.
 
-    0 wherever `look` sees no free way, 1 from the slow distance on, a straight line between 0 at
-    the critical distance and that.
+    0 where `look` finds no free way, 1 beyond the slow distance, and in between linear from 0 at
+    the critical distance.
     """
     if look(reading, zone.critical_m, zone.stale_after_s) != Sight.FREE:
         return 0.0
@@ -100,7 +100,7 @@ def share(reading: Reading, zone: SafetyZone) -> float:
 
 
 def where(front: Sight, rear: Sight | None, emergency: bool, *, starting: bool = False) -> Verdict:
-    """Where the robot may not go now. `rear` is None for a robot without a sensor there."""
+    """Return where the robot may not go now. `rear` is None for a robot without a sensor there."""
     if emergency:
         return Verdict.EMERGENCY_STOP
     if starting:
@@ -114,7 +114,7 @@ def where(front: Sight, rear: Sight | None, emergency: bool, *, starting: bool =
 
 
 def allowed(speed_m_s: float, verdict: Verdict, shares: Shares = Shares()) -> float:
-    """How much of a speed may reach the motors, 0 to 1; of no speed, of one forward."""
+    """Return the share of a speed that may reach the motors, 0 to 1; zero counts as forward."""
     if verdict in _CLOSED:
         return 0.0
     forbidden = (verdict == Verdict.BLOCKED_FORWARD and speed_m_s >= 0) or (
@@ -124,11 +124,11 @@ def allowed(speed_m_s: float, verdict: Verdict, shares: Shares = Shares()) -> fl
 
 
 def gate(command: DriveSetpoint, verdict: Verdict, shares: Shares = Shares()) -> DriveSetpoint:
-    """What of a command may reach the motors: all of it, a slower one, or a stop."""
+    """Return what may reach the motors: the whole command, a slower one, or a stop."""
     if not (math.isfinite(command.speed_m_s) and math.isfinite(command.steering_rad)):
         return STOP
     if verdict in _CLOSED:
         return STOP
     part = allowed(command.speed_m_s, verdict, shares)
-    # The wheels may still be turned: a way out has to be steered to.
+    # The wheels may still be steered, as a way out needs steering.
     return DriveSetpoint(command.speed_m_s * part if part else 0.0, command.steering_rad)

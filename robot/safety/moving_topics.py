@@ -1,4 +1,4 @@
-"""Which topics move a robot: published from a recording only on request."""
+"""The topics that move a robot: published from a recording only on request."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STOPPED_BY_ZEROS = frozenset(
         "geometry_msgs/msg/TwistStamped",
     }
 )
-"""Types of commands of which an empty message is a stop."""
+"""Command types whose empty message is a stop."""
 MOVING_TYPES = STOPPED_BY_ZEROS | {
     "trajectory_msgs/msg/JointTrajectory",
     "trajectory_msgs/msg/JointTrajectoryPoint",
@@ -36,5 +36,5 @@ MOVING_NAMES = frozenset(
 
 
 def moves(name: str, type_name: str) -> bool:
-    """Tell whether a message on this topic may move a robot that hears it."""
+    """Return whether a message on this topic may move a robot that receives it."""
     return type_name in MOVING_TYPES or name in MOVING_NAMES

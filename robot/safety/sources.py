@@ -1,13 +1,13 @@
-"""Who drives: several sources of commands, ranked, and how old a command may get.
+"""Who drives: several ranked sources of commands, and how long a command stays valid.
 
-A source counts while its newest command is younger than `max_age_s`; the first in rank that
-counts drives, and the others are ignored. What an ignored source said is kept only for that
-long too, so that a word of long ago never moves the robot when the one above it falls silent.
+A source is active while its newest command is younger than `max_age_s`; the highest-ranked active
+source drives, and the others are ignored. A command of an ignored source is kept no longer than
+that either, so that an old command never moves the robot when a higher source falls silent.
 
-With a `max_age_s` of 0 no command grows old. Then a source holds the robot until it asks for a
-stop, and what is said below it meanwhile, or was before, is forgotten.
+With a `max_age_s` of 0 commands do not expire. Then a source keeps the robot until it asks for a
+stop, and commands of lower sources, earlier or meanwhile, are forgotten.
 
-A source that a person holds, by a key that has to stay down, grows old all the same: nobody may be
+A source that a person holds, with a key that must stay down, still expires: there may be nobody
 left to ask for the stop.
 """
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from robot.words import DriveSetpoint
 
 HELD_AGE_S = 0.5
-"""A held source says its word twenty times a second."""
+"""A held source sends twenty commands a second."""
 
 
 @dataclass(frozen=True)
@@ -32,18 +32,18 @@ class SourceCommand:
     source: str
     setpoint: DriveSetpoint
     heard_s: float
-    """By a monotonic clock."""
+    """On a monotonic clock."""
 
     def age_s(self, now_s: float) -> float:
-        """Seconds since it was heard."""
+        """Return the seconds since it was received."""
         return max(0.0, now_s - self.heard_s)
 
 
 class Sources:
-    """The sources by rank, the highest first, and what each said last."""
+    """The sources by rank, highest first, and the last command of each."""
 
     def __init__(self, ranked: Sequence[str], max_age_s: float, held: Collection[str] = ()) -> None:
-        """Know these sources, and which of them are `held`; nobody has said anything."""
+        """Start with these sources, some of them `held`, and no commands."""
         self._ranked = tuple(ranked)
         self._held = frozenset(held)
         self._max_age_s = max_age_s
@@ -51,37 +51,37 @@ class Sources:
         self._newest = ""
 
     def let_age(self, max_age_s: float, now_s: float) -> None:
-        """Let commands grow so old from now on; one that was too old already stays so."""
+        """Change the age limit of commands; those already expired stay so."""
         if max_age_s != self._max_age_s:
             self._drop_old(now_s)
             self._max_age_s = max_age_s
 
     def hear(self, source: str, setpoint: DriveSetpoint, now_s: float) -> SourceCommand:
-        """Take in a command; return the order that drives now, which may be one above it."""
+        """Add a command; return the one that drives now, which may be of a higher source."""
         order = self._orders[source] = SourceCommand(source, setpoint, now_s)
         self._newest = source
         driving = self.driving(now_s) or order
         if self._max_age_s == 0:
-            # Nothing grows old: what does not drive now must not do so later.
+            # Commands do not expire: one that does not drive now must not do so later.
             self._orders = {driving.source: driving}
         return driving
 
     def driving(self, now_s: float) -> SourceCommand | None:
-        """The order that drives; None if nobody's counts."""
+        """Return the command that drives; None if no source is active."""
         self._drop_old(now_s)
         return next((self._orders[name] for name in self._ranked if name in self._orders), None)
 
     def correct(self, order: SourceCommand, setpoint: DriveSetpoint) -> None:
-        """Remember less than was asked for, for as long as the order itself would have counted."""
+        """Replace a command by a reduced one that expires when the command itself would have."""
         if self._orders.get(order.source) is order:
             self._orders[order.source] = replace(order, setpoint=setpoint)
 
     def forget(self) -> None:
-        """Wait for new commands of everybody."""
+        """Forget all commands and wait for new ones."""
         self._orders.clear()
 
     def limit_s(self, source: str) -> float:
-        """How old a command of this source may grow, 0 for any age."""
+        """Return how old a command of this source may get, 0 for any age."""
         if source not in self._held:
             return self._max_age_s
         return min(self._max_age_s or HELD_AGE_S, HELD_AGE_S)

@@ -1,4 +1,4 @@
-"""Frames of the serial devices, to bytes and back; each module is one protocol.
+"""Converts frames of the serial devices to bytes and back; each module is one protocol.
 
-From outside: a protocol's module; `crc` and `line` are what they share.
+Other rooms may import the modules of protocols, which share `crc` and `line`.
 """

@@ -6,13 +6,13 @@ import binascii
 
 
 def crc16(data: bytes) -> int:
-    """CRC-16/IBM-3740, also called CCITT-FALSE: polynomial 1021, begins with FFFF, 0..65535.
+    """CRC-16/IBM-3740, also called CCITT-FALSE: polynomial 1021, initial value FFFF, 0..65535.
 
-    In lines of up to 4 KiB it tells every change of one, two or three bits.
+    In lines of up to 4 KiB it detects every error of one, two or three bits.
     """
     return binascii.crc_hqx(data, 0xFFFF)
 
 
 def sum8(data: bytes) -> int:
-    """The low byte of the sum, 0..255: tells every change of one bit, and few others."""
+    """The low byte of the sum, 0..255: detects every single-bit error, and few others."""
     return sum(data) & 0xFF

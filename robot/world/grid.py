@@ -1,4 +1,4 @@
-"""A room as a map of square cells, as a robot would have drawn it: occupied, free, unknown."""
+"""A room as a map of square cells, as a robot would have mapped it: occupied, free, unknown."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from robot.world.room import Box, Room
 
 OCCUPIED, FREE, UNKNOWN = 100, 0, -1
-"""As nav_msgs/OccupancyGrid has them."""
+"""Cell values of nav_msgs/OccupancyGrid."""
 CELL_M = 0.05
 _MARGIN = 2
 """Unknown cells around the walls."""
 _SAMPLES = 4
-"""Places in a cell that are looked at along a wall: no wall has holes, whatever its angle."""
+"""Points per cell sampled along a wall, so that no wall has gaps, whatever its angle."""
 
 
 @dataclass(frozen=True)
 class CellMap:
-    """Cells of a side of `cell_m`, the first at the corner with the least x and y."""
+    """Cells with a side of `cell_m`, the first at the corner with the smallest x and y."""
 
     x_m: float
     y_m: float
@@ -34,7 +34,7 @@ class CellMap:
     """Shape (rows, columns); rows count along y, columns along x."""
 
     def at(self, x_m: float, y_m: float) -> int:
-        """What is at a place; unknown outside."""
+        """Return the cell at a place; unknown outside."""
         row = math.floor((y_m - self.y_m) / self.cell_m)
         column = math.floor((x_m - self.x_m) / self.cell_m)
         rows, columns = self.cells.shape
@@ -46,7 +46,7 @@ class CellMap:
 def grid_of(room: Room, cell_m: float = CELL_M) -> CellMap:
     """Draw a room: its walls and boxes are occupied, the floor between them is free."""
     corners = np.array(room.walls.corners())
-    # Half a cell more: a wall parallel to the axes runs through the middle of its cells.
+    # Half a cell of offset: a wall parallel to the axes runs through the middle of its cells.
     least = corners.min(axis=0) - (_MARGIN + 0.5) * cell_m
     columns, rows = np.ceil((corners.max(axis=0) - least) / cell_m).astype(int) + _MARGIN
     centres = np.meshgrid(
@@ -75,7 +75,7 @@ def _within(box: Box, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDA
 
 
 def _edges(box: Box, cell_m: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places along the outline of a box, x and y."""
+    """Return points along the outline of a box, x and y."""
     corners = box.corners()
     places = [
         np.linspace(begin, end, math.ceil(math.dist(begin, end) / cell_m * _SAMPLES) + 1)

@@ -1,6 +1,6 @@
-"""The Pico of the simulated robot: the firmware's rules, over the wheels of a `World`.
+"""The Pico of the simulated robot: the firmware's rules, applied to the wheels of a `World`.
 
-What it does and what `firmware/pico2/control.py` does are held together by a test.
+A test keeps its behaviour equal to that of `firmware/pico2/control.py`.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ _NEEDS_RELEASE = frozenset("ELRUH")
 
 
 class SimulatedPico:
-    """Obeys lines; let its time pass together with that of its world."""
+    """Obeys lines; advance its time together with that of its world."""
 
     def __init__(self, world: World) -> None:
         self.world = world
         self.battery_v = 7.4
         self.faults: frozenset[str] = frozenset()
-        """Motor drivers in trouble: any of `L` and `R`."""
+        """Motor drivers with a fault: any of `L` and `R`."""
         self.flags = set("WHA")
         self._decoder = PicoDecoder()
         self._now_ms = self._drove_ms = self._told_ms = self._well_ms = 0
@@ -51,14 +51,14 @@ class SimulatedPico:
         self._steering_rad = 0.0
         self._obeyed = 0
         self._counts = False
-        """Whether a drive line came since the hello: the next one must be ahead of it."""
+        """Whether a drive line has come since the hello: the next one must have a higher number."""
         self._refused = 0
-        """Drive lines that were out of order, or beyond the limits."""
+        """Drive lines that were out of order or beyond the limits."""
         self._sequence = 0
         self._out = b""
 
     def feed(self, data: bytes) -> None:
-        """Take bytes of the computer's."""
+        """Take bytes from the computer."""
         for message in self._decoder.feed(data):
             self._heard_ms = self._now_ms
             if isinstance(message, Drive):
@@ -73,7 +73,7 @@ class SimulatedPico:
         self._obey()
 
     def step(self) -> bytes:
-        """Let `STEP_S` pass; the bytes for the computer come back."""
+        """Let `STEP_S` pass; return the bytes for the computer."""
         self._now_ms += _STEP_MS
         if self._now_ms - self._drove_ms > _WATCHDOG_MS:
             self.flags |= set("WA")
@@ -89,7 +89,7 @@ class SimulatedPico:
 
     @property
     def refused(self) -> int:
-        """Lines that were of no use."""
+        """Lines that were unusable."""
         return self._decoder.errors + self._refused
 
     def _hello(self, message: Hello) -> None:

@@ -1,4 +1,4 @@
-"""A room with walls and boxes, seen from above: how far a ray goes, and what touches a wall."""
+"""A room with walls and boxes, seen from above: the length of rays, and contact with walls."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Box:
     x_m: float
     y_m: float
     length_m: float
-    """Along its own x axis."""
+    """Size along its own x axis."""
     width_m: float
     heading_rad: float = 0.0
 
@@ -36,7 +36,7 @@ class Box:
 
 
 class Room:
-    """Walls around a box, and boxes in it."""
+    """A box of walls, and boxes in it."""
 
     def __init__(self, walls: Box, boxes: Sequence[Box] = ()) -> None:
         self.walls, self.boxes = walls, tuple(boxes)
@@ -46,7 +46,7 @@ class Room:
         self._lengths2 = (self._along**2).sum(axis=1)
 
     def distance(self, x_m: float, y_m: float, heading_rad: float) -> float:
-        """Metres from a point to what stands in a direction, inf if nothing does."""
+        """Return the metres from a point to the first obstacle in a direction, inf without one."""
         ray = math.cos(heading_rad), math.sin(heading_rad)
         to_begin = self._begins - (x_m, y_m)
         across = _cross(self._along, ray)
@@ -57,7 +57,7 @@ class Room:
         return float(reach[hit].min()) if hit.any() else math.inf
 
     def clearance(self, x_m: float, y_m: float) -> float:
-        """Metres from a point to the nearest wall."""
+        """Return the metres from a point to the nearest wall."""
         from_begin = np.array((x_m, y_m)) - self._begins
         share = np.clip((from_begin * self._along).sum(axis=1) / self._lengths2, 0.0, 1.0)
         gaps = from_begin - share[:, None] * self._along
@@ -72,7 +72,7 @@ class Room:
         ) or any(_inside(point, box) for point in self._begins)
 
     def holds(self, point: Point) -> bool:
-        """Whether a point lies between the walls and in no box."""
+        """Whether a point lies between the walls and outside all boxes."""
         place = np.array((point.x_m, point.y_m))
         return _inside(place, self.walls) and not any(_inside(place, box) for box in self.boxes)
 
@@ -89,7 +89,7 @@ class Room:
 def _cross(
     rows: NDArray[np.float64], other: tuple[float, float] | NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Cross product of each row with a vector, or with the row of the same number."""
+    """Return the cross product of each row with a vector, or with the row of the same index."""
     x, y = (other[:, 0], other[:, 1]) if isinstance(other, np.ndarray) else other
     result: NDArray[np.float64] = rows[:, 0] * y - rows[:, 1] * x
     return result

@@ -1,4 +1,4 @@
-"""The servo controller of the simulated robot: it takes moves, and tells its battery when asked."""
+"""The servo controller of the simulated robot: it moves servos, and reports its battery."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from robot.wire.lsc16 import CENTRE_US, Battery, BatteryRequest, ServoDecoder, S
 
 
 class SimulatedServos:
-    """Servos that move at the pace that was asked for."""
+    """Servos that move at the commanded pace."""
 
     def __init__(self) -> None:
         self.battery_v = 7.4
         self._decoder = ServoDecoder()
         self._now_s = 0.0
         self._moves: dict[int, tuple[float, float, float, float]] = {}
-        """Servo to: from and to in us, begin and length in seconds."""
+        """Servo to start and end pulse in us, start time and duration in seconds."""
 
     def feed(self, data: bytes) -> bytes:
-        """Take bytes of the computer's; the answer comes back, most often an empty one."""
+        """Take bytes from the computer; return the answer, usually empty."""
         answer = b""
         for frame in self._decoder.feed(data):
             if isinstance(frame, ServoMove):
@@ -32,7 +32,7 @@ class SimulatedServos:
         self._now_s += seconds
 
     def pulse_us(self, servo: int) -> float:
-        """Where a servo is now."""
+        """Return the current pulse of a servo."""
         start, goal, began_s, length_s = self._moves.get(servo, (CENTRE_US, CENTRE_US, 0.0, 0.0))
         passed_s = self._now_s - began_s
         return goal if passed_s >= length_s else start + (goal - start) * passed_s / length_s

@@ -1,7 +1,7 @@
-"""Colours of the simulated room: what is painted on its walls, its floor and its boxes.
+"""Colours of the simulated room: the paint on its walls, its floor and its boxes.
 
 A room has four walls of different colours, with a window ahead of the start, a door on the left,
-pictures on the right and shelves behind, so that one sees from a picture where the robot looks.
+pictures on the right and shelves behind, so that a camera picture shows where the robot looks.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ROOM_HEIGHT_M = 2.5
 EAST, NORTH, WEST, SOUTH, FLOOR, CEILING = range(6)
 """Surfaces of a room; a wall's first column is on its left, its first row at the floor."""
 ALONG, ACROSS, TOP = range(3)
-"""Surfaces of a box: the ends of its length, the sides along it, and what is seen from above."""
+"""Surfaces of a box: its two ends, its two sides, and the top."""
 
 _EAST, _NORTH, _WEST, _SOUTH = (222, 210, 180), (186, 204, 178), (178, 192, 214), (222, 190, 168)
 _CEILING, _LAMP = (226, 226, 220), (255, 255, 236)
@@ -41,25 +41,25 @@ _BOOKS: tuple[Colour, ...] = (
 _BOXES: tuple[tuple[Colour, float], ...] = (
     ((196, 148, 88), 0.35), ((60, 104, 168), 0.60), ((84, 148, 92), 0.20), ((188, 84, 72), 0.45),
 )  # fmt: skip
-"""Colour and height, in turn."""
+"""Colour and height, alternating."""
 _SHARES = {ALONG: 0.86, ACROSS: 0.68, TOP: 1.0}
-"""Light on the surfaces of a box."""
+"""Brightness of the surfaces of a box."""
 
 
 @dataclass(frozen=True)
 class SurfaceTextures:
-    """Surfaces, one after the other, row by row."""
+    """All surfaces in one array, row by row."""
 
     colours: NDArray[np.uint8]
-    """Red, green, blue of every spot."""
+    """Red, green and blue of every texel."""
     begins: NDArray[np.int32]
-    """Of each surface, its first spot."""
+    """The first texel of each surface."""
     columns: NDArray[np.int32]
     rows: NDArray[np.int32]
 
     @classmethod
     def of(cls, canvases: Sequence[Canvas]) -> SurfaceTextures:
-        """Put surfaces together, in their order."""
+        """Concatenate surfaces, in their order."""
         sizes = [len(canvas) * canvas.shape[1] for canvas in canvases]
         return cls(
             np.concatenate([canvas.reshape(-1, 3) for canvas in canvases]),
@@ -70,12 +70,12 @@ class SurfaceTextures:
 
 
 def box_height_m(number: int) -> float:
-    """How tall a box of the room is."""
+    """Return the height of a box in the room."""
     return _BOXES[number % len(_BOXES)][1]
 
 
 def paint_room(walls: Box) -> SurfaceTextures:
-    """The four walls, the floor and the ceiling of a room."""
+    """Paint the four walls, the floor and the ceiling of a room."""
     east, west = (_wall(walls.width_m, colour) for colour in (_EAST, _WEST))
     north, south = (_wall(walls.length_m, colour) for colour in (_NORTH, _SOUTH))
     _window(east, walls.width_m / 2 - 0.9)
@@ -90,7 +90,7 @@ def paint_room(walls: Box) -> SurfaceTextures:
 
 
 def paint_box(number: int, box: Box) -> SurfaceTextures:
-    """The sides of a box: edges that are darker, and a stripe as of tape."""
+    """Paint the sides of a box: darker edges, and a stripe like tape."""
     colour, height_m = _BOXES[number % len(_BOXES)]
     sizes = {
         ALONG: (box.width_m, height_m),
@@ -116,7 +116,7 @@ def _canvas(across_m: float, up_m: float, colour: tuple[int, ...]) -> Canvas:
 def _fill(
     canvas: Canvas, across_m: tuple[float, float], up_m: tuple[float, float], colour: Colour
 ) -> None:
-    """Paint a rectangle; what lies beyond the canvas is cut off."""
+    """Paint a rectangle, clipped to the canvas."""
     columns, rows = (
         slice(*(max(0, round(end / PIXEL_M)) for end in ends)) for ends in (across_m, up_m)
     )

@@ -1,7 +1,7 @@
-"""What a camera in the simulated room sees: every pixel is a ray that ends somewhere.
+"""What a camera in the simulated room sees: every pixel is a traced ray.
 
-Drawn coarsely and scaled up: a few milliseconds a picture, with numpy alone. The same eye in the
-same room gives the same picture.
+Drawn coarsely and scaled up: a few milliseconds per picture, with numpy alone. The same camera pose
+in the same room gives the same picture.
 """
 
 from __future__ import annotations
@@ -42,18 +42,18 @@ if TYPE_CHECKING:
 _Way = TypeVar("_Way", float, "NDArray[np.float32]")
 
 AHEAD_M, HEIGHT_M = 0.15, 0.25
-"""Where the camera sits: before the rear axle, and above the floor."""
+"""Position of the camera: in front of the rear axle, and above the floor."""
 FIELD_RAD = 1.22
-"""From the left border of the picture to the right one."""
+"""Field of view from the left edge of the picture to the right one."""
 _COARSE = 2
 _NEAR_M = 0.05
 _DARKEST, _DARK_PER_M = 130, 20
-"""Of 256, and how much darker a metre makes it."""
+"""Brightness of 256, and how much darker each metre makes it."""
 
 
 @dataclass(frozen=True)
 class CameraPose:
-    """Where a camera is and where it looks."""
+    """Position and direction of a camera."""
 
     x_m: float
     y_m: float
@@ -64,14 +64,14 @@ class CameraPose:
 
     @classmethod
     def on(cls, pose: Pose, pan_rad: float = 0.0, tilt_rad: float = 0.0) -> CameraPose:
-        """The camera of a robot that stands at a pose and has turned its head."""
+        """Return the camera of a robot at a pose, with its head turned."""
         x_m = pose.x_m + AHEAD_M * math.cos(pose.heading_rad)
         y_m = pose.y_m + AHEAD_M * math.sin(pose.heading_rad)
         return cls(x_m, y_m, HEIGHT_M, pose.heading_rad + pan_rad, tilt_rad)
 
 
 class _Rays(NamedTuple):
-    """Where rays begin, and for each pixel where it goes; along a box, across it, and up."""
+    """Origin and direction of the ray for each pixel: along a box, across it, and up."""
 
     begin: tuple[float, float, float]
     along: Floats
@@ -79,11 +79,11 @@ class _Rays(NamedTuple):
     up: Floats
 
     def cut(self, part: tuple[slice, slice]) -> _Rays:
-        """Those of a part of the picture."""
+        """Return the rays of a part of the picture."""
         return _Rays(self.begin, self.along[part], self.across[part], self.up[part])
 
     def seen_from(self, box: Box) -> _Rays:
-        """The same rays by a box's own axes."""
+        """Return the same rays in a box's own axes."""
         x_m, y_m = _turned(self.begin[0] - box.x_m, self.begin[1] - box.y_m, -box.heading_rad)
         along, across = _turned(self.along, self.across, -box.heading_rad)
         return _Rays((x_m, y_m, self.begin[2]), along, across, self.up)
@@ -110,7 +110,7 @@ class RoomView:
     def draw(self, picture: NDArray[np.uint8], eye: CameraPose) -> None:
         """Draw into an array of shape (height, width, 3)."""
         rays = self._rays(eye)
-        # A ray along a wall never meets it, which is as good a number as any.
+        # A ray along a wall never meets it: the inf or nan of that division does no harm.
         with np.errstate(divide="ignore", invalid="ignore"):
             reach, spots = _see_walls(
                 rays.seen_from(self._room.walls), self._room.walls, self._walls
@@ -131,7 +131,7 @@ class RoomView:
             every[:] = rows[: len(every)]
 
     def _part_with(self, box: Box, number: int, eye: CameraPose) -> tuple[slice, slice] | None:
-        """Rows and columns of the picture that a box may be seen in, None if there are none."""
+        """Return the rows and columns in which a box may be visible, None if there are none."""
         cos, sin = math.cos(eye.tilt_rad), math.sin(eye.tilt_rad)
         floor = [
             _turned(x_m - eye.x_m, y_m - eye.y_m, -eye.heading_rad) for x_m, y_m in box.corners()
@@ -165,7 +165,7 @@ class RoomView:
 
 
 def _see_walls(rays: _Rays, walls: Box, paint: SurfaceTextures) -> tuple[Floats, Whole]:
-    """How far each ray goes inside the room, and which spot of its paint it meets."""
+    """Return how far each ray goes inside the room, and which texel it meets."""
     half, wide = walls.length_m / 2, walls.width_m / 2
     (x_m, y_m, z_m), along, across, up = rays
     to_end = (np.copysign(np.float32(half), along) - x_m) / along
@@ -199,7 +199,7 @@ def _see_box(
     reach: Floats,
     spots: Whole,
 ) -> None:
-    """Put a box before what is farther away, in `reach` and in `spots`."""
+    """Draw a box over what is farther away, in `reach` and in `spots`."""
     length_m, width_m, height_m = sides_m
     (x_m, y_m, z_m), *ways = rays
     nears, fars = [], []
@@ -241,6 +241,6 @@ def _turned(along: _Way, across: _Way, angle_rad: float) -> tuple[_Way, _Way]:
 
 
 def _between(places: NDArray[np.float64], count: int) -> slice:
-    """The pixels among places of a picture that goes from 1 to -1, and one more."""
+    """Return the pixels between places of a picture that spans 1 to -1, plus one more."""
     begin, end = ((1 - place) / 2 * (count - 1) for place in (places.max(), places.min()))
     return slice(max(0, math.floor(begin) - 1), min(count, math.ceil(end) + 2))
