@@ -1,7 +1,7 @@
 """The command line: `deck`, `deck run`, `deck list` and the rest.
 
-From outside: `main` alone. A module is a command, or what commands share; `main` imports the one
-that is asked for.
+Other packages use only `main`. Each module is a command, or is shared by commands; `main` imports
+only the requested one.
 """
 
 from cli.main import main

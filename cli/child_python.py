@@ -1,11 +1,11 @@
-"""Small programs for another Python process, which may hang or crash as this one must not."""
+"""Small programs to run in another Python process, since they may hang or crash."""
 
 from __future__ import annotations
 
 import sys
 
 _NOT_FROM_HERE = "import sys; sys.path[:] = [place for place in sys.path if place]\n"
-"""`-c` would look for modules in the current folder first, whatever lies there."""
+"""`-c` would search the current folder for modules first, whatever is in it."""
 
 
 def python(program: str, *arguments: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Whether the nodes of a run are healthy, judged by their statuses alone."""
+"""Whether the nodes of a run are healthy, judging only by their statuses."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from launcher.status import NodeStatus
 
 OTHER_TYPE = " is published as "
-"""In the supervisor's words about a topic of another type, which waiting does not change."""
+"""Part of the supervisor's message about a topic of another type: waiting does not help."""
 
 
 def settled(nodes: Mapping[str, NodeStatus]) -> bool:
-    """Whether nothing is on its way up: each node is ready, has ended, or waits in vain."""
+    """Whether no node is still starting: each is ready, has ended, or is waiting in vain."""
     return not any(
         node.state is NodeState.STARTING
         or (
@@ -38,9 +38,9 @@ def over(nodes: Mapping[str, NodeStatus]) -> bool:
 
 
 def well(node: NodeStatus, optional: Collection[str] = (), *, on_the_way: bool = False) -> bool:
-    """Whether a node has done what its profile promised; asked before anything is stopped.
+    """Whether a node has done what its profile promised; call this before anything is stopped.
 
-    `on_the_way`: nobody waited until the nodes were up, so one that is not yet is none the worse.
+    `on_the_way`: nobody waited for the nodes to come up, so one that is still starting is healthy.
     """
     if node.name in optional:
         return True

@@ -1,4 +1,4 @@
-"""Standard output for a run that must not wait: written on a thread, as its reader may stall."""
+"""Standard output for a run that must not block: written on a thread, as its reader may stall."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MOST_WAITING = 8_000_000
-"""Bytes that may wait for the reader; what comes beyond them is left out and counted."""
+"""Most bytes that wait for the reader; lines beyond that are left out and counted."""
 
 
 class LineWriter:
-    """Lines to a descriptor, in order, without ever making the caller wait."""
+    """Writes lines to a descriptor, in order, without ever blocking the caller."""
 
     def __init__(
         self,
@@ -31,10 +31,10 @@ class LineWriter:
         """Begin.
 
         Args:
-            fd: where to write
-            encoding: of the lines; what it does not have is replaced
-            left_out: makes the line that tells how many were left out
-            on_gone: called once, on another thread, when nobody reads any more
+            fd: the descriptor to write to
+            encoding: of the lines; characters that it lacks are replaced
+            left_out: returns the line that tells how many lines were left out
+            on_gone: called once, on another thread, when the reader is gone
         """
         self._fd = fd
         self._encoding = encoding
@@ -50,7 +50,7 @@ class LineWriter:
         threading.Thread(target=self._run, name="output", daemon=True).start()
 
     def write(self, line: str) -> None:
-        """Have a line written."""
+        """Queue a line."""
         with self._lock:
             if self.gone:
                 return
@@ -64,7 +64,7 @@ class LineWriter:
             self._lock.notify_all()
 
     def finish(self, within_s: float = 5.0) -> None:
-        """Wait until all is written, but not for ever."""
+        """Wait until everything is written, up to a time limit."""
         with self._lock:
             self._lock.wait_for(
                 lambda: self.gone or not (self._waiting or self._busy), timeout=within_s

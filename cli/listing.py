@@ -1,4 +1,4 @@
-"""`deck list` and `deck check`: what there is to start, and what is wrong with it."""
+"""`deck list` and `deck check`: the available profiles, and what is wrong with them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def list_command(options: Namespace) -> int:
-    """Show every profile; broken ones with their first problem."""
+    """Show all profiles, broken ones with their first problem."""
     entries = list_profiles()
     if options.json:
         write(json_text([_as_json(entry) for entry in entries], indent=2))
@@ -45,7 +45,7 @@ def list_command(options: Namespace) -> int:
 
 
 def check_command(options: Namespace) -> int:
-    """Say what is wrong with one profile or with all, or with devices; 0 if nothing is."""
+    """Report problems of one profile, of all, or of devices; return 0 if there are none."""
     if options.preflight:
         from cli.preflight.command import preflight_command
 
@@ -68,7 +68,7 @@ def _load(path: Path, options: Namespace) -> Profile:
 
 
 def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]] | str]:
-    """Return what is wrong with a profile, for programs."""
+    """Return the problems of a profile, for programs."""
     problems: tuple[ProfileProblem, ...] = ()
     warnings: tuple[ProfileProblem, ...] = ()
     try:

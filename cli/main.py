@@ -1,6 +1,6 @@
 """`deck`: finds the command, imports only what it needs, and ends with a meaningful exit code.
 
-0 all went well, 1 something failed, 2 what was asked for cannot be right, 130 interrupted.
+Exit codes: 0 success, 1 a failure, 2 an invalid request, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ HANDLERS = {
     "replay": ("cli.replay", "replay_command"),
     "doctor": ("cli.doctor.command", "doctor_command"),
 }
-"""Command to module and function: only the module of the command in hand is imported."""
+"""Command to module and function: only the module of the given command is imported."""
 STARTERS = ("run", "up")
 """Commands that start a profile as soon as they have read it."""
 INTERRUPTED = 130
 READER_GONE = 141
 OPENBLAS_PATIENCE = ("OPENBLAS_THREAD_TIMEOUT", "4")
-"""Two to this power is how many clock ticks idle threads of numpy spin before they sleep.
+"""Idle threads of numpy spin for two to this power clock ticks before they sleep.
 
-rclpy imports numpy, and nothing here has work for its threads: by default they take 0.2 s of CPU
-time from every start.
+rclpy imports numpy, but nothing here uses its threads: by default they cost every start 0.2 s of
+CPU time.
 """
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; return what to exit with."""
+    """Run one command; return the exit code."""
     make_streams_safe()
-    # For the processes that are started from here as well.
+    # This also applies to the processes started from here.
     os.environ.setdefault(*OPENBLAS_PATIENCE)
     words = list(sys.argv[1:] if arguments is None else arguments)
     asked = wanted_language(words)
@@ -74,10 +74,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parsed(command: str, words: Sequence[str]) -> Namespace | int:
-    """Return what is asked for, or what to exit with: it was help, or something wrong, and is told.
+    """Return the parsed options, or an exit code after showing help or an error.
 
     Raises:
-        LauncherError: if a word that is no command stands before what only commands take.
+        LauncherError: if an unknown command word comes before options that only commands have.
     """
     parser = parser_of(command)
     try:
@@ -92,7 +92,7 @@ def _parsed(command: str, words: Sequence[str]) -> Namespace | int:
 
 
 def _refuse_no_command(word: str | None) -> None:
-    """Raise a LauncherError if there is a word that is neither a command nor a profile."""
+    """Raise a LauncherError if the word is neither a command nor a profile."""
     if word is not None:
         from cli.screen import profile_or_command
 
@@ -100,7 +100,7 @@ def _refuse_no_command(word: str | None) -> None:
 
 
 def complain(error: LauncherError) -> int:
-    """Tell an error to standard error; return its exit code."""
+    """Write an error to standard error; return its exit code."""
     for part in error.args:
         say_error(said(part) if isinstance(part, str) else str(part))
     return error.exit_code
@@ -111,7 +111,7 @@ def _run(command: str, options: Namespace) -> int:
         return _handle(command, options)
     from launcher.client.start import StartingSupervisor
 
-    # It has more to import than this process has, and may begin at once.
+    # It has more to import than this process, so it is started at once.
     with StartingSupervisor() as options.supervisor:
         return _handle(command, options)
 

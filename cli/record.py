@@ -1,6 +1,6 @@
 """`deck record`: topics of the running robot into a folder that `ros2 bag` and Foxglove read.
 
-With `--json` it writes one object a line, told apart by `event`:
+With `--json` it writes one object per line, distinguished by `event`:
 
     recording   the first one: folder, domain
     status      each second: seconds, messages, bytes, bytes_per_s, lost, topics
@@ -40,7 +40,7 @@ TOLD_S = 1.0
 
 
 def record_command(options: Namespace) -> int:
-    """Record until it is stopped; 0 if the bag is whole and has something in it."""
+    """Record until stopped; return 0 if the bag is complete and not empty."""
     from graph.recording.recorder import Recorder
 
     topics = [_topic(name) for name in options.topics]
@@ -68,7 +68,7 @@ def record_command(options: Namespace) -> int:
 
 
 def _topic(name: str) -> str:
-    """Return the full name of a topic; UsageError for what is none."""
+    """Return the full name of a topic; raises UsageError if it is invalid."""
     full = f"/{name.lstrip('/')}"
     if not full.replace("/", "").replace("_", "").isalnum() or not full.isascii():
         raise UsageError(
@@ -86,7 +86,7 @@ def _begin(folder: Path, domain: int, *, as_json: bool) -> None:
 
 
 def _tell_until(recorder: Recorder, stop: threading.Event, options: Namespace) -> None:
-    """Tell how it goes each second, until it is stopped, fails, or its time is over."""
+    """Report progress every second, until it is stopped, fails, or its time is over."""
     deadline_s = time.monotonic() + (math.inf if options.seconds is None else options.seconds)
     while not (recorder.status.error or stop.is_set()):
         left_s = deadline_s - time.monotonic()
@@ -100,7 +100,7 @@ def _tell_until(recorder: Recorder, stop: threading.Event, options: Namespace) -
 
 
 def _end(status: RecordingStatus, *, as_json: bool) -> int:
-    """Tell how it went; return the exit code."""
+    """Report the result; return the exit code."""
     found = list(complaints(status))
     if not status.messages and not status.error:
         found.append(_("nothing was recorded: nobody has published anything"))

@@ -1,6 +1,6 @@
-"""What `deck run` writes: lines for people, or JSON for programs.
+"""The output of `deck run`: lines for people, or JSON for programs.
 
-JSON is one object a line, told apart by `event`:
+JSON has one object per line, distinguished by `event`:
 
     session   the profile as started: name, domain, hardware, log_dir, ...
     status    a node's state has changed: node, state, detail, pid, restarts, exit_code, signal
@@ -37,51 +37,51 @@ class Summary:
     """The result of a run."""
 
     nodes: Sequence[NodeStatus]
-    """As they were before they were stopped."""
+    """Their statuses before they were stopped."""
     healthy: Mapping[str, bool]
-    """By the node's name."""
+    """Node to whether it is healthy."""
     seconds: float
     reason: str
-    """What ended the run, empty if it was stopped from here."""
+    """What ended the run, empty if it was stopped here."""
 
     @property
     def well(self) -> bool:
-        """Whether every node was, and nothing else ended the run."""
+        """Whether every node was healthy and the run was stopped here."""
         return all(self.healthy.values()) and not self.reason
 
     @property
     def exit_code(self) -> int:
-        """Of `deck run`."""
+        """The exit code of `deck run`."""
         return 0 if self.well else 1
 
 
 class Report(Protocol):
-    """Reports on a run while it goes on."""
+    """Reports on a run in progress."""
 
     def session(self, session: SessionInfo) -> None:
-        """Tell what was started."""
+        """Report what was started."""
 
     def status(self, node: NodeStatus) -> None:
-        """Tell that a node's state, or what is said of it, has changed."""
+        """Report a change of a node's state or detail."""
 
     def log(self, line: LogLine) -> None:
-        """Tell a line of a node."""
+        """Report a line of a node."""
 
     def skipped(self, node: str, lines: int) -> None:
-        """Tell that lines were left out."""
+        """Report that lines were left out."""
 
     def note(self, text: str) -> None:
-        """Tell something about the run itself."""
+        """Report something about the run itself."""
 
     def summary(self, summary: Summary) -> None:
-        """Tell how it went."""
+        """Report the result."""
 
 
 class TextReport:
-    """Lines for people, each with the name of its node."""
+    """Lines for people, each prefixed with the name of its node."""
 
     def __init__(self, write: Write, names: Sequence[str], paint: Paint) -> None:
-        """`names`: of the nodes, which set the width of the prefix."""
+        """`names`: of the nodes; they determine the width of the prefix."""
         self._write = write
         self._paint = paint
         self._width = max(map(len, (*names, DECK))) + 2
@@ -90,7 +90,7 @@ class TextReport:
         }
 
     def session(self, session: SessionInfo) -> None:
-        """Tell what was started, and how it is stopped."""
+        """Report what was started, and how to stop it."""
         self.note(
             _("{name}: domain {domain}, {hardware} hardware; Ctrl-C stops it").format(
                 name=session.name, domain=session.domain, hardware=hardware_words(session.hardware)
@@ -98,12 +98,12 @@ class TextReport:
         )
 
     def status(self, node: NodeStatus) -> None:
-        """Tell states that the log does not tell."""
+        """Report states that the log does not show."""
         if node.state is NodeState.READY:
             self._line(node.name, self._paint(_("ready"), DIM))
 
     def log(self, line: LogLine) -> None:
-        """Tell a line of a node; its severity as a word and as a colour."""
+        """Write a line of a node, with its severity as a word and a colour."""
         text = said(line.text)
         if line.severity is not Severity.INFO:
             text = f"{line.severity.name} {text}"
@@ -111,7 +111,7 @@ class TextReport:
         self._line(line.node, self._paint(text, colour) if colour else plain(text))
 
     def skipped(self, node: str, lines: int) -> None:
-        """Tell that lines were left out."""
+        """Report that lines were left out."""
         words = ngettext(
             "{count} line left out, the log file has it",
             "{count} lines left out, the log file has them",
@@ -120,11 +120,11 @@ class TextReport:
         self._line(node, self._paint(words.format(count=lines), DIM))
 
     def note(self, text: str) -> None:
-        """Tell something about the run itself."""
+        """Report something about the run itself."""
         self._line(DECK, plain(text))
 
     def summary(self, summary: Summary) -> None:
-        """Tell how it went, as a table."""
+        """Report the result as a table."""
         nodes, healthy = summary.nodes, summary.healthy
         head = (_("NODE"), _("RESULT"), _("STATE"), _("RESTARTS"), _("DETAIL"))
         rows = [
@@ -166,7 +166,7 @@ class JsonReport:
         self._write = write
 
     def session(self, session: SessionInfo) -> None:
-        """Tell what was started."""
+        """Report what was started."""
         self._object(
             "session",
             name=session.name,
@@ -182,11 +182,11 @@ class JsonReport:
         )
 
     def status(self, node: NodeStatus) -> None:
-        """Tell a node's state."""
+        """Report a node's state."""
         self._object("status", **status_fields(node))
 
     def log(self, line: LogLine) -> None:
-        """Tell a line of a node."""
+        """Report a line of a node."""
         self._object(
             "log",
             node=line.node,
@@ -199,14 +199,14 @@ class JsonReport:
         )
 
     def skipped(self, node: str, lines: int) -> None:
-        """Tell that lines were left out."""
+        """Report that lines were left out."""
         self._object("skipped", node=node, lines=lines)
 
     def note(self, text: str) -> None:
-        """Say nothing: what a program must know has an event of its own."""
+        """Do nothing: everything that programs need has its own event."""
 
     def summary(self, summary: Summary) -> None:
-        """Tell how it went."""
+        """Report the result."""
         self._object(
             "summary",
             healthy=summary.well,
@@ -224,7 +224,7 @@ class JsonReport:
 
 
 def status_fields(node: NodeStatus) -> dict[str, object]:
-    """Return what JSON says of a node."""
+    """Return the JSON fields of a node."""
     return {
         "node": node.name,
         "state": node.state.value,

@@ -1,4 +1,4 @@
-"""`deck run`: a profile without a screen, from its start to its summary."""
+"""`deck run`: run a profile without a screen, from start to summary."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 INTERRUPTED = 130
 PAST_LINES = 1000
-"""Of what the nodes have said by the time that they can be heard."""
+"""How many lines are kept of the output before the client has connected."""
 
 
 def run_command(options: Namespace) -> int:
-    """Start a profile, tell what happens, stop it; 0 if every node stayed healthy."""
+    """Start a profile, report events, stop it; return 0 if every node stayed healthy."""
     profile = load_profile(
         find_profile(options.profile),
         hardware=options.hardware,
@@ -98,7 +98,7 @@ class Run:
     def __init__(
         self, profile: Profile, seconds: float | None, supervisor: StartingSupervisor
     ) -> None:
-        """`seconds`: how long to go on once all nodes are up; None for ever."""
+        """`seconds`: how long to run once all nodes are up; None: until stopped."""
         self._profile = profile
         self._supervisor = supervisor
         self._seconds = seconds
@@ -134,13 +134,13 @@ class Run:
         return self._summary(client, reason, time.monotonic() - began)
 
     def interrupt(self) -> None:
-        """Stop because somebody says so; the second time at once."""
+        """Stop at the user's request; the second time, at once."""
         if not self._asked_to_stop:
             self.report.note(_("stopping; Ctrl-C again does not wait"))
         self.stop()
 
     def stop(self) -> None:
-        """Stop in order; the second time at once."""
+        """Stop the nodes in order; the second time, at once."""
         self._asked_to_stop += 1
         client = self._client
         if client is None:
@@ -185,7 +185,7 @@ class Run:
             self._look()
 
     def _tell_status(self, node: NodeStatus) -> None:
-        """Tell what is new about a node; its CPU and memory are not."""
+        """Report changes of a node, except of its CPU and memory."""
         now = (node.state, node.detail, node.pid, node.restarts, node.exit_code, node.signal)
         if self._told.get(node.name) == now:
             return
@@ -196,7 +196,7 @@ class Run:
         self.report.status(node)
 
     def _look(self) -> None:
-        """Begin to count the seconds once all is up; end if all has ended."""
+        """Start counting the seconds once all nodes are up; end if all have ended."""
         if self._client is None or self._asked_to_stop:
             return
         nodes = self._client.nodes

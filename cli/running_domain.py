@@ -1,4 +1,4 @@
-"""The domain of a command that names none: that of the running robot."""
+"""The default domain of a command: that of the running robot."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from text.sentences import say
 
 
 def running_domain(asked: int | None) -> tuple[str, int, str | tuple[str, ...]]:
-    """Return name, domain and discovery: of the robot that Deck runs, else of the environment.
+    """Return name, domain and discovery: those of the robot that Deck runs, else the environment's.
 
     Raises:
         UsageError: if robots run in several domains.

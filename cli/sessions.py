@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection[str] = ()) -> None:
-    """Write the session and a line for each of its nodes; none of `optional` is alarming."""
+    """Write the session and a line for each node; the `optional` ones are never alarming."""
     paint = Paint(sys.stdout)
     where = _("domain {domain}, {hardware} hardware, supervisor {pid}").format(
         domain=session.domain, hardware=hardware_words(session.hardware), pid=session.supervisor_pid
@@ -66,7 +66,7 @@ def _duration(seconds: float) -> str:
 
 
 def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, object]:
-    """Return what `deck ps --json` says of a session."""
+    """Return a session in the form of `deck ps --json`."""
     return {
         "name": session.name,
         "run_id": session.run_id,

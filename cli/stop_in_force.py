@@ -1,4 +1,4 @@
-"""Says on the command line that an emergency stop is in force, and how it is released."""
+"""Reporting, on the command line, an emergency stop in force and how to release it."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from text.i18n import _
 
 
 def stop_is_kept(domain: int) -> bool:
-    """Whether a stop is remembered in this domain, be it of an earlier session."""
+    """Whether a stop is recorded for this domain, even from an earlier session."""
     try:
         return os.path.lexists(stop_place(domain))
     except (OSError, RuntimeError):
-        # Nobody can keep one there; the nodes have words for it.
+        # No stop can be kept there; the nodes report that themselves.
         return False
 
 
 def stop_words(domain: int) -> str:
-    """Return what is in force, and the way out of it."""
+    """Return the warning about the stop, and how to release it."""
     words = _(
         "■ EMERGENCY STOP in domain {domain}: its robot does not move until the stop is released;"
         " `deck watch --domain {domain}`, then Ctrl+R"

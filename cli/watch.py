@@ -1,4 +1,4 @@
-"""`deck watch`: the screen on what runs in a domain; Deck starts nothing and stops nothing."""
+"""`deck watch`: show everything in a domain on the screen; nothing is started or stopped."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def watch_command(options: Namespace) -> int:
-    """Show the screen until it is left."""
+    """Show the screen until the user quits."""
     from launcher.domain.domain import choose_domain
 
     domain = choose_domain(options.domain, None, os.environ)

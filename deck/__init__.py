@@ -1,9 +1,9 @@
-"""Deck as one package: the only name that an installed one takes in site-packages.
+"""Deck as one package: the only name that it takes in site-packages when installed.
 
 The rooms (cli, tui, launcher, graph, nodes, robot, text) import each other by their bare names. In
-a checkout they lie beside this folder, in a wheel inside it. Their place goes first on the path of
-Deck's own processes, and of no others: who imports `deck` gets this file and nothing more, and
-somebody else's `graph` or `text` stays what it is.
+a checkout they are beside this folder, in a wheel inside it. Their location comes first on the path
+of Deck's own processes, and of no others: importing `deck` loads this file and nothing else, and
+another project's `graph` or `text` is not affected.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ PLACE = str(_HERE if (_HERE / "cli").is_dir() else _HERE.parent)
 
 
 def enter() -> None:
-    """Have this process look for modules in the place of the rooms before all others."""
+    """Make this process look for modules in the folder of the rooms first."""
     sys.path[:] = [PLACE, *(place for place in sys.path if place != PLACE)]
 
 
 def main() -> int:
-    """Be the program `deck`; return what to exit with."""
+    """Run the program `deck`; return the exit code."""
     enter()
     from cli.main import main
 
@@ -31,8 +31,8 @@ def main() -> int:
 
 
 if sys.argv[:1] == ["-m"]:
-    # `python -m deck`, or `python -m deck.nodes.hello` in a wheel, is importing this on its way.
-    # It has put the current folder first, and what lies there is no part of Deck.
+    # `python -m deck`, or `python -m deck.nodes.hello` in a wheel, is importing this package first.
+    # It has put the current folder first on the path, which is not part of Deck.
     if sys.path[0] in ("", os.getcwd()):  # noqa: PTH109
         del sys.path[0]
     enter()

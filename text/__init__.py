@@ -1,8 +1,10 @@
-"""What is said and shown, and in which language: every room imports this one, it imports none.
+"""Text for people, and its language; every room imports this one, and it imports none.
 
-Sentences (`sentences`: made anywhere, translated by who shows them), the language of the screen,
-the command line and the nodes (`i18n`), text from outside made harmless (`plain`), numbers
-(`figures`), what was probably meant (`suggestions`), what the system and YAML complain of
-(`os_words`, `yaml_faults`), what a word of YAML stands for (`yaml_scalars`), the standard streams
-(`output`). It needs PyYAML at most, and that only for YAML.
+It has sentences that are made anywhere and translated where they are shown (`sentences`), the
+language of the screen, the command line and the nodes (`i18n`), sanitizing of text from outside
+(`plain`), numbers (`figures`), suggestions for mistyped words (`suggestions`), messages about
+errors of the system (`os_words`), the standard streams (`output`), the run directory (`run_path`),
+which the launcher and the nodes both use, and YAML: a reader with rules for each kind of text
+(`yaml_reading`), its tree (`yaml_tree`), messages about its errors (`yaml_faults`), the meaning of
+its scalars (`yaml_scalars`). It needs no library but PyYAML, and that only for YAML.
 """

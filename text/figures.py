@@ -1,6 +1,6 @@
-"""Numbers as they are written on the screen, however large: anybody may send any number.
+"""Formatting numbers for the screen, however large: a node may send any number.
 
-In the language spoken: `0,36` in Russian.
+They are written as the current language requires: `0,36` in Russian.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 from text.i18n import decimal
 
 PLAIN_BELOW = 1e6
-"""From here on a number is written with an exponent: three hundred digits help nobody."""
+"""Larger numbers are written with an exponent: three hundred digits help nobody."""
 
 
 def figure(value: float, decimals: int = 2) -> str:
@@ -25,15 +25,15 @@ def figure(value: float, decimals: int = 2) -> str:
 
 
 def short(value: float) -> str:
-    """`1e308`: three digits, and no sign or zeros in the exponent that say nothing."""
+    """`1e308`: three digits, without redundant signs or zeros in the exponent."""
     return decimal(f"{value:.3g}".replace("e+0", "e").replace("e+", "e"))
 
 
 def whole(value: float) -> str:
-    """`45`, the nearest whole number; written as by `figure` where that is no use."""
+    """`45`, the nearest whole number; formatted by `figure` where that makes no sense."""
     return str(round(value)) if abs(value) < PLAIN_BELOW else figure(value, 0)
 
 
 def elapsed(value: float) -> str:
-    """`45`, the whole seconds, minutes, ... that have passed; written as by `figure` else."""
+    """`45`, the full seconds, minutes, ... that have passed; otherwise formatted by `figure`."""
     return str(int(value)) if abs(value) < PLAIN_BELOW else figure(value, 0)

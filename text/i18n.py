@@ -1,7 +1,7 @@
-"""The language of the screen: English in the code, Russian by a gettext catalogue.
+"""The language of the screen: English in the code, Russian from a gettext catalogue.
 
-Strings are looked up where they are drawn, so that the language can change under a running
-screen; a string that must stand in a constant is marked with `N_` and translated when drawn.
+Strings are looked up when they are drawn, so that the language of a running screen can change; a
+string in a constant is marked with `N_` and translated when it is drawn.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _catalogue: _gettext.NullTranslations = _gettext.NullTranslations()
 def detect(
     option: str | None = None, environ: Mapping[str, str] | None = None, settled: str = ""
 ) -> str:
-    """Return the language: `--lang`, `DECK_LANG`, what is settled, the locale, else English."""
+    """Return the language: `--lang`, `DECK_LANG`, the `settled` one, the locale's, else English."""
     env = os.environ if environ is None else environ
     locale = env.get("LC_ALL") or env.get("LC_MESSAGES") or env.get("LANG")
     for wish in (option, env.get("DECK_LANG"), settled, locale):
@@ -42,10 +42,10 @@ def detect(
 
 
 def set_language(code: str) -> None:
-    """Speak `code` from now on.
+    """Use the language `code` from now on.
 
     Raises:
-        ValueError: if there is no such language; the message names those there are.
+        ValueError: if there is no such language; the message names the available ones.
     """
     global _language, _catalogue  # noqa: PLW0603 - one screen, one language
     if code not in LANGUAGES:
@@ -62,34 +62,34 @@ def _catalogue_of(code: str) -> _gettext.NullTranslations:
 
 
 def language() -> str:
-    """Return the code of the language spoken now."""
+    """Return the code of the current language."""
     return _language
 
 
 def _(message: str) -> str:
-    """Return `message` in the language spoken now."""
+    """Return `message` in the current language."""
     return _catalogue.gettext(message) if message else ""
 
 
 def in_every_language(message: str) -> tuple[str, ...]:
-    """Return `message` as each of `LANGUAGES` has it; what is marked by `N_` is looked for so."""
+    """Return `message` in each of `LANGUAGES`, for searching text that is marked with `N_`."""
     return tuple(translated(message, code) for code in LANGUAGES)
 
 
 def ngettext(singular: str, plural: str, number: int) -> str:
-    """Return the form of the message that goes with `number`."""
+    """Return the form of the message for `number`."""
     return _catalogue.ngettext(singular, plural, number)
 
 
 def N_(message: str) -> str:  # noqa: N802 - gettext's own name
-    """Mark `message` for the catalogue; whoever draws it calls `_`."""
+    """Mark `message` for the catalogue; the code that draws it calls `_`."""
     return message
 
 
 def said(words: str, code: str = "") -> str:
-    """Return a sentence (`text.sentences.say`) in this language, or in the one spoken now.
+    """Return a sentence (`text.sentences.say`) in this language, or in the current one.
 
-    Its values, and a text that is no such sentence, are made harmless.
+    Its values, and any other text, are sanitized.
     """
     if not isinstance(words, Words):
         return plain_lines(words)
@@ -99,14 +99,14 @@ def said(words: str, code: str = "") -> str:
 
 
 def translated(message: str, code: str) -> str:
-    """Return `message` in this language, whichever is spoken now."""
+    """Return `message` in this language, whatever the current one is."""
     return _catalogue_of(code).gettext(message) if message else ""
 
 
 def decimal(number: str) -> str:
-    """Return a number of prose as it is written in the language spoken: `0,36` in Russian.
+    """Return a number in a sentence as the current language writes it: `0,36` in Russian.
 
-    Data keep their point: what is echoed, edited or sent.
+    Data that is echoed, edited or sent keeps its decimal point.
     """
     return _decimal(number, _language)
 
@@ -116,12 +116,12 @@ def _decimal(number: str, code: str) -> str:
 
 
 class Prose(float):
-    """A number that a template writes as its language does, whatever format it asks for."""
+    """A number that a template writes as its language requires, with any format."""
 
     code: str
 
     def __new__(cls, number: float, code: str = "") -> Self:
-        """Without a `code`, in the language spoken now."""
+        """Without a `code`, the current language is used."""
         made = super().__new__(cls, number)
         made.code = code or _language
         return made
@@ -137,5 +137,5 @@ def _in_words(value: object, code: str) -> object:
 
 
 def pick(texts: Mapping[str, str]) -> str:
-    """Return the text in the language spoken now out of {code: text}, else English, else any."""
+    """Return the text for the current language from {code: text}, else English, else any."""
     return plain(texts.get(_language) or texts.get("en") or next(iter(texts.values()), ""))

@@ -1,6 +1,6 @@
-"""What the operating system says of a file, marked for the catalogue: its words are English.
+"""File errors of the operating system, marked for the catalogue: its messages are in English.
 
-Whoever tells of an OSError says `os_reason` of it.
+Use `os_reason` to report an OSError.
 """
 
 from __future__ import annotations
@@ -30,6 +30,6 @@ REASONS = (
 
 
 def os_reason(error: Exception) -> Words:
-    """Say why something failed, as the system puts it; of an error without words its kind."""
+    """Return the system's reason for a failure; for an error without a message, its type."""
     words = getattr(error, "strerror", None) or str(error) or type(error).__name__
     return say(plain(str(words)))

@@ -1,4 +1,4 @@
-"""Writing to the standard streams: harmless text, colour where it is wanted, tables, JSON."""
+"""Writing to the standard streams: sanitized text, colour where it is wanted, tables, JSON."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 RED, GREEN, YELLOW, DIM, BOLD = "31", "32", "33", "2", "1"
 PREFIX_COLOURS = ("36", "35", "32", "34", "33", "96", "95", "92", "94", "93")
-"""For the names of nodes, taken in turn."""
+"""Colours for the names of nodes, used in turn."""
 _CODE = "|".join(("0", RED, GREEN, YELLOW, DIM, BOLD, *PREFIX_COLOURS))
 _COLOUR = re.compile(rf"(\x1b\[(?:{_CODE})(?:;(?:{_CODE}))*m)")
 
@@ -29,7 +29,7 @@ class Paint:
     """Colours for a stream, or none: not a terminal, NO_COLOR, a terminal without colour."""
 
     def __init__(self, stream: TextIO, environ: Mapping[str, str] | None = None) -> None:
-        """Decide once."""
+        """Decide once whether colours are wanted."""
         env = os.environ if environ is None else environ
         self.wanted = stream.isatty() and not env.get("NO_COLOR") and env.get("TERM") != "dumb"
 
@@ -40,26 +40,26 @@ class Paint:
 
 
 def harmless(text: str) -> str:
-    """Return lines that may be written: of what a terminal obeys, only Deck's own colours."""
+    """Return lines that are safe to write: Deck's own colours are the only control sequences."""
     pieces = _COLOUR.split(text)
     pieces[::2] = map(plain_lines, pieces[::2])
     return "".join(pieces)
 
 
 def json_text(value: object, indent: int | None = None) -> str:
-    """Return JSON in which text stays readable, and what is not harmless is escaped."""
+    """Return JSON in which text stays readable and unsafe characters are escaped."""
     return replaced(json.dumps(value, ensure_ascii=False, indent=indent), _escaped)
 
 
 def _escaped(character: str) -> str:
-    # The ends of lines stand between the values: within them they are escaped already.
+    # Line ends occur only between values: inside them they are already escaped.
     return character if character == "\n" else json.dumps(character)[1:-1]
 
 
 def make_streams_safe() -> None:
-    """Have nobody trip over a stream that is closed, or that lacks a character.
+    """Make sure that a closed stream, or a character missing in its encoding, raises no error.
 
-    A fault of Deck's own tells what it was about, and so it is told harmlessly, too.
+    Tracebacks are sanitized as well, because they may contain text from outside.
     """
     sys.excepthook = _tell_fault
     for name in ("stdout", "stderr"):
@@ -78,9 +78,9 @@ def _tell_fault(
 
 
 def keep_stdout_to_ourselves() -> None:
-    """Lead what libraries print, Fast DDS its complaints above all, to standard error.
+    """Redirect the output of libraries, above all the complaints of Fast DDS, to standard error.
 
-    A program that reads Deck's JSON would trip over it.
+    A program that reads Deck's JSON would stumble over it.
     """
     ours = os.dup(sys.stdout.fileno())
     with contextlib.suppress(OSError):  # There may be no standard error.
@@ -90,7 +90,7 @@ def keep_stdout_to_ourselves() -> None:
 
 
 def say_error(text: str) -> None:
-    """Write to standard error, whatever became of it."""
+    """Write to standard error, even if it is closed."""
     try:
         sys.stderr.write(harmless(text) + "\n")
         sys.stderr.flush()
@@ -105,7 +105,7 @@ def write(text: str) -> None:
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the lines of a table, columns as wide as they need to be, cells from anywhere."""
+    """Return the lines of a table; columns are as wide as necessary, cells may have any text."""
     rows = [[plain(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=False)]
     return [
@@ -115,7 +115,7 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def drop_output() -> None:
-    """Lead standard output to nowhere: its reader has gone, and nobody shall trip over that."""
+    """Discard further standard output: its reader is gone, which must not cause errors."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)

@@ -1,12 +1,13 @@
-"""Text from outside made harmless: it can neither control a terminal nor hide in it.
+"""Sanitizing text from outside, so that it can neither control a terminal nor hide in it.
 
-What cannot be seen, or changes how its neighbours are seen, is replaced by one visible character
-of one cell: control characters by their pictures (U+2400 and on), all else by U+FFFD. That is
+Characters that are invisible, or that change how others are displayed, are each replaced by one
+visible character of one cell: control characters by their pictures (U+2400 and following), all
+others by U+FFFD. These are
 
-- the control characters C0, DEL and C1, and the separators of lines and paragraphs,
-- what turns the direction of writing, and what takes no room: U+200B, U+2060, U+FEFF, fillers,
-- half characters (surrogates), characters for private use, and those that are none,
-- joiners, variation selectors and tags, save where a language or an emoji needs them.
+- the control characters C0, DEL and C1, and the line and paragraph separators,
+- characters that change the writing direction or take no room: U+200B, U+2060, U+FEFF, fillers,
+- surrogates, private use characters and noncharacters,
+- joiners, variation selectors and tags, except where a script or an emoji needs them.
 """
 
 from __future__ import annotations
@@ -36,9 +37,9 @@ _JOINING = (
     "\u0620-\u065f\u066e-\u06d3\u06d5-\u06dc\u06de-\u06ff\u0710-\u07fa\u0840-\u0fff\u1000-\u109f"
     "\u1780-\u17b3\u17b6-\u17d3\u1820-\u18aa\u1b00-\u1bff"
 )
-"""Letters and marks of the scripts whose letters join: Arabic, Syriac, Indic, Mongolian..."""
+"""Letters and marks of scripts with joining letters: Arabic, Syriac, Indic, Mongolian..."""
 _VIRAMA = "\u094d\u09cd\u0a4d\u0acd\u0b4d\u0bcd\u0c4d\u0ccd\u0d4d\u0dca"
-"""After them a joiner may end a word."""
+"""After these a joiner may end a word."""
 _IDEOGRAPH = "\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003fffd"
 _NEEDED = "|".join(
     (
@@ -54,14 +55,14 @@ _NEEDED = "|".join(
 _PRINTABLE = re.compile(
     "[\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef]"
 )
-"""Those suspects that Python calls printable: it is the quickest to ask."""
+"""The suspects that `str.isprintable`, the fastest check, takes for printable."""
 _HIDDEN = re.compile(f"{_NEEDED}|([{_SUSPECT}])")
 
 
 def plain(text: str, limit: int | None = None) -> str:
-    """Return `text` as one line of as many characters, none of which is hidden or obeyed.
+    """Return `text` as one line of the same length, without hidden or control characters.
 
-    With a `limit`, at most that many characters of the text are looked at.
+    With a `limit`, only that many characters of the text are used.
     """
     if limit is not None:
         text = text[:limit]
@@ -69,24 +70,24 @@ def plain(text: str, limit: int | None = None) -> str:
 
 
 def plain_lines(text: str) -> str:
-    """Return `text` in the lines that it has, each of them plain."""
+    """Return `text` with its line breaks, each line sanitized by `plain`."""
     return replaced(text, lambda character: "\n" if character == "\n" else _picture(character))
 
 
 def is_plain(text: str) -> bool:
-    """Tell whether `plain` leaves this text as it is."""
+    """Return whether `plain` leaves this text unchanged."""
     return plain(text) == text
 
 
 def replaced(text: str, instead: Callable[[str], str]) -> str:
-    """Return `text` with `instead` of each character that must not be shown as it stands."""
+    """Return `text` with each unsafe character replaced by the result of `instead`."""
     if text.isprintable() and (text.isascii() or _PRINTABLE.search(text) is None):
         return text
     return _HIDDEN.sub(lambda found: instead(found[1]) if found[1] else found[0], text)
 
 
 def filled(template: str, values: Mapping[str, object]) -> str:
-    """Return a sentence of ours with values from anywhere in it, in the manner of `str.format`."""
+    """Fill a template of ours with values from anywhere, like `str.format`."""
     if not values:
         return template
     return _FILLING.vformat(template, (), values)
@@ -94,7 +95,7 @@ def filled(template: str, values: Mapping[str, object]) -> str:
 
 class _Filling(Formatter):
     def format_field(self, value: object, format_spec: str) -> str:
-        """Make harmless what a value was turned into, however the template wants it written."""
+        """Sanitize the formatted value, whatever format the template asks for."""
         return plain(format(value, format_spec))
 
 

@@ -1,4 +1,4 @@
-"""What was probably meant: the nearest known word, and the number that was typed."""
+"""Suggestions for mistyped input: the nearest known word, or the number that was meant."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 LONGEST = 100
-"""Characters of a word that are compared: anybody may send a word of any length."""
+"""How many characters of a word are compared: input may have any length."""
 
 
 def near(word: str, known: Iterable[str], *, most: int = 1, cutoff: float = 0.6) -> list[str]:
-    """Return those of the known words that come near, the nearest first."""
+    """Return the known words that are similar, the most similar first."""
     from difflib import get_close_matches  # Rarely needed, and slow to import.
 
     return get_close_matches(word[:LONGEST], list(known), n=most, cutoff=cutoff)
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Return the known word that was probably meant, empty if none comes near."""
+    """Return the known word that was probably meant, empty if none is similar."""
     return next(iter(near(word, known)), "")
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return the hint that names what was probably meant, empty if nothing comes near."""
+    """Return the hint that names what was probably meant, empty if nothing is similar."""
     meant = nearest(word, known)
     return say("did you mean {word}?", word=meant) if meant else ""
 
 
 def no_number(value: object, shown: str) -> str:
-    """Say that a number was expected; of `0,5` that a fraction is written with a point."""
+    """Say that a number was expected; for `0,5`, that a fraction is written with a point."""
     if isinstance(value, str) and (comma := _DECIMAL_COMMA.fullmatch(value.strip())):
         return say("write a fraction with a point: {mended}", mended=".".join(comma.groups()))
     return say("expected a number, got {value}", value=shown)

@@ -1,7 +1,7 @@
-"""`deck doctor`: what is there, what is missing, and how to fix it.
+"""`deck doctor`: what is installed, what is missing, and how to fix it.
 
-Each module here looks at one thing: `look` gathers plain facts, `judge` says what they mean and
-does nothing else, so that it can be tested with facts of any machine.
+Each module here examines one thing: `look` gathers plain facts, `judge` only interprets them, so
+that it can be tested with the facts of any machine.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ THINGS = (
 
 
 def examine() -> list[Finding]:
-    """Look at everything."""
+    """Examine everything."""
     found: list[Finding] = []
     for thing in THINGS:
         module = import_module(f"{__name__}.{thing}")

@@ -25,7 +25,7 @@ LOOKS = {
 
 
 def doctor_command(options: Namespace) -> int:
-    """Examine everything; 1 if something is missing that Deck cannot do without."""
+    """Examine everything; return 1 if something essential is missing."""
     findings = examine()
     if options.json:
         write(json_text([asdict(finding) for finding in findings], indent=2))
@@ -35,7 +35,7 @@ def doctor_command(options: Namespace) -> int:
 
 
 def show(findings: Iterable[Finding], paint: Paint) -> None:
-    """Write a line for each finding, and below it the mend."""
+    """Write a line for each finding, with the fix below it."""
     width = max(len(_(word)) for word, _colour in LOOKS.values())
     for finding in findings:
         _show(finding, paint, width)

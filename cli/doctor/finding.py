@@ -1,4 +1,4 @@
-"""What the doctor says about one thing: its state, and the fix if something is wrong."""
+"""One result of the doctor: a state, and the fix if something is wrong."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ class Level(str, Enum):
 
     OK = "ok"
     WARN = "warn"
-    """Something will not work, or not always."""
+    """Something will not work, or not reliably."""
     FAIL = "fail"
-    """Deck cannot do without."""
+    """Something essential is missing."""
 
 
 @dataclass(frozen=True)
@@ -21,23 +21,23 @@ class Finding:
     """One line of the doctor's report."""
 
     key: str
-    """Stable, for programs: `ros.rclpy`."""
+    """A stable key for programs: `ros.rclpy`."""
     level: Level
     text: str
     mend: str = ""
-    """What to do, empty if nothing is to be done."""
+    """The fix, empty if there is nothing to fix."""
 
 
 def ok(key: str, text: str) -> Finding:
-    """Say that something is well."""
+    """Report that something is all right."""
     return Finding(key, Level.OK, text)
 
 
 def warn(key: str, text: str, mend: str) -> Finding:
-    """Say that something will not work, or not always."""
+    """Report that something will not work, or not reliably."""
     return Finding(key, Level.WARN, text, mend)
 
 
 def fail(key: str, text: str, mend: str) -> Finding:
-    """Say that something is missing that Deck cannot do without."""
+    """Report that something essential is missing."""
     return Finding(key, Level.FAIL, text, mend)

@@ -29,7 +29,7 @@ class MediaFacts:
 
 
 def look() -> MediaFacts:
-    """Find out."""
+    """Gather the facts."""
     cameras = tuple(
         (str(path), _camera_name(path.name), os.access(path, os.R_OK | os.W_OK))
         for path in sorted(Path("/dev").glob("video[0-9]*"))
@@ -44,7 +44,7 @@ def look() -> MediaFacts:
 
 
 def judge(facts: MediaFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     found = [_camera(*camera) for camera in facts.cameras]
     if not found:
         found.append(ok("camera", _("no camera; mocks need none")))
@@ -59,7 +59,7 @@ def judge(facts: MediaFacts) -> list[Finding]:
 
 
 def cards_in(text: str) -> list[str]:
-    """Return the names of the cards in /proc/asound/cards."""
+    """Return the names of the cards listed in /proc/asound/cards."""
     return [match.group(1).strip() for match in CARD.finditer(text)]
 
 

@@ -1,6 +1,6 @@
-"""`deck check --preflight`: each device of a profile found, permitted, free, and answering.
+"""`deck check --preflight`: whether each device is found, permitted, free, and answering.
 
-Nothing moves by it: what is sent is told in `cli.preflight.answers`.
+Nothing moves: `cli.preflight.answers` says what is sent.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MEDIA = {"camera": ask_camera, "sound": ask_sound}
 def examine(
     profile: Profile, look: Callable[[], Sequence[SerialPort]] = serial_ports
 ) -> list[Finding]:
-    """Look at every device that the profile's nodes name, all at the same time."""
+    """Check all devices that the profile's nodes refer to, in parallel."""
     said = profile.document.devices
     devices = {name: said[name] for name in profile.used if name in said}
     questions: dict[str, Callable[[], tuple[str, DeviceAnswer]]] = {

@@ -1,4 +1,4 @@
-"""Which programs have a device open, as far as /proc shows."""
+"""Programs that have a device open, as far as /proc shows."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ class Holder(NamedTuple):
     name: str
 
     def __str__(self) -> str:
-        """Name it as a person would look for it."""
+        """Name it in the form in which a user would look for it."""
         return f"{self.name} (pid {self.pid})"
 
 
 def holders(device: str, proc: Path = PROC) -> list[Holder]:
-    """Return who has it open, but for this process, by pid.
+    """Return the other processes that have it open, by pid.
 
-    Who made a pseudo-terminal keeps both of its ends and is none that stands in the way.
+    The creator of a pseudo-terminal holds both of its ends and does not block it.
     """
     wanted = os.path.realpath(device)
     found = []
@@ -42,18 +42,18 @@ def _open_files(folder: Path) -> set[str]:
     try:
         return {path for descriptor in folder.iterdir() if (path := _target(descriptor))}
     except OSError:
-        return set()  # Somebody else's process, or it has ended.
+        return set()  # A process of another user, or one that has ended.
 
 
 def _target(descriptor: Path) -> str:
     try:
         return str(descriptor.readlink())
     except OSError:
-        return ""  # Closed meanwhile.
+        return ""  # Closed in the meantime.
 
 
 def _name(folder: Path) -> str:
-    """Return what the process is called; a Python node by its title."""
+    """Return the name of the process; for a Python node, its title."""
     try:
         words = (folder / "cmdline").read_bytes().split(b"\0")
         name = os.path.basename(words[0].decode(errors="replace"))  # noqa: PTH119

@@ -1,4 +1,4 @@
-"""A port that was opened for questions: bytes in and out, each with a deadline."""
+"""A port opened for a check: bytes in and out, each with a deadline."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
-"""What pyserial raises when a cable is pulled."""
+"""The exceptions that pyserial raises when a cable is unplugged."""
 _READ_S, _WRITE_S = 0.05, 0.3
 _MOST = 4096
 
 
 class OpenPort:
-    """An open port, to be closed."""
+    """An open port; must be closed."""
 
     def __init__(self, path: str, baud: int) -> None:
-        """Open it for this program alone.
+        """Open it exclusively.
 
         Raises:
-            OSError, ValueError: if that cannot be.
+            OSError, ValueError: if that is not possible.
         """
         self.baud = baud
         self._port = serial.Serial(
@@ -33,15 +33,15 @@ class OpenPort:
         )
 
     def close(self) -> None:
-        """Give it back."""
+        """Close it."""
         with contextlib.suppress(*BAD):
             self._port.close()
 
     def hear(self, seconds: float, enough: Callable[[bytes], bool]) -> bytes:
-        """Return what comes within so many seconds; sooner once `enough`, asked of each piece.
+        """Return the data of so many seconds; sooner if `enough` is true for a piece of it.
 
         Raises:
-            OSError: if the device goes.
+            OSError: if the device disappears.
         """
         end_s, heard = time.monotonic() + seconds, b""
         try:
@@ -56,10 +56,10 @@ class OpenPort:
         return heard
 
     def say(self, data: bytes) -> None:
-        """Send, whether or not anybody takes it.
+        """Send data, whether or not it is received.
 
         Raises:
-            OSError: if the device goes.
+            OSError: if the device disappears.
         """
         try:
             with contextlib.suppress(serial.SerialTimeoutException):
