@@ -1,4 +1,4 @@
-"""Measurements, side by side in one run; nothing here is a test."""
+"""Measurements, with the things compared in the same run; nothing here is a test."""
 
 import atexit
 import os
@@ -6,6 +6,6 @@ import shutil
 import tempfile
 
 if "DECK_STATE_DIR" not in os.environ:
-    # A stop that is measured must not hold anybody's robot afterwards.
+    # An emergency stop that is measured must not stay in force for the user's robot.
     os.environ["DECK_STATE_DIR"] = tempfile.mkdtemp(prefix="deck-bench-")
     atexit.register(shutil.rmtree, os.environ["DECK_STATE_DIR"], ignore_errors=True)

@@ -1,8 +1,9 @@
 """Run measurements one after the other and write bench/RESULTS.md: `python -m bench [NAME...]`.
 
-On a machine that does nothing else. If it is a virtual one, the results tell how much its host
-kept from it meanwhile: a stalled core makes everything slow. Where two things are compared they
-take turns in one run. Named ones are measured anew, the others' results stay.
+Use a machine that does nothing else. On a virtual machine the results include the CPU time that the
+host withheld (steal time), since a stalled core slows everything down. Things that are compared
+take turns in the same run. Only the named measurements are repeated; the results of the others
+stay.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ MEASUREMENTS = {
 
 
 def main() -> int:
-    """Measure, tell, and write; return 1 if a measurement broke off, 2 for an unknown name."""
+    """Measure, print, and write; return 1 if a measurement failed, 2 for an unknown name."""
     wanted = sys.argv[1:] or list(MEASUREMENTS)
     if unknown := set(wanted) - set(MEASUREMENTS):
         print(f"no such measurement: {', '.join(unknown)}", file=sys.stderr)
@@ -67,7 +68,7 @@ def main() -> int:
 
 
 def head() -> str:
-    """What was measured, and what was not."""
+    """Return the head of the page: what was measured, and what was not."""
     machine = f"{os.cpu_count()} cores, Python {platform.python_version()}, {platform.system()}"
     return (
         f"# What Deck costs\n\nWritten by `python -m bench` on a machine with {machine}, on mocks; "
@@ -76,7 +77,7 @@ def head() -> str:
 
 
 def known_sections() -> dict[str, str]:
-    """Title to text of what was measured before, in the order of `MEASUREMENTS`."""
+    """Return title to text of the previous results, in the order of `MEASUREMENTS`."""
     known = {}
     if RESULTS.exists():
         for section in RESULTS.read_text().split("\n## ")[1:]:

@@ -1,7 +1,7 @@
-"""What a person would write first: subscriptions to the load in a SingleThreadedExecutor.
+"""The obvious first solution: subscriptions to the load in a SingleThreadedExecutor.
 
-`python -m bench.bare DOMAIN` answers each line on stdin with the rate of each topic since the line
-before, as JSON.
+`python -m bench.bare DOMAIN` answers each line on stdin with the rates of the topics since the
+previous line, as JSON.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from bench.load import IMAGE, RATES_HZ
 
 
 def main() -> None:
-    """Count what comes until stdin ends."""
+    """Count messages until stdin is closed."""
     context = Context()
     context.init(args=[], domain_id=int(sys.argv[1]))
     node = Node("bare", context=context)

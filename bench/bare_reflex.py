@@ -1,7 +1,7 @@
-"""What a person would write first: one loop that reads the sonar and drives the Pico.
+"""The obvious first solution: one loop that reads the sonar and drives the Pico.
 
-`python -m bench.bare_reflex SONAR PICO`: 50 drive lines a second, a stop at once while the distance
-is under 0.5 m. No ROS, no reconnection, no other commands.
+`python -m bench.bare_reflex SONAR PICO`: 50 drive lines per second, and an immediate stop while the
+distance is below 0.5 m. No ROS, no reconnection, no other commands.
 """
 
 from __future__ import annotations

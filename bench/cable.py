@@ -1,6 +1,6 @@
-"""A cable pulled while the robot drives, and put back: when it stands, and when it drives again.
+"""Unplugging a cable while the robot drives, and plugging it in: time to stop and to drive again.
 
-`python -m bench.cable` prints a table. Nobody touches anything but the cable; somebody commands all
+`python -m bench.cable` prints a table. Only the cable is touched; a commander sends commands all
 the time.
 """
 
@@ -29,7 +29,7 @@ GOAL_S = 3.0
 def pull(
     line: Line, pico: Pico, stands: Callable[[float], float | None] | None, count: int
 ) -> tuple[list[float], list[float]]:
-    """Seconds from the pull until it stands, and from putting it back until it drives."""
+    """Return seconds from unplugging until it stands, and from plugging in until it drives."""
     dice = random.Random(3)
     stood, drove = [], []
     for _ in range(count):
@@ -46,12 +46,12 @@ def pull(
 
 
 def row(name: str, seconds: Sequence[float], goal: str) -> str:
-    """One line of the table."""
+    """Return one line of the table."""
     return f"| {name} | {statistics.median(seconds):.2f} | {max(seconds):.2f} | {goal} |"
 
 
 def main() -> None:
-    """Pull both cables, and print."""
+    """Unplug both cables, and print the results."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         with (

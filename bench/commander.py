@@ -1,4 +1,4 @@
-"""Somebody who wants to drive: 0.3 m/s ahead on /drive, 10 times a second, until SIGINT."""
+"""A commander: publishes 0.3 m/s ahead on /drive, 10 times per second, until SIGINT."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rclpy.executors import ExternalShutdownException
 
 
 def main() -> None:
-    """Command until interrupted."""
+    """Publish commands until interrupted."""
     rclpy.init()
     node = rclpy.create_node("commander")
     publisher = node.create_publisher(AckermannDriveStamped, "/drive", 10)

@@ -1,4 +1,4 @@
-"""The robot's nodes, as profiles/robot.yaml starts them, on emulated devices; and a commander."""
+"""The robot's nodes as started by profiles/robot.yaml, on emulated devices, and a commander."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LONGEST_S = 60.0
 
 
 def environment(domain: int = DOMAIN) -> dict[str, str]:
-    """The environment of every process here."""
+    """Return the environment for all processes here."""
     env = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
     set_discovery(env, "localhost")
     return {**env, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
@@ -34,7 +34,7 @@ def environment(domain: int = DOMAIN) -> dict[str, str]:
 
 @contextmanager
 def running(argv: Sequence[str], domain: int = DOMAIN) -> Iterator[subprocess.Popen[bytes]]:
-    """A process that is ended by SIGTERM: what a shell starts with `&` ignores SIGINT."""
+    """Run a process and end it by SIGTERM: background processes of a shell ignore SIGINT."""
     process = subprocess.Popen(
         list(argv),
         cwd=ROOT,
@@ -54,7 +54,7 @@ def running(argv: Sequence[str], domain: int = DOMAIN) -> Iterator[subprocess.Po
 def nodes(
     folder: Path, names: Sequence[str] = CHAIN, **params: int
 ) -> Iterator[dict[str, subprocess.Popen[bytes]]]:
-    """Nodes of the robot on the devices in `folder`; `params` are for those that know them."""
+    """Run nodes of the robot on the devices in `folder`; each gets the `params` it knows."""
     specs = load_profile(ROOT / "profiles" / "robot.yaml").nodes
     with ExitStack() as stack:
         started = {}
@@ -71,14 +71,14 @@ def nodes(
 
 @contextmanager
 def commander() -> Iterator[None]:
-    """Somebody who wants to drive ahead."""
+    """Run a commander that drives ahead."""
     with running([sys.executable, "-m", "bench.commander"]):
         yield
 
 
 @contextmanager
 def lesson_9() -> Iterator[None]:
-    """The whole of lesson 9 beside, in a domain of its own."""
+    """Run all of lesson 9 alongside, in its own domain."""
     domain = DOMAIN + 1
     with running([sys.executable, "-m", "tui", "run", "09-brain", "--domain", str(domain)], domain):
         time.sleep(5.0)
@@ -88,7 +88,7 @@ def lesson_9() -> Iterator[None]:
 def wait_for(
     found: Callable[[float], float | None], since_s: float, longest_s: float = LONGEST_S
 ) -> float:
-    """Wait for a line that came after `since_s`; when it came is returned."""
+    """Wait for a line that arrives after `since_s`; return the time of its arrival."""
     while (at_s := found(since_s)) is None:
         if time.monotonic() - since_s > longest_s:
             raise RuntimeError(f"nothing within {longest_s:g} s")
@@ -97,12 +97,12 @@ def wait_for(
 
 
 def percentile(values: Sequence[float], share: float) -> float:
-    """The value that so large a share of the values, 0 to 1, do not exceed."""
+    """Return the value that this share of the values, 0 to 1, does not exceed."""
     return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
 def row(name: str, seconds: Sequence[float], *goals_ms: float) -> str:
-    """One line of a table: median, 99th percentile and longest in ms, and the goals."""
+    """Return a line of a table: median, 99th percentile and maximum in ms, and the goals."""
     median, late = statistics.median(seconds), percentile(seconds, 0.99)
     figures = " | ".join(f"{1000 * value:.1f}" for value in (median, late, max(seconds)))
     return f"| {name} | {figures} | {' / '.join(f'{goal:g}' for goal in goals_ms) or '-'} |"

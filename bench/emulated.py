@@ -1,4 +1,4 @@
-"""The devices of the robot as benches play them: on pseudo-terminals, every line with its time.
+"""Emulated devices of the robot, on pseudo-terminals; every line is recorded with its time.
 
 Times are `time.monotonic()`, taken right after a read and right before a write.
 """
@@ -32,7 +32,7 @@ FAR_M, NEAR_M = 3.0, 0.3
 
 
 class Line:
-    """One serial line behind a name that stays."""
+    """A serial line under a permanent name."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -41,7 +41,7 @@ class Line:
         self.plug()
 
     def plug(self) -> None:
-        """Be there."""
+        """Connect the device."""
         ours, theirs = pty.openpty()
         tty.setraw(theirs)
         os.set_blocking(ours, False)
@@ -50,7 +50,7 @@ class Line:
             self.path.symlink_to(os.ttyname(theirs))
 
     def unplug(self) -> None:
-        """Be gone, as if the cable was pulled."""
+        """Disconnect the device, as if the cable was unplugged."""
         with self._lock:
             if self._ends is not None:
                 self.path.unlink()
@@ -59,7 +59,7 @@ class Line:
                 self._ends = None
 
     def wait(self, seconds: float) -> None:
-        """Wait until something has come, or for so long."""
+        """Wait until data has arrived, at most this long."""
         ends = self._ends
         if ends is None:
             time.sleep(seconds)
@@ -68,20 +68,20 @@ class Line:
                 select.select([ends[0]], [], [], max(0.0, seconds))
 
     def read(self) -> bytes:
-        """What has come, most often nothing."""
+        """Return the data that has arrived, usually nothing."""
         with self._lock, contextlib.suppress(OSError):
             return os.read(self._ends[0], 4096) if self._ends else b""
         return b""
 
     def write(self, data: bytes) -> None:
-        """Send; what nobody has read for long gets lost."""
+        """Send data; if it is not read for long, it is lost."""
         with self._lock, contextlib.suppress(OSError):
             if self._ends and data:
                 os.write(self._ends[0], data)
 
 
 class Device:
-    """Lives on a thread of its own; to be used in a `with`."""
+    """A device on its own thread; use it in a `with` statement."""
 
     def __init__(self, path: Path) -> None:
         self.line = Line(path)
@@ -113,29 +113,29 @@ class Device:
 
 
 class Pico(Device):
-    """The simulated Pico; keeps every line that comes."""
+    """The simulated Pico; records every line that it receives."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
         self.heard: list[tuple[float, Message]] = []
-        """When each line came, and what it said."""
+        """The time and the message of each line."""
         self._pico = SimulatedPico(World())
         self._decoder = PicoDecoder()
 
     def driven(self, since_s: float) -> float | None:
-        """When the wheels were first told to turn after that, None if they were not."""
+        """Return the time of the first command after this to turn the wheels, None if none came."""
         return self._first(since_s, lambda line: isinstance(line, Drive) and line.left_rad_s != 0)
 
     def stopped(self, since_s: float) -> float | None:
-        """When the wheels were first told to stand after that."""
+        """Return the time of the first command after this to stop the wheels."""
         return self._first(since_s, lambda line: isinstance(line, Drive) and line.left_rad_s == 0)
 
     def halted(self, since_s: float) -> float | None:
-        """When the emergency stop first came after that."""
+        """Return the time of the first emergency stop after this."""
         return self._first(since_s, lambda line: isinstance(line, Halt))
 
     def released(self, since_s: float) -> float | None:
-        """When its release first came after that."""
+        """Return the time of the first release of the emergency stop after this."""
         return self._first(since_s, lambda line: isinstance(line, Release))
 
     def _first(self, since_s: float, fits: Callable[[Message], bool]) -> float | None:
@@ -166,7 +166,7 @@ class Sonar(Device):
         super().__init__(path)
         self.metres = FAR_M
         self.told_s: dict[float, float] = {}
-        """When each distance was told for the first time since this was emptied."""
+        """When each distance was first sent since this was cleared."""
 
     def _step(self) -> None:
         metres = self.metres

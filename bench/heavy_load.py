@@ -1,7 +1,8 @@
-"""More than a lesson has: `python -m bench.heavy_load DOMAIN many|cloud`, until stdin ends.
+"""A heavier load than a lesson: `python -m bench.heavy_load DOMAIN many|cloud`.
 
-`many` is a hundred Float32 topics at 100 Hz, `cloud` a PointCloud2 of 5 MB and a number, both at
-10 Hz. Messages are serialized beforehand, and late ones are caught up: the mean rates are exact.
+It publishes until stdin is closed. `many` is a hundred Float32 topics at 100 Hz, `cloud` a
+PointCloud2 of 5 MB and a number, both at 10 Hz. Messages are serialized in advance, and delays are
+made up for, so the mean rates are exact.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ POINT_BYTES = 16
 
 
 def cloud() -> PointCloud2:
-    """Return a cloud of points anywhere within ten metres."""
+    """Return a cloud of random points within ten metres."""
     fields = [
         PointField(name=name, offset=4 * place, datatype=PointField.FLOAT32, count=1)
         for place, name in enumerate(("x", "y", "z", "intensity"))
@@ -47,7 +48,7 @@ def cloud() -> PointCloud2:
 def publish(
     lines: list[tuple[Publisher, list[bytes]]], per_s: float, ended: threading.Event
 ) -> None:
-    """Publish in turn, so many messages a second all together."""
+    """Publish the lines in turn, `per_s` messages per second in total."""
     begun_s = time.monotonic()
     for number in count():
         while (wait_s := begun_s + number / per_s - time.monotonic()) > 0:
@@ -59,7 +60,7 @@ def publish(
 
 
 def main() -> None:
-    """Publish until stdin ends."""
+    """Publish until stdin is closed."""
     context = Context()
     context.init(args=[], domain_id=int(sys.argv[1]))
     node = Node("heavy_load", context=context, enable_rosout=False, start_parameter_services=False)

@@ -1,7 +1,7 @@
 """A PointCloud2 of 5 MB at 10 Hz on the Topics screen: `python -m bench.large_messages`.
 
-The cursor goes to the cloud, stays while a few messages come, and leaves it again: told is the
-longest that a key waits for its answer. Goal: 200 ms.
+The cursor moves to the cloud, stays for a few messages, and leaves it again. The result is the
+longest time from a key press to its effect. Goal: 200 ms.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from tests.e2e.terminal import Terminal
 DOMAIN = os.environ.get("BENCH_DOMAIN", "82")
 VISITS = 15
 STAY_S = 0.97
-"""Not in step with the messages, nor with the screen's updates."""
+"""Not synchronous with the messages or the screen's updates."""
 
 
 def answered_ms(terminal: Terminal, key: str, topic: str) -> float:
-    """From pressing a key to the mark on the topic."""
+    """Return the time from a key press until the topic is selected."""
     started = time.monotonic()
     terminal.press(key)
     while marked(terminal) != topic:

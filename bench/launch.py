@@ -1,9 +1,9 @@
-"""Lesson 9 started by Deck against the same nodes started with `&` in a shell, turn by turn.
+"""Starting lesson 9 with Deck, compared with starting the same nodes by `&` in a shell, in turns.
 
-`python -m bench.launch` prints the time until all nodes are in the ROS graph, as an
-observer sees it that was there before, the CPU time used until then, and the memory 5 s later.
-All of Deck's own processes are counted, client or screen included; memory is also given of the
-nodes alone. `deck run` starts from nothing; in the list of lessons Deck has had time to get ready.
+`python -m bench.launch` prints the time until all nodes are in the ROS graph, as seen by an
+observer that was there before, the CPU time used until then, and the memory 5 s later. All of
+Deck's own processes are counted, including the client or screen; memory is also given for the nodes
+alone. `deck run` starts from scratch; with the list of lessons open, Deck has had time to prepare.
 """
 
 from __future__ import annotations
@@ -37,24 +37,24 @@ DOMAIN = int(os.environ.get("BENCH_DOMAIN", "79"))
 ROUNDS = int(os.environ.get("BENCH_ROUNDS", "7"))
 SETTLE_S = 5.0
 READING_S = 4.0
-"""What a person takes at least to read the list of lessons."""
+"""The least time that a person needs to read the list of lessons."""
 SHELL, DECK, PICKER = "`&` in a shell", "deck run", "Enter in the picker"
 
 
 @dataclass(frozen=True)
 class Started:
-    """A start that has begun."""
+    """A start in progress."""
 
     pid: int
     began_s: float
     """Monotonic."""
     used_s: float = 0.0
-    """CPU time used before that."""
+    """CPU time used before the start."""
 
 
 @dataclass(frozen=True)
 class Figures:
-    """One start."""
+    """The figures of one start."""
 
     ready_s: float
     cpu_s: float
@@ -63,7 +63,7 @@ class Figures:
 
 
 def environment() -> dict[str, str]:
-    """Return the environment of every process here."""
+    """Return the environment for all processes here."""
     return {
         **os.environ,
         "ROS_DOMAIN_ID": str(DOMAIN),
@@ -73,9 +73,9 @@ def environment() -> dict[str, str]:
 
 @contextmanager
 def watch(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
-    """Run the observer, which announces itself quickly, so as to see quickly.
+    """Run the observer, which announces itself often, so that it discovers nodes quickly.
 
-    A new one each time: who has seen nodes of the turn before may still believe in them.
+    Each start has a new one: an old observer may still see nodes of the previous turn.
     """
     quick = environment()
     set_discovery(quick, "localhost")
@@ -96,7 +96,7 @@ def watch(names: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
 
 @contextmanager
 def by_shell(profile: Profile) -> Iterator[Started]:
-    """Start the nodes as one would by hand, all at once."""
+    """Start the nodes as a user would by hand, all at once."""
     lines = [f"{shlex.join(node.argv())} &" for node in profile.nodes.values()]
     began = time.monotonic()
     process = subprocess.Popen(
@@ -116,7 +116,7 @@ def by_shell(profile: Profile) -> Iterator[Started]:
 
 @contextmanager
 def by_deck(profile: Profile) -> Iterator[Started]:
-    """Start the profile by `deck run`."""
+    """Start the profile with `deck run`."""
     began = time.monotonic()
     process = subprocess.Popen(
         [sys.executable, "-m", "tui", "run", str(profile.path), "--domain", str(DOMAIN)],
@@ -132,7 +132,7 @@ def by_deck(profile: Profile) -> Iterator[Started]:
 
 @contextmanager
 def by_picker(profile: Profile) -> Iterator[Started]:
-    """Press Enter in the list of lessons, which opens on this one as if it was the last."""
+    """Press Enter in the list of lessons, in which this lesson is preselected as the last one."""
     argv = [sys.executable, "-m", "tui", "--domain", str(profile.domain), "--lang", "en"]
     config = tempfile.TemporaryDirectory()
     settings = Path(config.name) / "deck" / "settings.json"
@@ -157,7 +157,7 @@ STARTERS = {SHELL: by_shell, DECK: by_deck, PICKER: by_picker}
 
 
 def descendants(pid: int) -> list[int]:
-    """Return a process and all below it."""
+    """Return a process and all its descendants."""
     table = list(processes())
     found = [pid]
     for parent in found:
@@ -166,13 +166,13 @@ def descendants(pid: int) -> list[int]:
 
 
 def is_node(pid: int) -> bool:
-    """Whether a process is a node, and not a helper of Deck's or the shell."""
+    """Whether a process is a node, and not the shell or a process of Deck."""
     words = Path(f"/proc/{pid}/cmdline").read_bytes()
     return b"nodes." in words and not words.startswith(b"bash")
 
 
 def measure(kind: str, profile: Profile) -> Figures:
-    """Start once."""
+    """Measure one start."""
     with watch(list(profile.nodes)) as watcher:
         assert watcher.stdout is not None
         with STARTERS[kind](profile) as started:

@@ -1,4 +1,4 @@
-"""Somebody who listens to all that the serial drivers publish, until SIGINT."""
+"""A listener that subscribes to everything the serial drivers publish, until SIGINT."""
 
 from __future__ import annotations
 

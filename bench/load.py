@@ -1,8 +1,8 @@
 """The load of the Topics screen: ten Float32 topics at 50 Hz and one 640x480 image at 30 Hz.
 
-`python -m bench.load DOMAIN` publishes until stdin ends. No message is like the one before; few
-are serialized, in turn, and late ones are caught up: the mean rates are exact and the load itself
-is cheap.
+`python -m bench.load DOMAIN` publishes until stdin is closed. No message equals the previous one; a
+few serialized messages are sent in turn, and delays are made up for, so the mean rates are exact
+and the load itself is cheap.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def image(grey: int) -> Image:
 def publish(
     publishers: dict[str, tuple[Publisher, Iterator[bytes]]], ended: threading.Event
 ) -> None:
-    """Publish each at its rate until the end, the topics out of step with each other."""
+    """Publish each topic at its rate until the end, with different phases."""
     begun_s = time.monotonic()
     due = [(begun_s + 0.0017 * n, topic) for n, topic in enumerate(publishers)]
     heapq.heapify(due)
@@ -54,7 +54,7 @@ def publish(
 
 
 def main() -> None:
-    """Publish until stdin ends."""
+    """Publish until stdin is closed."""
     context = Context()
     context.init(args=[], domain_id=int(sys.argv[1]))
     node = Node("load", context=context, enable_rosout=False, start_parameter_services=False)

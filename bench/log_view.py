@@ -1,8 +1,8 @@
-"""How quick the log view stays under a flood: `python -m bench.log_view [SECONDS]`.
+"""The responsiveness of the log view under a flood: `python -m bench.log_view [SECONDS]`.
 
-A headless app of 120x40 cells gets 10 000 lines/s in 20 batches a second, as folded and as
-unfolded lines, following and paused, in English and in Cyrillic. Told are the longest time in which
-the loop did not answer, the share of a core, and what a line costs.
+A headless app of 120x40 cells gets 10 000 lines/s in 20 batches per second, folded and unfolded,
+following and paused, in English and in Russian. The results are the longest time that the event
+loop was blocked, the CPU share of one core, and the cost of a line.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TEXTS = {
 
 
 class FloodApp(App[None]):
-    """Nothing but the log."""
+    """An app with nothing but the log."""
 
     def compose(self) -> ComposeResult:
         """The log fills the screen."""
@@ -37,7 +37,7 @@ class FloodApp(App[None]):
 
 
 async def longest_gap(stop: asyncio.Event) -> float:
-    """Seconds that the loop was away at most, beyond the millisecond asked for."""
+    """Return the longest time in s that the loop was blocked, beyond the requested millisecond."""
     longest = 0.0
     while not stop.is_set():
         before = time.perf_counter()
@@ -47,7 +47,7 @@ async def longest_gap(stop: asyncio.Event) -> float:
 
 
 async def flood(view: LogView, text: str, seconds: float) -> int:
-    """Append until the time is over; return how many lines."""
+    """Append lines until the time is over; return how many."""
     size = LINES_PER_S // BATCHES_PER_S
     start, seq = time.perf_counter(), 0
     for batch in range(int(seconds * BATCHES_PER_S)):
@@ -63,7 +63,7 @@ async def flood(view: LogView, text: str, seconds: float) -> int:
 
 
 async def measure(name: str, seconds: float, *, fold: bool, follow: bool, search: str = "") -> None:
-    """One flood, one line of figures."""
+    """Run one flood and print its figures."""
     app = FloodApp()
     async with app.run_test(size=(120, 40)) as pilot:
         view = app.query_one(LogView)
@@ -96,7 +96,7 @@ async def measure(name: str, seconds: float, *, fold: bool, follow: bool, search
 
 
 async def main(seconds: float) -> None:
-    """All kinds of floods."""
+    """Run all kinds of floods."""
     for name in TEXTS:
         await measure(name, seconds, fold=True, follow=True)
     await measure("Cyrillic", seconds, fold=False, follow=True)

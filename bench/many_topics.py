@@ -1,7 +1,7 @@
 """Topics open under a hundred Float32 topics at 100 Hz: `python -m bench.many_topics`.
 
-Told are how long an arrow key waits for its answer, the worst error among the rates in sight, and
-what it costs. Goals: 100 ms in the median, 2 %.
+The results are the time from an arrow key to its effect, the largest error of the rates on the
+screen, and the CPU load. Goals: a median of 100 ms, 2 %.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ROUNDS = 2
 
 
 def key_delays_ms(terminal: Terminal) -> list[float]:
-    """From pressing an arrow key in the table of topics to the mark in the other row."""
+    """Return the times from pressing an arrow key to the selection of the next topic."""
     delays = []
     for press in range(PRESSES):
         before = marked(terminal)
@@ -42,17 +42,17 @@ def key_delays_ms(terminal: Terminal) -> list[float]:
 
 
 def marked(terminal: Terminal) -> str:
-    """Name of the topic that the cursor stands on; empty while it is being drawn."""
+    """Return the name of the topic under the cursor; empty while it is being drawn."""
     rows = (row.split() for row in terminal.text().splitlines() if row.startswith("▶"))
     return next((row[1] for row in rows if len(row) > 1), "")
 
 
 def worst_error_percent(text: str) -> float:
-    """Of the rates on the screen; 100 for one that is missing."""
+    """Return the largest error of the rates on the screen; 100 for a missing rate."""
     errors = []
     for line in text.splitlines():
         words = line.replace("▶", " ").split()
-        # The head of the chosen topic begins with its name too, and has two words.
+        # The heading of the selected topic also begins with its name, and has two words.
         if len(words) > 4 and words[0] in MANY:
             hz = float(words[4]) if words[4].replace(".", "").isdigit() else 0.0
             errors.append(100 * abs(hz / MANY_HZ - 1))
@@ -60,7 +60,7 @@ def worst_error_percent(text: str) -> float:
 
 
 def turn(folder: Path) -> tuple[list[float], float, float]:
-    """Delays of keys in ms, worst error in percent, and CPU in percent of a core."""
+    """Return key delays in ms, the largest error in percent, and CPU in percent of a core."""
     terminal = open_topics(folder, MANY[3], DOMAIN)
     try:
         time.sleep(WARM_UP_S)

@@ -1,4 +1,4 @@
-"""How long every lesson node takes from a signal to its end; the promise is 1 s.
+"""The time that each lesson node takes from a signal to its end; 1 s is promised.
 
 `python -m bench.node_ends` sends SIGINT and SIGTERM to each, then to the head in the middle of a
 movement, and prints the median and the longest time of `BENCH_ROUNDS` rounds.
@@ -18,17 +18,17 @@ DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
 ROUNDS = int(os.environ.get("BENCH_ROUNDS", "3"))
 ROOT = Path(__file__).parents[1]
 SETTLED_S = 1.0
-"""After its first word a node finds the others, and its timers run."""
+"""After its first output a node discovers the others, and its timers start."""
 
 
 def modules() -> list[str]:
-    """Every lesson node."""
+    """Return all lesson nodes."""
     files = sorted((ROOT / "nodes").glob("[!_]*.py"))
     return [f"nodes.{file.stem}" for file in files]
 
 
 def measure(module: str, number: signal.Signals, *arguments: str, moving: bool = False) -> float:
-    """Start a node, wait until it works, send the signal; the seconds until its end."""
+    """Start a node, wait until it works, send the signal; return the seconds until its end."""
     environment = {
         **os.environ,
         "ROS_DOMAIN_ID": DOMAIN,
@@ -54,7 +54,7 @@ def measure(module: str, number: signal.Signals, *arguments: str, moving: bool =
 
 
 def turn_head(environment: dict[str, str]) -> None:
-    """Ask the head for a movement and do not wait for its end."""
+    """Request a movement of the head, without waiting for its end."""
     program = (
         "import rclpy, time; from example_interfaces.srv import AddTwoInts as S; rclpy.init();"
         "n = rclpy.create_node('asker'); c = n.create_client(S, 'set_head_position');"
@@ -64,7 +64,7 @@ def turn_head(environment: dict[str, str]) -> None:
 
 
 def report(name: str, times_s: list[float]) -> None:
-    """One line of the table."""
+    """Print one line of the table."""
     median, longest = statistics.median(times_s), max(times_s)
     print(f"{name:32} median {median:5.2f} s   longest {longest:5.2f} s")
 

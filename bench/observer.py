@@ -1,7 +1,6 @@
-"""The observer against a bare rclpy script on the same topics, turn by turn in one run.
+"""The observer compared with a bare rclpy script on the same topics, in turns in one run.
 
-`python -m bench.observer` prints a table of CPU, of the worst error among the eleven rates, and of
-memory.
+`python -m bench.observer` prints a table of CPU, the largest error of the eleven rates, and memory.
 """
 
 from __future__ import annotations
@@ -29,12 +28,12 @@ SUBJECTS = {
     "observer, every 0.25 s": ["bench.observing", DOMAIN, "0.25"],
     "observer, nobody looks": ["bench.observing", DOMAIN, "0.1", "idle"],
 }
-"""The first is what the others are compared with."""
+"""The first is the baseline for the others."""
 
 
 @dataclass(frozen=True)
 class Figures:
-    """One turn of one subject."""
+    """The figures of one turn of one subject."""
 
     cpu_percent: float
     rate_error_percent: float
@@ -43,7 +42,7 @@ class Figures:
 
 @contextmanager
 def program(module: str, *args: str) -> Iterator[subprocess.Popen[str]]:
-    """A module in a process of its own that has said `ready`, ended by the end of its stdin."""
+    """Run a module as a process until it has printed `ready`; closing its stdin ends it."""
     process = subprocess.Popen(
         [sys.executable, "-m", module, *args],
         env={**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"},
@@ -60,7 +59,7 @@ def program(module: str, *args: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def rates(process: subprocess.Popen[str]) -> dict[str, float]:
-    """Ask a subject for the rates it has seen."""
+    """Ask a subject for the rates it has measured."""
     assert process.stdin is not None
     assert process.stdout is not None
     process.stdin.write("\n")
@@ -69,7 +68,7 @@ def rates(process: subprocess.Popen[str]) -> dict[str, float]:
 
 
 def measure(subject: list[str]) -> Figures:
-    """Let one subject have its turn."""
+    """Measure one subject."""
     with program(*subject) as process:
         time.sleep(WARM_UP_S)
         rates(process)

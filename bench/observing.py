@@ -1,7 +1,7 @@
-"""Deck's observer on the load, all topics measured and one echoed, with no screen.
+"""Deck's observer on the load, without a screen: all topics measured, one echoed.
 
-`python -m bench.observing DOMAIN PERIOD_S` answers each line on stdin with the rates it shows, as
-JSON. With a third argument `idle` nobody looks at anything.
+`python -m bench.observing DOMAIN PERIOD_S` answers each line on stdin with its rates, as JSON. With
+a third argument `idle` nothing is measured or echoed.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from graph.observer.observer import Observer
 
 
 def main() -> None:
-    """Observe until stdin ends."""
+    """Observe until stdin is closed."""
     newest = [GraphUpdate(0.0)]
 
     def take(update: GraphUpdate) -> None:

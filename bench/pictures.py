@@ -1,8 +1,8 @@
 """A 1280x720 camera at 30 Hz on the Topics screen, in a real terminal: `python -m bench.pictures`.
 
-Ten pictures a second are to be shown at 40 % of one core or less. Every picture carries its number
-as five black or white squares along its top; a picture counts when another number stands on the
-terminal. The rest is a still room in a camera's noise, and one thing that moves through it.
+The goal is ten pictures per second at no more than 40 % of one core. Every picture carries its
+number as five black or white squares along its top edge; a picture counts when the number on the
+terminal changes. The rest is a still room with camera noise and one moving object.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ ROUNDS = 3
 
 
 def camera(domain: str) -> None:
-    """Be the camera: publish numbered pictures until stdin ends."""
+    """Act as the camera: publish numbered pictures until stdin is closed."""
     from rclpy.context import Context
     from rclpy.node import Node
     from rclpy.serialization import serialize_message
@@ -65,7 +65,7 @@ def camera(domain: str) -> None:
 
 
 def pictures() -> Iterator[NDArray[np.uint8]]:
-    """Yield the numbered pictures, each of its own noise."""
+    """Yield the numbered pictures, each with its own noise."""
     random = np.random.default_rng(1)
     across, down = np.linspace(0, 160, WIDTH), np.linspace(20, 70, HEIGHT)
     room = (across[None, :, None] + down[:, None, None] + (0, 5, 10)).astype(np.uint8)
@@ -80,7 +80,7 @@ def pictures() -> Iterator[NDArray[np.uint8]]:
 
 
 def picture_row(terminal: Terminal) -> tuple[int, int, int] | None:
-    """The first row of the picture below the head, its first column and its columns."""
+    """Return the first row of the picture below the heading, its first column and its width."""
     lines = terminal.text().splitlines()
     head = next((y for y, line in enumerate(lines) if line.startswith(TOPIC)), None)
     if head is None:
@@ -95,7 +95,7 @@ def picture_row(terminal: Terminal) -> tuple[int, int, int] | None:
 
 
 def turn(terminal: Terminal) -> tuple[float, float, float]:
-    """Pictures a second, CPU of screen and supervisor in percent of a core, kB/s."""
+    """Return pictures per second, CPU of screen and supervisor in percent of a core, and kB/s."""
     pids = screen_processes(terminal)
     cpu, sent, begun = cpu_s(pids), terminal.received, time.monotonic()
     place = picture_row(terminal)
@@ -118,7 +118,7 @@ def turn(terminal: Terminal) -> tuple[float, float, float]:
 
 
 def main() -> None:
-    """Measure turn by turn and print."""
+    """Measure several turns and print the results."""
     turns = []
     with program("bench.pictures", DOMAIN), tempfile.TemporaryDirectory() as name:
         for _round in range(ROUNDS):
@@ -138,7 +138,7 @@ def main() -> None:
 
 
 def open_topic(folder: Path) -> Terminal:
-    """The program with the camera's topic in front."""
+    """Return the program, with the camera's topic selected."""
     profile = folder / "nothing.yaml"
     profile.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
     env = {
@@ -146,7 +146,7 @@ def open_topic(folder: Path) -> Terminal:
         "DECK_LOG_DIR": str(folder / "logs"),
         "XDG_CONFIG_HOME": str(folder / "config"),
         "XDG_STATE_HOME": str(folder / "state"),
-        "SSH_CONNECTION": "",  # Else pictures would be held to its limit.
+        "SSH_CONNECTION": "",  # Otherwise the limit over SSH would apply to pictures.
         "LANG": "C.UTF-8",
     }
     argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]

@@ -13,7 +13,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 
 def cpu_s(pids: Iterable[int]) -> float:
-    """CPU time that the processes have used so far, user and system, in seconds."""
+    """Return the CPU time that the processes have used so far, user and system, in seconds."""
     ticks = 0
     for pid in pids:
         fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
@@ -22,18 +22,18 @@ def cpu_s(pids: Iterable[int]) -> float:
 
 
 def pss_mb(pids: Iterable[int]) -> float:
-    """Proportional set size of the processes together, in megabytes (10^6 bytes)."""
+    """Return the total proportional set size of the processes, in megabytes (10^6 bytes)."""
     return sum(_pss_bytes(pid) for pid in pids) / 1e6
 
 
 def stolen_s() -> float:
-    """CPU time that the host of this virtual machine has kept from it so far, in seconds."""
+    """Return the CPU time that the host has withheld from this virtual machine, in seconds."""
     fields = Path("/proc/stat").read_text().split(maxsplit=10)
     return int(fields[8]) / TICKS_PER_S
 
 
 def children(pid: int) -> list[int]:
-    """Pids of the direct children of a process."""
+    """Return the pids of the direct children of a process."""
     found = []
     for thread in Path(f"/proc/{pid}/task").iterdir():
         found += [int(child) for child in (thread / "children").read_text().split()]
@@ -41,7 +41,7 @@ def children(pid: int) -> list[int]:
 
 
 def command(pid: int) -> str:
-    """Command line of a process, blanks between the arguments."""
+    """Return the command line of a process, with blanks between the arguments."""
     return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode().strip()
 
 
@@ -55,7 +55,7 @@ def _pss_bytes(pid: int) -> int:
 
 
 def watch_stdin() -> threading.Event:
-    """Return an event that is set once stdin has ended: whoever started this process is done."""
+    """Return an event that is set once stdin is closed, by the end of the parent's measurement."""
     ended = threading.Event()
 
     def read() -> None:

@@ -1,6 +1,6 @@
-"""Deck's recorder against a bare raw subscriber that writes the same bytes to a file.
+"""Deck's recorder compared with a bare raw subscriber that writes the same bytes to a file.
 
-`python -m bench.recording` prints a table of CPU and of messages lost, turn by turn in one run.
+`python -m bench.recording` prints a table of CPU and lost messages, measured in turns in one run.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ SUBJECTS = {
     "bare raw subscriber, bytes to a file": "bench.recorders.bare",
     "deck record": "bench.recorders.deck",
 }
-"""The first is what the other is compared with."""
+"""The first is the baseline for the other."""
 ALL_CAME_WITHIN_S = 10.0
 
 
 @dataclass(frozen=True)
 class Figures:
-    """One turn of one subject."""
+    """The figures of one turn of one subject."""
 
     cpu_percent: float
     lost: int
@@ -37,7 +37,7 @@ class Figures:
 
 
 def asked(process: subprocess.Popen[str]) -> int:
-    """Ask a program for its number."""
+    """Ask a program for its number of messages."""
     assert process.stdin is not None
     assert process.stdout is not None
     process.stdin.write("\n")
@@ -46,12 +46,12 @@ def asked(process: subprocess.Popen[str]) -> int:
 
 
 def measure(module: str, folder: Path) -> Figures:
-    """Let one subject have its turn."""
+    """Measure one subject."""
     with (
         program(module, DOMAIN, str(folder)) as subject,
         program("bench.recorders.load", DOMAIN) as load,
     ):
-        # The import of rclpy and the discovery are no part of the recording.
+        # Importing rclpy and discovery are not part of the recording.
         time.sleep(4.0)
         before_s, begun_s = cpu_s([subject.pid]), time.monotonic()
         sent = asked(load)

@@ -1,4 +1,4 @@
-"""What the screen costs on the brain lesson at 120x40, seen from outside, in a real terminal.
+"""The cost of the screen in lesson 9 at 120x40, measured from outside, in a real terminal.
 
 `python -m bench.screen` prints a table; every figure is measured in this one run.
 """
@@ -22,12 +22,12 @@ DOMAIN = int(os.environ.get("BENCH_DOMAIN", "77"))
 ROUNDS = 7
 TITLE = "One screen instead of five terminals"
 FRAME_BYTES = 2000
-"""More than switching the terminal over takes, less than any frame."""
+"""More bytes than switching the terminal takes, fewer than any frame."""
 REST_S = 30.0
 PRESSES = 30
 FLOOD_S = 30.0
 FILLING_S = 25.0
-"""Until the buffers, which are bounded, are full."""
+"""Long enough to fill the bounded buffers."""
 
 FLOOD = """
 import sys, time
@@ -52,7 +52,7 @@ while True:
 
 @contextmanager
 def deck(folder: Path, *args: str) -> Iterator[Terminal]:
-    """The program in a terminal of 120x40 with directories of its own."""
+    """Run the program in a terminal of 120x40 with its own directories."""
     env = {
         "DECK_RUN_DIR": str(folder / "run"),
         "DECK_LOG_DIR": str(folder / "logs"),
@@ -69,7 +69,7 @@ def deck(folder: Path, *args: str) -> Iterator[Terminal]:
 
 
 def first_frame(folder: Path) -> tuple[float, float, float]:
-    """Median seconds until a first frame, until the lessons, and of `import textual.app` alone."""
+    """Return median s until the first frame, until the lessons, and for `import textual.app`."""
     frames, lists, imports = [], [], []
     for _ in range(ROUNDS):
         started = time.monotonic()
@@ -77,7 +77,7 @@ def first_frame(folder: Path) -> tuple[float, float, float]:
         imports.append(time.monotonic() - started)
         started = time.monotonic()
         with deck(folder) as terminal:
-            # Looking at the screen would take CPU from who draws it.
+            # Reading the screen would take CPU from the program that draws it.
             while terminal.received < FRAME_BYTES:
                 time.sleep(0.001)
             frames.append(time.monotonic() - started)
@@ -87,13 +87,13 @@ def first_frame(folder: Path) -> tuple[float, float, float]:
 
 
 def screen_processes(terminal: Terminal) -> list[int]:
-    """The screen and its supervisor, without the spawn server and the nodes."""
+    """Return the pids of the screen and its supervisor, without spawn server and nodes."""
     screen = terminal.process.pid
     return [screen, *(pid for pid in children(screen) if "supervisor" in command(pid))]
 
 
 def at_rest(terminal: Terminal) -> tuple[float, float, float]:
-    """CPU in percent of a core, PSS in MB, and bytes to the terminal a second."""
+    """Return CPU in percent of a core, PSS in MB, and bytes per second to the terminal."""
     pids = screen_processes(terminal)
     cpu, sent, started = cpu_s(pids), terminal.received, time.monotonic()
     time.sleep(REST_S)
@@ -106,7 +106,7 @@ def at_rest(terminal: Terminal) -> tuple[float, float, float]:
 
 
 def key_delays_ms(terminal: Terminal) -> list[float]:
-    """From pressing an arrow key in the table of nodes to the mark in the other row."""
+    """Return the times from pressing an arrow key to the selection of the next node."""
     delays = []
     for press in range(PRESSES):
         before = marked_row(terminal)
@@ -122,15 +122,15 @@ def key_delays_ms(terminal: Terminal) -> list[float]:
 
 
 def marked_row(terminal: Terminal) -> int:
-    """Row of the chosen node."""
+    """Return the row of the selected node."""
     rows = terminal.text().splitlines()
     return next(number for number, row in enumerate(rows) if row.startswith("▶"))
 
 
 def flooded(folder: Path) -> tuple[list[float], float, int, int]:
-    """Key delays in ms under a flood, growth of PSS in MB, lines of the other node: written, kept.
+    """Return key delays in ms under a flood, growth of PSS in MB, lines written and kept.
 
-    The other node counts aloud, 50 lines a second, beside 10 000 lines a second.
+    The lines are those of a second node, which writes 50 lines/s beside a flood of 10 000 lines/s.
     """
     profile = folder / "flood.yaml"
     (folder / "flood.py").write_text(FLOOD)
@@ -160,7 +160,7 @@ def flooded(folder: Path) -> tuple[list[float], float, int, int]:
 
 
 def main() -> None:
-    """Measure all and print a table."""
+    """Measure everything and print a table."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         frame, listed, imported = first_frame(folder)

@@ -1,7 +1,8 @@
-"""What the serial drivers cost: two sonars of 100 frames a second and the chassis at 50 Hz.
+"""The CPU load of the serial drivers: two sonars with 100 frames/s, and the chassis at 50 Hz.
 
 `python -m bench.serial_cpu` prints a table of CPU in percent of one core, medians of several turns.
-The other nodes of the chain, a commander and drive_to_point, which hears /odom, run beside them.
+The other nodes of the chain, a commander and drive_to_point, which subscribes to /odom, run as
+well.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ WAYS = {
 
 
 def measure(folder: Path, pico: Pico, every: int, listen: bool) -> list[float]:
-    """Percent of a core of each driver."""
+    """Return the CPU load of each driver, in percent of a core."""
     listener = running([sys.executable, "-m", "bench.listener"]) if listen else nullcontext()
     beside = (*CHAIN, "drive_to_point")
     with nodes(folder, beside, every=every) as started, commander(), listener:
@@ -44,7 +45,7 @@ def measure(folder: Path, pico: Pico, every: int, listen: bool) -> list[float]:
 
 
 def measure_bare(folder: Path) -> float:
-    """Percent of a core of a loop with pyserial alone, on one sonar and the Pico."""
+    """Return the CPU load of a plain pyserial loop on one sonar and the Pico, in the same unit."""
     argv = [sys.executable, "-m", "bench.bare_reflex"]
     with running([*argv, str(folder / "tof_front"), str(folder / "pico")]) as process:
         time.sleep(SETTLE_S)
@@ -54,7 +55,7 @@ def measure_bare(folder: Path) -> float:
 
 
 def main() -> None:
-    """Take turns, and print the medians."""
+    """Measure in turns, and print the medians."""
     taken: dict[str, list[list[float]]] = {name: [] for name in WAYS}
     bare = []
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:

@@ -1,7 +1,7 @@
-"""A moving picture on a line of 64 kB/s, and keys beside it: `python -m bench.slow_line`.
+"""Moving pictures and key presses on a line of 64 kB/s: `python -m bench.slow_line`.
 
 A camera pans over a landscape, 640x480 at 15 Hz, on the Topics screen at 160x45: nearly every cell
-of the picture changes with every picture.
+changes with every picture.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 COLUMNS, ROWS = 160, 45
 LINE = 64_000
 WARM_UP_S = 15.0
-"""As long as it takes until what waits for the line is as much as it ever is."""
+"""Long enough for the queue to the line to reach its maximum."""
 MEASURE_S = 10.0
 PRESSES = 15
 BETWEEN_KEYS_S = 1.3
@@ -36,7 +36,7 @@ CASES: tuple[tuple[str, dict[str, str], int], ...] = (
 
 
 def open_picture(folder: Path, env: dict[str, str]) -> Terminal:
-    """The program with the camera's picture in front."""
+    """Return the program, with the camera's picture on the screen."""
     profile = folder / "pan.yaml"
     profile.write_text(PROFILE.format(python=sys.executable, root=ROOT, topic=TOPIC))
     own = {
@@ -59,7 +59,7 @@ def open_picture(folder: Path, env: dict[str, str]) -> Terminal:
 
 
 def key_answers_s(terminal: Terminal) -> list[float]:
-    """From F1 to the first line of the help."""
+    """Return the times from F1 to the first line of the help."""
     answers = []
     for _press in range(PRESSES):
         time.sleep(BETWEEN_KEYS_S)
@@ -73,7 +73,7 @@ def key_answers_s(terminal: Terminal) -> list[float]:
 
 
 def turn(env: dict[str, str], line: int) -> tuple[float, str, list[float]]:
-    """Bytes to the terminal a second, pictures a second if some are left out, answers to keys."""
+    """Return bytes/s to the terminal, pictures/s if some are left out, and key delays."""
     with tempfile.TemporaryDirectory() as name:
         terminal = open_picture(Path(name), env)
         try:
@@ -89,7 +89,7 @@ def turn(env: dict[str, str], line: int) -> tuple[float, str, list[float]]:
 
 
 def main() -> None:
-    """Measure case by case and print."""
+    """Measure all cases and print the results."""
     print(f"640x480 at 15 Hz at {COLUMNS}x{ROWS}; {PRESSES} presses of F1 each")
     print("| line to the terminal | kB/s | pictures a second | a key, median s | longest s |")
     print("| --- | --- | --- | --- | --- |")

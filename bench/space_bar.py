@@ -1,7 +1,7 @@
-"""From the space bar in a terminal with `deck` to the emergency stop on the wire to the Pico.
+"""The time from the space bar in `deck` to the emergency stop on the wire to the Pico.
 
-`python -m bench.space_bar` prints a table: the screen on the whole of lesson 9, with the driver of
-the chassis besides.
+`python -m bench.space_bar` prints a table: the screen runs all of lesson 9, plus the chassis
+driver.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ AGAIN_S = 1.0
 
 
 def write_profile(folder: Path) -> Path:
-    """Lesson 9 and the chassis."""
+    """Write a profile of lesson 9 plus the chassis."""
     chassis = {"run": "nodes.chassis", "params": {"port": str(folder / "pico")}}
     document = {
         "extends": str(ROOT / "profiles" / "09-brain.yaml"),
@@ -39,7 +39,7 @@ def write_profile(folder: Path) -> Path:
 
 
 def release(terminal: Terminal, pico: Pico) -> None:
-    """Release the emergency stop, as often as it takes."""
+    """Release the emergency stop, trying until it works."""
     began_s = time.monotonic()
     while pico.released(began_s) is None:
         terminal.press("ctrl+r")
@@ -49,7 +49,7 @@ def release(terminal: Terminal, pico: Pico) -> None:
 
 
 def trials(terminal: Terminal, pico: Pico, count: int) -> list[float]:
-    """Seconds from the key to the line, again and again."""
+    """Return the seconds from the key to the line, for each trial."""
     dice, taken = random.Random(2), []
     for _ in range(count):
         time.sleep(dice.uniform(0.3, 0.6))
@@ -62,7 +62,7 @@ def trials(terminal: Terminal, pico: Pico, count: int) -> list[float]:
 
 
 def main() -> None:
-    """Measure, and print."""
+    """Measure, and print the results."""
     with tempfile.TemporaryDirectory() as name, Pico(Path(name) / "pico") as pico:
         folder = Path(name)
         with deck(folder, str(write_profile(folder))) as terminal:

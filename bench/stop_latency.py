@@ -1,8 +1,8 @@
-"""From a sonar's frame under the threshold to the first drive line with speed 0 at the Pico.
+"""The time from a sonar frame below the threshold to the first drive line with speed 0 at the Pico.
 
-`python -m bench.stop_latency` prints a table. This process plays both devices, on pseudo-terminals;
-between them are the nodes of profiles/robot.yaml, beside them the whole of lesson 9. In place of
-the nodes then stands a bare loop in one process with pyserial alone, `bench.bare_reflex`.
+`python -m bench.stop_latency` prints a table. This process emulates both devices, on
+pseudo-terminals; between them are the nodes of profiles/robot.yaml, and all of lesson 9 runs as
+well. Then a bare loop in one process with pyserial only, `bench.bare_reflex`, replaces the nodes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TRIALS = int(os.environ.get("BENCH_ROUNDS", "200"))
 
 
 def trials(pico: Pico, front: Sonar, dice: random.Random, count: int) -> list[float]:
-    """Seconds from frame to line, again and again."""
+    """Return the seconds from frame to line, for each trial."""
     taken = []
     for _ in range(count):
         wait_for(pico.driven, time.monotonic())

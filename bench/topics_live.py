@@ -1,8 +1,8 @@
-"""Deck with the Topics screen open against a bare rclpy script, on the same load in one run.
+"""Deck with the Topics screen open, compared with a bare rclpy script on the same load.
 
-`python -m bench.topics_live` prints CPU (screen and supervisor, drawing included) and the worst
-error among the eleven rates as they stand on the screen; one number is echoed meanwhile, then the
-image is looked at.
+`python -m bench.topics_live` prints CPU (screen and supervisor, drawing included) and the largest
+error of the eleven rates on the screen, first while one number is echoed, then while the image is
+shown.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ROUNDS = 3
 
 
 def open_topics(folder: Path, topic: str = "/load/image", domain: str = DOMAIN) -> Terminal:
-    """The program with the Topics screen in front, once this topic is on it."""
+    """Return the program with the Topics screen open, once this topic is on it."""
     profile = folder / "nothing.yaml"
     profile.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
     env = {
@@ -46,7 +46,7 @@ def open_topics(folder: Path, topic: str = "/load/image", domain: str = DOMAIN) 
 
 
 def worst_error_percent(text: str) -> float:
-    """Of the rates on the screen; 100 for one that is missing."""
+    """Return the largest error of the rates on the screen; 100 for a missing rate."""
     shown: dict[str, float] = {}
     for line in text.splitlines():
         words = line.replace("▶", " ").split()
@@ -56,7 +56,7 @@ def worst_error_percent(text: str) -> float:
 
 
 def turn(terminal: Terminal) -> tuple[float, float, float]:
-    """CPU in percent of a core, worst error of a rate in percent, and kB/s to the terminal."""
+    """Return CPU in percent of a core, largest rate error in percent, and kB/s to the terminal."""
     pids = screen_processes(terminal)
     cpu, sent, begun = cpu_s(pids), terminal.received, time.monotonic()
     worst = 0.0
@@ -69,7 +69,7 @@ def turn(terminal: Terminal) -> tuple[float, float, float]:
 
 
 def main() -> None:
-    """Measure turn by turn and print."""
+    """Measure several turns and print the results."""
     bare, number, image = [], [], []
     memory = 0.0
     with program("bench.load", DOMAIN), tempfile.TemporaryDirectory() as name:

@@ -1,6 +1,6 @@
-"""Draw the rooms as the code has them, for ARCHITECTURE.md: `architecture.py [--write]`.
+"""Draw the rooms for ARCHITECTURE.md from the code: `architecture.py [--write]`.
 
-Who imports whom is read from the modules, the floors within a room from the contracts of
+The imports are read from the modules, the floors within a room from the contracts in
 pyproject.toml. Without --write the picture goes to standard output.
 """
 
@@ -27,7 +27,7 @@ def picture() -> str:
     rooms = [str(room) for room in options.session_options["root_packages"]]
     sys.path.insert(0, str(ROOT))
     graph = grimp.build_graph(*rooms, include_external_packages=True, cache_dir=None)
-    # `python -m tui` is the command line under another name, and no need of the screen's.
+    # `python -m tui` is another name for the command line; the screen does not depend on it.
     for program in [module for module in graph.modules if module.endswith(".__main__")]:
         graph.remove_module(program)
     for room in rooms:
@@ -73,7 +73,7 @@ def _floors(options: UserOptions) -> list[str]:
 
 
 def page(text: str) -> str:
-    """Return ARCHITECTURE.md with the picture of today in place of the one in `text`."""
+    """Return ARCHITECTURE.md with the current picture in place of the one in `text`."""
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
     return f"{before}{BEGIN}\n{picture()}\n{END}{after}"

@@ -1,6 +1,6 @@
-"""What hatch does before it packs a wheel: compile the message catalogues.
+"""A hook for hatch: compile the message catalogues before a wheel is built.
 
-An editable install is a wheel too, so a checkout gets them by `make setup`.
+An editable install also builds a wheel, so a checkout gets them by `make setup`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,6 @@ class CatalogueHook(BuildHookInterface[Any]):
     """Runs scripts/catalogues.py in the environment of the build, which has babel."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
-        """Compile what is stale."""
+        """Compile the stale catalogues."""
         script = Path(self.root) / "scripts" / "catalogues.py"
         subprocess.run([sys.executable, script, "compile"], check=True)

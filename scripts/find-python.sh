@@ -1,6 +1,6 @@
 #!/bin/sh
-# Print the newest Python on PATH that can set Deck up, or say what the best one lacks.
-# With PYTHON in the environment no other is considered.
+# Print the newest Python on PATH that Deck can use, or say what the best one lacks.
+# If PYTHON is set in the environment, only that one is considered.
 set -u
 here=$(dirname "$0")
 

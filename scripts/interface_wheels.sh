@@ -1,5 +1,5 @@
 #!/bin/sh
-# Build the wheels of the message types (interfaces/) for other machines: one for each Python named.
+# Build the wheels of the message types (interfaces/) for other machines, one for each given Python.
 # Usage: interface_wheels.sh FOLDER PYTHON..., with auditwheel and patchelf on PATH; meant for a
 # container of manylinux_2_28, since a wheel asks for a C library as new as the one it was built on.
 set -eu

@@ -1,9 +1,9 @@
-"""Write locked/: what `make setup` installs, to the version and the hash, for every Python.
+"""Write locked/: the versions and hashes that `make setup` installs, for every Python.
 
-Usage: lock.py, run by `make lock`. It asks the package index for the
-newest versions that pyproject.toml and interfaces/pyproject.toml allow, and keeps no address of it.
-uv resolves for Pythons that are not installed here, which pip does not: where two Pythons need two
-versions, a line says for which of them it is.
+Usage: lock.py, run by `make lock`. It asks the package index for the newest versions that
+pyproject.toml and interfaces/pyproject.toml allow, and does not record the index's address. Unlike
+pip, uv resolves for Pythons that are not installed here: where two Pythons need different versions,
+each line says which Pythons it is for.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from pathlib import Path
 if sys.version_info >= (3, 11):
     import tomllib
 else:
-    import tomli as tomllib  # pytest brings it there
+    import tomli as tomllib  # pytest depends on it there
 
 ROOT = Path(__file__).resolve().parent.parent
 LOCKED = ROOT / "locked"
 OLDEST = "3.10"
 UV = "uv>=0.9,<1"
 BACKENDS = {"deck": ("editables",), "interfaces": ("cmake", "ninja")}
-"""What the build backends ask for only once they are asked themselves."""
+"""Requirements that build backends only state when they are run."""
 
 
 def main() -> int:
-    """Lock the requirements of Deck and those of building the message types."""
+    """Lock the requirements of Deck and of building the message types."""
     uv = resolver()
     wanted = requirements()
     LOCKED.mkdir(exist_ok=True)
@@ -39,7 +39,7 @@ def main() -> int:
 
 
 def resolver() -> Path:
-    """Return uv, in an environment of its own."""
+    """Return uv, installed in its own environment."""
     folder = ROOT / "build" / "lock"
     venv.create(folder, with_pip=True, clear=True)
     subprocess.run([folder / "bin" / "pip", "install", "--quiet", UV], check=True)
@@ -47,7 +47,7 @@ def resolver() -> Path:
 
 
 def requirements() -> dict[str, list[str]]:
-    """Return what is to be locked, by the name of its files."""
+    """Return the requirements to lock, by the name of the file they go into."""
     deck = tomllib.loads((ROOT / "pyproject.toml").read_text())
     interfaces = tomllib.loads((ROOT / "interfaces" / "pyproject.toml").read_text())
     extras = deck["project"]["optional-dependencies"]
@@ -63,7 +63,7 @@ def requirements() -> dict[str, list[str]]:
 
 
 def resolved(uv: Path, lines: list[str]) -> str:
-    """Return these requirements and all that they need, pinned, with the hashes of their files."""
+    """Return these requirements and their dependencies, pinned, with the hashes of their files."""
     command: list[str | Path] = [
         *(uv, "pip", "compile", "--no-config", "--quiet", "--generate-hashes"),
         *("--no-header", "--no-annotate", "--no-emit-index-url", "--no-emit-find-links"),

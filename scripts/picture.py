@@ -1,4 +1,4 @@
-"""Make the README's pictures: lesson 9 at work, as the running program draws it in a terminal.
+"""Make the README's pictures: lesson 9 running, as the program draws it in a terminal.
 
 `.venv/bin/python -m scripts.picture` writes docs/deck.en.png and docs/deck.ru.png; it needs
 `rsvg-convert` (Debian: librsvg2-bin) and a monospaced font (fonts-dejavu-core).
@@ -19,12 +19,12 @@ ROOT = Path(__file__).resolve().parents[1]
 DOMAIN = 76
 WIDTH_PX = 1320
 SPOKEN = {"en": "wheel slower", "ru": "колесо медленнее"}
-"""What the deck says while the robot turns."""
+"""Text that the deck shows while the robot turns."""
 TURN_LEFT = "налево"
 
 
 def say_left(terminal: Terminal, field_keys: str) -> None:
-    """Type the command; `field_keys` is on the screen while the cursor is in the command line."""
+    """Type the command; `field_keys` is on the screen while the command line has the focus."""
     terminal.press("c")
     terminal.wait_for(field_keys)
     terminal.type(TURN_LEFT)
@@ -33,7 +33,7 @@ def say_left(terminal: Terminal, field_keys: str) -> None:
 
 
 def picture(language: str) -> None:
-    """Run lesson 9, have the robot turn left, and draw the screen then."""
+    """Run lesson 9, make the robot turn left, and draw the screen at that moment."""
     with tempfile.TemporaryDirectory() as folder:
         env = {
             "DECK_RUN_DIR": f"{folder}/run",
@@ -48,7 +48,7 @@ def picture(language: str) -> None:
             terminal.wait_for("8/8")
             terminal.wait_for("◂", within_s=60)
             while SPOKEN[language] not in terminal.text():
-                # A wall may be near at the moment, or the brain may speak next and overrule it.
+                # A wall may be near just then, or the brain may give another command.
                 say_left(terminal, "^x STOP" if language == "en" else "^x СТОП")
                 with contextlib.suppress(AssertionError):
                     terminal.wait_for(SPOKEN[language], within_s=3)

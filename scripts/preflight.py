@@ -1,6 +1,6 @@
-"""Say in one line what this machine lacks for `make`, before anything is begun.
+"""Say in one line what this machine lacks for `make`, before anything is started.
 
-Runs on any Python, also one far too old for Deck, because it must say so.
+It runs on any Python, even one far too old for Deck, because it has to say so.
 """
 
 import os
@@ -13,7 +13,7 @@ PIXI = "install pixi (https://pixi.sh) and use `pixi run deck`"
 
 
 class Machine(object):
-    """The facts that decide, gathered once so that a test can make them up."""
+    """The facts about a machine, gathered in one place so that tests can replace them."""
 
     def __init__(self, **facts):
         self.system = facts.get("system", platform.system())
@@ -27,7 +27,7 @@ class Machine(object):
 
 
 def installed(*names):
-    """Tell which of the named modules this Python can import."""
+    """Return which of the named modules this Python can import."""
     found = []
     for name in names:
         try:
@@ -39,7 +39,7 @@ def installed(*names):
 
 
 def has_program(path, names):
-    """Tell whether one of the programs is on the search path."""
+    """Return whether one of the programs is on the search path."""
     return any(
         os.access(os.path.join(folder or ".", name), os.X_OK)
         for folder in path.split(os.pathsep)
@@ -48,18 +48,18 @@ def has_program(path, names):
 
 
 def compilers(variable, *names):
-    """Put the compiler that the environment asks for in place of the usual ones."""
+    """Return the compiler that the environment names, else the usual ones."""
     asked = os.environ.get(variable, "").split()
     return asked[:1] or names
 
 
 def release(text):
-    """Turn a version such as 2.36 into numbers that compare."""
+    """Return a version such as 2.36 as numbers that can be compared."""
     return tuple(int(part) for part in text.split(".")[:2])
 
 
 def complaints(machine):
-    """Yield what is wrong and how to mend it, the most hopeless first."""
+    """Yield what is wrong and how to fix it, the most serious first."""
     version = "%d.%d" % machine.python
     if machine.system != "Linux" or machine.arch != "x86_64" or machine.bits != 64:
         yield "ROS 2 is on PyPI for 64-bit Linux on x86-64 only, this is %s on %s, %d-bit: %s." % (

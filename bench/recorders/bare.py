@@ -1,4 +1,4 @@
-"""What a person would write first: raw subscriptions whose callback writes the bytes to a file.
+"""The obvious first solution: raw subscriptions whose callback writes the bytes to a file.
 
 `python -m bench.recorders.bare DOMAIN FOLDER` answers each line on stdin with the number of
 messages so far.
@@ -22,7 +22,7 @@ from bench.recorders.load import SIZES
 
 
 def main() -> None:
-    """Write what comes until stdin ends."""
+    """Write messages until stdin is closed."""
     context = Context()
     context.init(args=[], domain_id=int(sys.argv[1]))
     node = Node("bare", context=context)

@@ -1,4 +1,4 @@
-"""Deck's recorder on the load, with no screen.
+"""Deck's recorder on the load, without a screen.
 
 `python -m bench.recorders.deck DOMAIN FOLDER` answers each line on stdin with the number of
 messages in the bag so far.
@@ -13,7 +13,7 @@ from graph.recording.recorder import Recorder
 
 
 def main() -> None:
-    """Record until stdin ends."""
+    """Record until stdin is closed."""
     recorder = Recorder(int(sys.argv[1]), "localhost", Path(sys.argv[2]))
     recorder.start()
     print("ready", flush=True)

@@ -1,7 +1,7 @@
-"""10 MB/s for a recorder: one topic of 80 kB and ten of 2 kB, each at 100 Hz.
+"""10 MB/s for a recorder: one topic with messages of 80 kB and ten with 2 kB, all at 100 Hz.
 
-`python -m bench.recorders.load DOMAIN` publishes for ten seconds at each line on stdin, once
-somebody listens to every topic, and answers with the number of messages.
+For each line on stdin, `python -m bench.recorders.load DOMAIN` waits until every topic has a
+subscriber, publishes for ten seconds, and answers with the number of messages.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from std_msgs.msg import UInt8MultiArray
 
 LARGE = "/load/large"
 SIZES = {LARGE: 80_000, **{f"/load/small_{number}": 2_000 for number in range(10)}}
-"""Topic to the bytes of a message."""
+"""Topic to the size of its messages in bytes."""
 HZ = 100
 SECONDS = 10
 
 
 def main() -> None:
-    """Publish until stdin ends."""
+    """Publish until stdin is closed."""
     context = Context()
     context.init(args=[], domain_id=int(sys.argv[1]))
     node = Node("load", context=context, enable_rosout=False, start_parameter_services=False)

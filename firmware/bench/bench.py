@@ -1,4 +1,4 @@
-"""Runs the firmware by a clock of its own; each `play` is one order, in and out as JSON."""
+"""Runs the firmware on a simulated clock; each `play` is one order, JSON in and JSON out."""
 
 import json
 
@@ -28,7 +28,7 @@ class Usb:
 
 
 class Clocked(board.Board):
-    """Its milliseconds wrap as those of a Pico do, after 12.4 days."""
+    """Its milliseconds wrap like those of a Pico, after 12.4 days."""
 
     def now_ms(self):
         return _clock[0] % _WRAP_MS
@@ -53,7 +53,7 @@ def _boot(encoders):
 
 
 def _motors():
-    """Duty of each motor, + forward, - backward, 0 if it brakes or is let go."""
+    """Return the duty of each motor, + forward, - backward, 0 if braking or off."""
     told = []
     for pins in (config.LEFT_PINS, config.RIGHT_PINS):
         way = machine.levels[pins["ina"]] - machine.levels[pins["inb"]]
@@ -85,7 +85,7 @@ def _pass(ms, only_timer, turning):
 
 
 def _idle(ms):
-    """Let days pass with a round now and then."""
+    """Let days pass with an occasional round."""
     for _ in range(ms // _IDLE_STEP_MS):
         _clock[0] += _IDLE_STEP_MS
         main.serve(_here["board"], _here["control"])

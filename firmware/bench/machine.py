@@ -1,9 +1,9 @@
-"""The pins of a Pico that is not there: what board.py asks of `machine`, and what it did to it."""
+"""The pins of a simulated Pico: the part of `machine` that board.py uses, and what it did to it."""
 
 levels = {}  # pin -> 0 or 1
 duties = {}  # pin -> 0..65535, or nanoseconds for a servo
 analog = {}  # pin -> 0..65535
-edges = {}  # pin -> what is called at a rising edge
+edges = {}  # pin -> function called at a rising edge
 timers = []
 fed = [0]
 

@@ -1,6 +1,6 @@
-"""MicroPython with the files of firmware/pico2 and a `machine` that is not there.
+"""Runs MicroPython with the files of firmware/pico2 and a simulated `machine`.
 
-One JSON order a line comes in, one JSON answer a line goes out (see bench.py).
+It reads one JSON order per line and writes one JSON answer per line (see bench.py).
 """
 
 from pathlib import Path
@@ -17,8 +17,8 @@ print('"ready"')
 for line in sys.stdin:
     print(bench.play(line))
 """
-# Its garbage collector, as WebAssembly, frees what only a local variable of the engine holds. So it
-# gets no occasion: there is room for 20 minutes of the firmware, and only what is used is taken.
+# As WebAssembly, its garbage collector frees what only a local variable of the engine holds. So it
+# must never run: there is room for 20 minutes of the firmware, and only used memory is taken.
 ROOM = ("-X", "heapsize=1024M")
 
 
@@ -38,7 +38,7 @@ def main() -> None:
     linker = Linker(engine)
     linker.define_wasi()
     module = Module.from_file(engine, str(default_wasm_path()))
-    # It could call functions of this process; nothing here does.
+    # It could call functions of this process; nothing here uses that.
     linker.define_unknown_imports_as_traps(module)
     instance = linker.instantiate(store, module)
     start = instance.exports(store)["_start"]

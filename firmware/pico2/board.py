@@ -21,11 +21,11 @@ class Motor:
         self._sense = None if pins["current"] is None else ADC(pins["current"])
 
     def drive(self, permille):
-        """-1000..1000 of full power; 0 brakes."""
+        """Set the power, -1000..1000 permille; 0 brakes."""
         if permille == 0:
             self.brake()
             return
-        # The pins first: at no moment is there power in the wrong direction.
+        # The pins first, so that there is never power in the wrong direction.
         if (self._ina.value(), self._inb.value()) != (int(permille > 0), int(permille < 0)):
             self._pwm.duty_u16(0)
             self._ina.value(int(permille > 0))
@@ -33,30 +33,30 @@ class Motor:
         self._pwm.duty_u16(abs(permille) * 65535 // 1000)
 
     def brake(self):
-        """Hold the wheel."""
+        """Brake the wheel."""
         self._ina.value(0)
         self._inb.value(0)
         self._pwm.duty_u16(65535)
 
     def off(self):
-        """Let go of the wheel."""
+        """Let the wheel coast."""
         self._pwm.duty_u16(0)
         self._ina.value(0)
         self._inb.value(0)
 
     def fault(self):
-        """Whether the driver reports one."""
+        """Whether the driver reports a fault."""
         return self._fault.value() == 0
 
     def current_ma(self):
-        """-1 if it is not measured."""
+        """Return the current, -1 if not measured."""
         if self._sense is None:
             return -1
         return self._sense.read_u16() * _ADC_MV // 65535 * 1000 // _SENSE_MV_PER_A
 
 
 class Encoder:
-    """Counts rising edges of A, down if B is high then."""
+    """Counts rising edges of A, downwards if B is high."""
 
     def __init__(self, pins):
         self.count = 0
@@ -69,29 +69,29 @@ class Encoder:
 
 
 class Usb:
-    """Bytes from and to the computer, never blocking where that can be helped."""
+    """Bytes from and to the computer, blocking only if unavoidable."""
 
     def __init__(self):
         import micropython
 
-        micropython.kbd_intr(-1)  # a byte 03 is a byte
+        micropython.kbd_intr(-1)  # byte 03 is data, not Ctrl-C
         self._in, self._out = sys.stdin.buffer, sys.stdout.buffer
         self._readable, self._writable = select.poll(), select.poll()
         self._readable.register(sys.stdin, select.POLLIN)
         self._writable.register(sys.stdout, select.POLLOUT)
 
     def read(self):
-        """The next byte, None if there is none."""
+        """Return the next byte, None if there is none."""
         return self._in.read(1)[0] if self._readable.poll(0) else None
 
     def write(self, data):
-        """Send, or drop it if the computer does not read."""
+        """Send data, or drop them if the computer does not read."""
         if self._writable.poll(0):
             self._out.write(data)
 
 
 class Board:
-    """All of it, as control.py wants it."""
+    """The whole board, as control.py needs it."""
 
     def __init__(self, config, usb):
         self._config, self._usb = config, usb
@@ -104,57 +104,57 @@ class Board:
         self._dog = self._timer = None
 
     def watch(self, guard):
-        """Call `guard` every 10 ms whatever else is done; reset the Pico if nothing is, for 1 s."""
+        """Call `guard` every 10 ms from now on; reset the Pico if `alive` is not called for 1 s."""
         self._timer = Timer(period=self._config.STEP_MS, mode=Timer.PERIODIC, callback=guard)
         self._dog = WDT(timeout=1000)
 
     def alive(self):
-        """Tell the watchdog of the chip."""
+        """Feed the chip's watchdog."""
         self._dog.feed()
 
     def now_ms(self):
-        """Milliseconds; to be used with `since_ms` only, for they wrap."""
+        """Return milliseconds; use them only with `since_ms`, as they wrap."""
         return time.ticks_ms()
 
     def since_ms(self, then):
-        """Milliseconds since a `now_ms`."""
+        """Return the milliseconds since a `now_ms`."""
         return time.ticks_diff(time.ticks_ms(), then)
 
     def drive(self, left, right):
-        """Permille of full power, -1000..1000."""
+        """Set the power of both motors, -1000..1000 permille."""
         self._motors[0].drive(left)
         self._motors[1].drive(right)
 
     def brake(self):
-        """Hold both wheels."""
+        """Brake both wheels."""
         for motor in self._motors:
             motor.brake()
 
     def off(self):
-        """Let go of both wheels."""
+        """Let both wheels coast."""
         for motor in self._motors:
             motor.off()
 
     def steer(self, us):
-        """Pulse width of the servo."""
+        """Set the pulse width of the servo."""
         self._servo.duty_ns(us * 1000)
 
     def faults(self):
-        """Left and right."""
+        """Return the fault of the left and the right driver."""
         return self._motors[0].fault(), self._motors[1].fault()
 
     def currents_ma(self):
-        """Left and right, -1 where it is not measured."""
+        """Return left and right, -1 if not measured."""
         return self._motors[0].current_ma(), self._motors[1].current_ma()
 
     def battery_mv(self):
-        """-1 if it is not measured."""
+        """Return the voltage, -1 if not measured."""
         if self._battery is None:
             return -1
         return min(int(self._battery.read_u16() * _ADC_MV / 65535 * self._config.BATTERY_RATIO), 60000)
 
     def counts(self):
-        """Edges counted so far, left and right; None without encoders."""
+        """Return the edges counted so far, left and right; None without encoders."""
         if self._encoders is None:
             return None
         return self._encoders[0].count, self._encoders[1].count

@@ -1,4 +1,4 @@
-"""When the motors turn, and how fast: no pins here, so that it can be tried without a Pico."""
+"""Decides when the motors turn, and how fast; uses no pins, so it can be tested without a Pico."""
 
 import protocol
 
@@ -8,10 +8,10 @@ _SIDES = (0, 1)
 
 
 class Control:
-    """Obeys lines and keeps the motors off whenever in doubt.
+    """Obeys lines, and keeps the motors off when in doubt.
 
     `board` has: now_ms, since_ms, write, drive, brake, off, steer, faults, currents_ma,
-    battery_mv, counts (see board.py). `config` is the module of that name, or something like it.
+    battery_mv, counts (see board.py). `config` is the module of that name, or an object like it.
     """
 
     def __init__(self, board, config):
@@ -45,7 +45,7 @@ class Control:
     # ------------------------------------------------------------ lines
 
     def feed(self, octet):
-        """Take one byte of the computer's."""
+        """Take one byte from the computer."""
         fields = self.reader.feed(octet)
         if fields is None:
             return
@@ -74,7 +74,7 @@ class Control:
             self._refuse()
             return
         if self._is_beyond(left, right, steering):
-            # Nobody can have meant it, so that nothing of it is taken for a sign of life either.
+            # It must be an error, so it does not count as a sign of life either.
             self._refuse()
             self._stop_anew()
             return
@@ -101,7 +101,7 @@ class Control:
         return min(max(c.CENTRE_US + steering * c.US_PER_RAD // 1000, c.SERVO_LOW_US), c.SERVO_HIGH_US)
 
     def _stop_anew(self):
-        """Stand, until a drive line of zero speed comes."""
+        """Stop until a drive line with zero speed comes."""
         self.flags.add("A")
         self._asked = [0, 0]
         self._drive()
@@ -109,9 +109,9 @@ class Control:
     # ------------------------------------------------------------ time
 
     def guard(self, _timer=None):
-        """Switch the motors off in time, even while something else blocks; for a timer."""
+        """Switch the motors off in time, even while something else blocks; called by a timer."""
         if self.board.since_ms(self._drove_ms) > self.config.WATCHDOG_MS:
-            # Who was silent may wake with a line on its lips that is long out of date.
+            # A computer that was silent may first send a line that is long out of date.
             self.flags.add("W")
             self.flags.add("A")
         self._look_for_faults()
@@ -119,7 +119,7 @@ class Control:
             self._drive()
 
     def step(self):
-        """Do what is due; to be called as often as possible."""
+        """Do what is due; call this as often as possible."""
         self.guard()
         passed = self.board.since_ms(self._stepped_ms)
         if passed >= self.config.STEP_MS:
@@ -129,14 +129,14 @@ class Control:
             self._measure(passed)
             self._drive(passed)
         if not self._listens():
-            # Not left to grow old: after 6.2 days the time since it would be negative.
+            # Renewed while it waits: after 6.2 days the time since it would be negative.
             self._told_ms = self.board.now_ms()
         elif self.board.since_ms(self._told_ms) >= self.config.TELEMETRY_MS:
             self._told_ms = self.board.now_ms()
             self._tell()
 
     def _listens(self):
-        """Whether somebody was heard lately; who was not is forgotten, for time wraps."""
+        """Whether a line came lately; an old one is forgotten, because the time wraps."""
         if self.board.since_ms(self._heard_ms) >= self.config.QUIET_MS:
             self._heard_any = False
         return self._heard_any
@@ -169,7 +169,7 @@ class Control:
         for side in _SIDES:
             turned = (counts[side] - self._counts[side]) * 6283185 // self.config.COUNTS_PER_TURN
             fresh = turned // max(passed, 1)
-            # One count in 10 ms is a lot: the mean of the last few says more.
+            # One count in 10 ms is coarse: the mean of the last few is more precise.
             self._speeds[side] += (fresh - self._speeds[side]) // 4
         self._counts = counts
 
@@ -184,7 +184,7 @@ class Control:
         self.board.drive(self._duty(0, passed), self._duty(1, passed))
 
     def _duty(self, side, passed):
-        """Permille of full power; a wheel that shall stand gets none."""
+        """Return permille of full power; 0 for a wheel that should stand."""
         asked = self._asked[side]
         if asked == 0:
             self._sums[side] = 0
@@ -195,7 +195,7 @@ class Control:
             self._sums[side] += error * passed * self.config.GAIN_I // 1000000
             self._sums[side] = min(max(self._sums[side], -500), 500)
             duty += error * self.config.GAIN_P // 1000 + self._sums[side]
-        # Never against the way that was asked for.
+        # Never against the commanded direction.
         return min(max(duty, 0), 1000) if asked > 0 else min(max(duty, -1000), 0)
 
     # ------------------------------------------------------------ telemetry

@@ -1,4 +1,4 @@
-"""Runs when the Pico has power."""
+"""Runs when the Pico is powered on."""
 
 import config
 from board import Board, Usb
@@ -6,7 +6,7 @@ from control import Control
 
 
 def serve(board, control):
-    """One round: every byte that has come, then what is due."""
+    """Run one round: take every byte that has come, then do what is due."""
     for _ in range(256):
         octet = board.read()
         if octet is None:
@@ -17,7 +17,7 @@ def serve(board, control):
 
 
 def main():
-    """Obey the computer until there is no power."""
+    """Obey the computer until power-off."""
     board = Board(config, Usb())
     try:
         control = Control(board, config)

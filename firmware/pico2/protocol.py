@@ -1,4 +1,4 @@
-"""Lines of the computer and of the Pico: see docs/pico-protocol.md. Runs on any Python."""
+"""Lines between the computer and the Pico: see docs/pico-protocol.md. Runs on any Python."""
 
 LONGEST = 128
 
@@ -11,7 +11,7 @@ _LIMITS = {
 
 
 def crc16(data):
-    """CRC-16/IBM-3740 of bytes."""
+    """Return the CRC-16/IBM-3740 of bytes."""
     crc = 0xFFFF
     for octet in data:
         crc ^= octet << 8
@@ -22,13 +22,13 @@ def crc16(data):
 
 
 def wrap(*fields):
-    """The line of some fields, as bytes."""
+    """Return the line for some fields, as bytes."""
     body = ",".join([str(field) for field in fields]).encode()
     return b"$%s*%04X\n" % (body, crc16(body))
 
 
 def unwrap(line):
-    """The body of a line (bytes without its end) as text, None if it is none."""
+    """Return the body of a line (bytes without its end) as text, None if it is invalid."""
     if len(line) < 7 or line[0] != 0x24 or line[-5] != 0x2A:
         return None
     body = line[1:-5]
@@ -39,7 +39,7 @@ def unwrap(line):
 
 
 def number(word):
-    """A whole number written in the shortest way, None if it is none."""
+    """Return the value of a whole number in its shortest form, None for anything else."""
     digits = word[1:] if word.startswith("-") else word
     if not 0 < len(digits) <= 10:
         return None
@@ -52,7 +52,7 @@ def number(word):
 
 
 def parse(body):
-    """Letter and numbers of a line from the computer, None if any of it is not as it must be."""
+    """Return letter and numbers of a line from the computer, None if any part is invalid."""
     words = body.split(",")
     limits = _LIMITS.get(words[0])
     if limits is None or len(words) != len(limits) + 2:
@@ -67,15 +67,15 @@ def parse(body):
 
 
 class Reader:
-    """Finds lines in a stream, byte by byte; keeps `LONGEST` bytes at most."""
+    """Finds lines in a stream, byte by byte; buffers at most `LONGEST` bytes."""
 
     def __init__(self):
         self.refused = 0
         self._line = bytearray(LONGEST)
-        self._size = 0  # one more than fits means: too long
+        self._size = 0  # one more than fits means too long
 
     def feed(self, octet):
-        """The fields of the line that this byte ends, None if it ends no good one."""
+        """Return the fields of the line that this byte completes, None if there is no valid one."""
         if octet != 0x0A and octet != 0x0D:
             if octet == 0x24:
                 self._size = 0

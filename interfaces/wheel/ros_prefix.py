@@ -1,4 +1,4 @@
-"""Print the prefix under which pip put the ROS wheels that this build uses."""
+"""Print the prefix under which pip installed the ROS wheels that this build uses."""
 
 from importlib.metadata import files
 
