@@ -136,6 +136,19 @@ class Terminal:
         """Wait until `text` stands on the screen; return the screen."""
         return self.wait_until(lambda screen: text in screen, f"{text!r} on screen", within_s)
 
+    def wait_for_line(self, line: str, within_s: float = 30.0) -> str:
+        """Wait until `line` has been printed, in however many rows; return all rows as one line.
+
+        For what is printed without a screen of its own: where the terminal breaks a line that has a
+        path in it depends on where the temporary folder is.
+        """
+
+        def printed() -> str | None:
+            unbroken = self.text().replace("\n", "")
+            return unbroken if line in unbroken else None
+
+        return wait_until(printed, lambda: f"{line!r}; the screen:\n{self.text()}", within_s)
+
     def wait_gone(self, text: str, within_s: float = 30.0) -> str:
         """Wait until `text` does not stand on the screen any more; return the screen."""
         return self.wait_until(lambda screen: text not in screen, f"no {text!r}", within_s)

@@ -32,7 +32,7 @@ def test_a_window_that_closes_ends_a_run(deck: Deck, tmp_path: Path) -> None:
 def test_a_bad_profile_is_told_in_place_of_the_screen(deck: Deck, tmp_path: Path) -> None:
     terminal = deck.open(str(written(tmp_path, "nodes: {a: {run: nodes.helo}}")))
     assert terminal.wait_exit() == 2
-    text = terminal.wait_for("did you mean nodes.hello?").replace("\n", "")
+    text = terminal.wait_for_line("did you mean nodes.hello?")
     assert "lesson.yaml:1:18: nodes.a.run: there is no module 'nodes.helo'" in text
 
 

@@ -10,8 +10,6 @@ from tests.e2e.terminal import Terminal
 from tests.unit.bags import write_bag, write_robot_bag
 
 ROOT = Path(__file__).parents[2]
-ONE_LINE = 1000
-"""Columns in which no path of a temporary folder breaks the words that are looked for."""
 WORDS_BYTES = 500
 """More than a refusal is long; a screen draws thousands."""
 WITHOUT_ROS = """
@@ -23,9 +21,9 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-def replay(bag: Path, *options: str, columns: int = 80) -> Terminal:
+def replay(bag: Path, *options: str) -> Terminal:
     command = [sys.executable, "-c", WITHOUT_ROS, "replay", str(bag), *options]
-    return Terminal(command, columns, 24, cwd=str(ROOT))
+    return Terminal(command, 80, 24, cwd=str(ROOT))
 
 
 def test_a_recording_is_played_paused_and_left(tmp_path: Path) -> None:
@@ -55,10 +53,10 @@ def test_types_that_are_installed_nowhere_are_shown(tmp_path: Path) -> None:
 
 
 def test_what_is_no_bag_is_told_on_the_terminal_with_exit_code_two(tmp_path: Path) -> None:
-    terminal = replay(tmp_path / "nothing", columns=ONE_LINE)
+    terminal = replay(tmp_path / "nothing")
     try:
         assert terminal.wait_exit() == 2
-        terminal.wait_for("Give the folder that holds")
+        terminal.wait_for_line("Give the folder that holds")
     finally:
         terminal.close()
 
@@ -67,10 +65,10 @@ def test_what_is_no_bag_at_all_is_told_before_any_screen(tmp_path: Path) -> None
     link = tmp_path / "l.mcap"
     link.symlink_to(link)
     for path in (Path("/dev/null"), link):
-        terminal = replay(path, columns=ONE_LINE)
+        terminal = replay(path)
         try:
             assert terminal.wait_exit() == 2
-            terminal.wait_for("is not a bag")
+            terminal.wait_for_line("is not a bag")
             assert terminal.received < WORDS_BYTES
         finally:
             terminal.close()

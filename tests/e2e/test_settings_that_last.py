@@ -54,4 +54,4 @@ def test_a_broken_file_ends_the_program_with_its_place(deck: Deck) -> None:
     path.write_text('{"theme": "pink"}')
     terminal = deck.open()
     assert terminal.wait_exit() == 2
-    terminal.wait_for("settings.json: theme: no 'pink'")
+    terminal.wait_for_line("settings.json: theme: unknown value 'pink'")
