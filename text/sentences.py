@@ -1,8 +1,8 @@
-"""Sentences that can still be translated after they were made.
+"""Sentences that can still be translated after they have been made.
 
-Rooms that know nothing of languages make them; who shows them looks the template up in a catalogue
-(`text.i18n.said`). A sentence made by `say` is its English text, a plain `str` for everyone, and
-remembers the template and the values that it was made of.
+Rooms that know nothing about languages make them; the code that shows them looks up the template in
+a catalogue (`text.i18n.said`). A sentence made by `say` is its English text, a plain `str`, and
+remembers the template and values that it was made from.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 class Words(str):
-    """An English sentence that remembers what it was made of.
+    """An English sentence that remembers what it was made from.
 
-    As a text it is harmless, whatever its values are; `values` holds them as they came.
+    Its text is sanitized, whatever its values are; `values` holds the original ones.
     """
 
     __slots__ = ("template", "values")
@@ -27,7 +27,7 @@ class Words(str):
     values: dict[str, object]
 
     def __new__(cls, template: str, values: dict[str, object]) -> Self:
-        """Fill `template`, in the manner of `str.format`, with `values`."""
+        """Fill `template` with `values`, like `str.format`."""
         words = super().__new__(cls, filled(template, values))
         words.template = template
         words.values = values
@@ -41,3 +41,13 @@ class Words(str):
 def say(template: str, **values: object) -> Words:
     """Make a sentence: `say("no such node: {node}", node=name)`."""
     return Words(template, values)
+
+
+def reason_of(error: BaseException) -> str:
+    """Return what an error says: the sentence it was made with, else its text, else its kind.
+
+    `str` of an error is that sentence in English, which cannot be translated any more.
+    """
+    if len(error.args) == 1 and isinstance(error.args[0], Words):
+        return error.args[0]
+    return str(error) or type(error).__name__

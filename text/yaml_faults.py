@@ -15,20 +15,29 @@ from text.sentences import say
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from text.yaml_tree import FilePlace, Where
+
 
 class YamlError(ValueError):
     """A text is not the YAML that was asked for; str() is `line:column: what is wrong`."""
 
-    def __init__(self, line: int, column: int, message: str) -> None:
-        """Say what is wrong at a place, counted from 1."""
+    def __init__(self, line: int, column: int, message: str, where: Where = ()) -> None:
+        """Say what is wrong at a place, counted from 1; `where` is the path of a wrong value."""
         super().__init__(f"{line}:{column}: {message}")
         self.line = line
         self.column = column
         self.message = message
         """Made by `text.sentences.say`, so that it can be translated."""
+        self.where = where
+        """A path such as `("nodes", "sonar_front")`, empty for a fault in the text itself."""
 
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def fault(place: FilePlace, message: str, where: Where = ()) -> YamlError:
+    """Return the error to raise for a place; `where` is the path of the value that is wrong."""
+    return YamlError(place.line, place.column, message, where)
 
 
 def events(text: str) -> Iterator[yaml.Event]:

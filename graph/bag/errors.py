@@ -1,4 +1,4 @@
-"""What can go wrong with a bag, in sentences that name the file and the fix."""
+"""Errors of bags, in sentences that name the file and the fix."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class BagError(Exception):
-    """A bag cannot be written or read; `words` says which, why, and what to do."""
+    """A bag cannot be written or read; `words` says which one, why, and what to do."""
 
     def __init__(self, words: Words) -> None:
         """Say `words`."""
@@ -21,20 +21,20 @@ class BagError(Exception):
 
 
 def not_made(folder: Path, error: OSError) -> BagError:
-    """Return that the folder of a recording cannot be made."""
+    """Return the error for a recording folder that cannot be created."""
     if isinstance(error, FileExistsError):
         return BagError(
-            say("{path} is there already: choose another folder, or remove it", path=folder)
+            say("{path} already exists: choose another folder, or remove it", path=folder)
         )
     reason = os_reason(error)
-    return BagError(say("{path} cannot be made: {reason}", path=folder, reason=reason))
+    return BagError(say("{path} cannot be created: {reason}", path=folder, reason=reason))
 
 
 def not_written(file: Path, error: OSError) -> Words:
-    """Return why a recording has ended before its time."""
+    """Return why a recording has stopped early."""
     reason = os_reason(error)
     return say(
-        "recording has ended: {path} cannot be written ({reason}); what was recorded till then "
+        "recording has stopped: {path} cannot be written ({reason}); what was recorded before "
         "can be replayed. Free some space and record again",
         path=file,
         reason=reason,
@@ -42,7 +42,7 @@ def not_written(file: Path, error: OSError) -> Words:
 
 
 def no_bag(path: Path, reason: Words) -> BagError:
-    """Return that there is no bag at this place."""
+    """Return the error for a path that holds no bag."""
     return BagError(
         say(
             "{path} is not a bag: {reason}. Give the folder that holds metadata.yaml, or an "
@@ -54,7 +54,7 @@ def no_bag(path: Path, reason: Words) -> BagError:
 
 
 def unreadable(path: Path, error: Exception) -> BagError:
-    """Return that a bag is there and cannot be read."""
+    """Return the error for a bag that exists but cannot be read."""
     if isinstance(error, BagError):
         return error
     return BagError(

@@ -1,4 +1,4 @@
-"""The files of a bag, whole or cut short, behind one way of reading them."""
+"""The files of a bag, whole or cut short, behind one interface for reading them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Connection
 
 OUT_OF_ORDER_NS = 3_000_000_000
-"""Messages of a cut bag may be so much out of order: it was written topic by topic."""
+"""How far out of order the messages of a cut bag may be: it was written topic by topic."""
 Raw = tuple["Connection", int, bytes]
 
 
 class BagReader(Protocol):
-    """The interface of whatever reads a bag."""
+    """The interface of everything that reads a bag."""
 
     connections: list[Connection]
     start_ns: int
@@ -42,10 +42,10 @@ class BagReader(Protocol):
 
 
 class WholeBag:
-    """A bag with its index, read by the library's reader."""
+    """A bag with an index, read by the library's reader."""
 
     def __init__(self, path: Path) -> None:
-        """Raises whatever the library does for what it cannot read."""
+        """Open the bag. Raises what the library raises for a bag that it cannot read."""
         self._reader = SparingReader(path)
         self._reader.open()
         self.connections = list(self._reader.connections)
@@ -69,7 +69,7 @@ class WholeBag:
 
 
 class _CutFile:
-    """One MCAP file without an end, looked through once."""
+    """One MCAP file without an end, scanned once."""
 
     def __init__(self, path: Path, stack: ExitStack) -> None:
         """Raises ValueError and what the library raises."""
@@ -92,7 +92,7 @@ class _CutFile:
         ]
         nameless = self.counts.total() - sum(each.msgcount for each in self.connections)
         if nameless:
-            # What they are was told in a chunk that is damaged.
+            # They were described in a chunk that is damaged.
             self.lost.append(Lost(self.start_ns, nameless))
 
     def messages(self, wanted: Collection[Connection], start_ns: int | None) -> Iterator[Raw]:
@@ -102,12 +102,12 @@ class _CutFile:
 
 
 class CutFiles:
-    """MCAP files of which the last is cut short: read up to the last whole record."""
+    """MCAP files, the last one cut short: read up to the last whole record."""
 
     distro = ""
 
     def __init__(self, paths: list[Path]) -> None:
-        """Look through the files once. Raises ValueError and what the library raises."""
+        """Scan the files once. Raises ValueError and what the library raises."""
         self._stack = ExitStack()
         self._files: list[WholeBag | _CutFile] = []
         try:
@@ -128,14 +128,14 @@ class CutFiles:
         return [lost for file in self._files for lost in file.lost]
 
     def missing(self, path: Path) -> Words | None:
-        """Return what is not there, and how the bag is made whole for other programs."""
+        """Return what is missing, and how to repair the bag for other programs."""
         cut = [file for file in self._files if isinstance(file, _CutFile)]
         if not cut:
             return None
         return say(
             "{path} was cut short: the recording was not ended properly. {messages} messages "
-            "are whole, the last {bytes} bytes are not; what was to come after is missing. "
-            "`ros2 bag reindex` mends the index",
+            "are intact, the last {bytes} bytes are damaged, and nothing follows them. "
+            "`ros2 bag reindex` repairs the index",
             path=path,
             messages=self.message_count,
             bytes=sum(file.lost_bytes for file in cut),
@@ -163,7 +163,7 @@ class CutFiles:
 
 
 def in_order(messages: Iterator[Raw]) -> Iterator[Raw]:
-    """Put messages that are nearly in order into order."""
+    """Sort messages that are nearly in order."""
     waiting: list[tuple[int, int, Raw]] = []
     for number, message in enumerate(messages):
         stamp_ns = message[1]

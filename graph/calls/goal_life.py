@@ -1,4 +1,4 @@
-"""The life of one goal, from sending to its end: what arrives, and what is to be sent."""
+"""The life of one goal, from sending to its end: what arrives, and what to send."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from graph.messages.dated import Draft
 
 GONE_AFTER_S = 0.5
-"""A server's last words may come a little after it has left the graph."""
+"""A server's last messages may arrive a little after it has left the graph."""
 STATUS = {
     1: GoalStatus.ACCEPTED,
     2: GoalStatus.EXECUTING,
@@ -37,9 +37,9 @@ class GoalLife:
     """One goal. `hear` and `act` are called in turn until it `is_settled`."""
 
     def __init__(self, told: Goal, goal_id: bytes, message: Draft, line: ActionLine) -> None:
-        """Begin with a goal that is `SENDING`, to be sent as `message` by `line`."""
+        """Start with a goal that is `SENDING`, to be sent as `message` through `line`."""
         self.told = told
-        """As the screen is to see it; `elapsed_s` apart."""
+        """The goal as the screen shows it, except `elapsed_s`."""
         self.line = line
         self.is_forgotten = False
         self._id = goal_id
@@ -54,16 +54,16 @@ class GoalLife:
         self._cancel: int | None = None
         self._cancel_s = 0.0
         self._over_s: float | None = None
-        """When the status was first said to be one of `ENDS`."""
+        """When the status was first reported to be one of `ENDS`."""
         self._servers: frozenset[bytes] = frozenset()
         self._servers_seen_s = 0.0
 
     @property
     def is_settled(self) -> bool:
-        """Whether neither side has anything more to say."""
+        """Whether neither side has anything more to send."""
         if not self.told.ended or self._cancel is not None:
             return False
-        # A goal that was given up before it was accepted would still be pursued.
+        # A goal that Deck gave up before it was accepted would still be executed.
         awaits_answer = self._request is not None and self._accepted is None
         return not (awaits_answer and self.line.servers())
 
@@ -74,11 +74,11 @@ class GoalLife:
 
     @property
     def may_drive(self) -> bool:
-        """Whether the server may be at work on it."""
+        """Whether the server may be executing it."""
         return not self.told.ended or not self.is_settled
 
     def snapshot(self) -> Goal:
-        """Return it as it is now."""
+        """Return the goal as it is now."""
         until_s = self._ended_s if self._ended_s is not None else time.monotonic()
         return replace(self.told, elapsed_s=until_s - self._began_s)
 
@@ -88,7 +88,7 @@ class GoalLife:
             self._wants_cancel = True
 
     def hear(self, heard: GoalAnswers) -> None:
-        """Take in what has come."""
+        """Process what has arrived."""
         if self._request in heard.accepted and self._accepted is None:
             self._answered(accepted=heard.accepted[self._request])
         news = heard.feedback.get(self._id)
@@ -97,7 +97,7 @@ class GoalLife:
             self.told = replace(self.told, feedback=to_tree(news[-1]), feedbacks=count)
         if self._id in heard.status:
             if self._request is not None and self._accepted is None:
-                # The answer itself is lost where the server has not found this client yet.
+                # The answer itself is lost if the server has not discovered this client yet.
                 self._answered(accepted=True)
             self._status(STATUS.get(heard.status[self._id]))
         if self._cancel in heard.cancelled:
@@ -106,7 +106,7 @@ class GoalLife:
             self._take_result(heard.results[self._result])
 
     def act(self) -> None:
-        """Send what is to be sent, and give up what has no answer."""
+        """Send what is due, and give up requests without an answer."""
         now_s = time.monotonic()
         if self._request is None:
             self._send(now_s)
@@ -122,12 +122,12 @@ class GoalLife:
             self._look_after_server(now_s)
 
     def fail(self, error: str) -> None:
-        """End it: Deck cannot go on with it."""
+        """End the goal as failed: Deck cannot continue with it."""
         self._result = self._cancel = None
         self._end(GoalStatus.FAILED, error)
 
     def cancel_blindly(self) -> None:
-        """Ask for it to be cancelled, though the server has not said that it knows it."""
+        """Ask for it to be cancelled although the server has not accepted it yet."""
         if self._request is not None and self._accepted is None:
             self.line.cancel(self._id)
 
@@ -142,14 +142,14 @@ class GoalLife:
         elif now_s - self._began_s >= ANSWER_WITHIN_S:
             self._end(
                 GoalStatus.FAILED,
-                say("nobody serves it within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
+                say("no server appeared within {seconds} s", seconds=f"{ANSWER_WITHIN_S:g}"),
             )
 
     def _answered(self, *, accepted: bool) -> None:
         self._accepted = accepted
         if not accepted:
             if not self.told.ended:
-                self._end(GoalStatus.REJECTED, say("the server rejects it"))
+                self._end(GoalStatus.REJECTED, say("the server rejected it"))
             return
         self._servers = self.line.servers()
         self._servers_seen_s = time.monotonic()
@@ -160,7 +160,7 @@ class GoalLife:
 
     def _status(self, status: GoalStatus | None) -> None:
         if status in ENDS:
-            # The result says so too, and more.
+            # The result says the same, and more.
             self._over_s = self._over_s or time.monotonic()
         elif status is not None and not self.told.ended and self._accepted:
             self.told = replace(self.told, status=status)
@@ -202,7 +202,7 @@ class GoalLife:
             self._cancel = None
             self._end(GoalStatus.FAILED, say(LOST))
         if self._over_s is not None and now_s - self._over_s >= ANSWER_WITHIN_S:
-            self._end(GoalStatus.FAILED, say("it has ended, and its result does not come"))
+            self._end(GoalStatus.FAILED, say("it has ended, but its result has not arrived"))
 
     def _end(self, status: GoalStatus, error: str) -> None:
         self._ended_s = time.monotonic()
@@ -210,6 +210,6 @@ class GoalLife:
 
 
 def _reason(result: dict[str, Any]) -> str:
-    """Return what the server says of an aborted goal: the texts of its result."""
+    """Return the server's reasons for an aborted goal: the texts in its result."""
     texts = [value.strip() for value in result.values() if isinstance(value, str)]
-    return "; ".join(text for text in texts if text) or say("the server has aborted it")
+    return "; ".join(text for text in texts if text) or say("the server aborted it")

@@ -1,4 +1,4 @@
-"""Reading and setting the parameters of any node, any number of nodes at once, without blocking."""
+"""Reads and sets the parameters of any node, any number of nodes at once, without blocking."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from graph.calls.parameters_talk import SERVICES, read, write
 from graph.data import CallResult, ParameterRow, ParametersResult, SetResult
-from text.sentences import say
+from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     from graph.data import NodeRow, ServiceRow, Value
 
 FOUND_WITHIN_S = 1.0
-"""How long a node, or its services, may take to be found before they are said to be missing."""
+"""How long a node or its services may take to be discovered before they are reported missing."""
 
 
 @dataclass
 class _Talking:
-    """One talk with one node."""
+    """One exchange with one node."""
 
     node: str
     talk: Talk
     question: Question
     timeout_s: float
-    """Patience with each answer."""
+    """How long to wait for each answer."""
     end: Callable[[str], None]
-    """Tells whoever asked; the word is why it ended early, or empty."""
+    """Reports to the caller; the argument says why it ended early, or is empty."""
     asked_s: float
-    """When the question was first to be sent."""
+    """When the question should first have been sent."""
     answer: Future[CallResult] | None = None
     was_there: bool = False
 
@@ -48,7 +48,7 @@ class ParameterCalls:
         node: Callable[[str], NodeRow | None],
         service: Callable[[str], ServiceRow | None],
     ) -> None:
-        """Talk by `calls`; `node` and `service` tell what was last seen of the graph."""
+        """Send requests through `calls`; `node` and `service` look names up in the known graph."""
         self._calls = calls
         self._node = node
         self._service = service
@@ -57,7 +57,7 @@ class ParameterCalls:
     def read(
         self, node: str, timeout_s: float, started_s: float, future: Future[ParametersResult]
     ) -> None:
-        """Read all parameters of a node, with their descriptors; failures are told in words."""
+        """Read all parameters of a node, with their descriptors; failures are reported in words."""
         node = _full(node)
         rows: list[ParameterRow] = []
 
@@ -75,7 +75,7 @@ class ParameterCalls:
         started_s: float,
         future: Future[SetResult],
     ) -> None:
-        """Set parameters of a node, each for itself; failures are told in words."""
+        """Set parameters of a node, each independently; failures are reported in words."""
         node = _full(node)
         refused: dict[str, str] = {}
 
@@ -88,7 +88,7 @@ class ParameterCalls:
             end("")
 
     def step(self) -> bool:
-        """Ask, take answers, give up; tell whether any talk is still under way."""
+        """Ask, take answers, give up; return whether any exchange is still under way."""
         for talking in list(self._talks):
             try:
                 word = self._go_on(talking)
@@ -96,7 +96,7 @@ class ParameterCalls:
                 word = ""
             except Exception as error:  # noqa: BLE001 - one odd node must not end the others
                 word = say(
-                    "{node} answers what cannot be understood: {error}",
+                    "the answer of {node} cannot be understood: {error}",
                     node=talking.node,
                     error=str(error),
                 )
@@ -106,16 +106,16 @@ class ParameterCalls:
         return bool(self._talks)
 
     def fail(self, error: Exception) -> None:
-        """End every talk that is under way."""
+        """End every exchange that is under way."""
         while self._talks:
-            self._talks.pop().end(str(error))
+            self._talks.pop().end(reason_of(error))
 
     def _begin(self, node: str, talk: Talk, timeout_s: float, end: Callable[[str], None]) -> None:
         self._talks.append(_Talking(node, talk, next(talk), timeout_s, end, time.monotonic()))
         self.step()
 
     def _go_on(self, talking: _Talking) -> str | None:
-        """Take the next step; return None if there is more to come, or why there is not."""
+        """Take the next step; return None if there is more to come, otherwise why there is not."""
         if talking.answer is None:
             word = self._missing(talking)
             if word is not None:
@@ -134,7 +134,7 @@ class ParameterCalls:
         question = talking.question
         talking.answer = Future()
         name = f"{talking.node}/{question.service}"
-        # This one keeps the time itself, to say in its own words that it is over.
+        # This class watches the time itself, to report a time-out in its own words.
         patience_s = talking.timeout_s + FOUND_WITHIN_S
         self._calls.begin(
             name,
@@ -147,20 +147,20 @@ class ParameterCalls:
         )
 
     def _missing(self, talking: _Talking) -> str | None:
-        """Return why the node cannot be asked, "" if that is not known yet, None if it can be."""
+        """Return why the node cannot be asked, "" if that is not known yet, None if it can."""
         node = self._node(talking.node)
         talking.was_there = talking.was_there or node is not None
         if node and self._service(f"{talking.node}/{talking.question.service}"):
             for name, type_name in SERVICES.items():
-                # All at once, so that each need not wait anew until the node has found it.
+                # All at once, so that not each has to wait again until the node has discovered it.
                 self._calls.prepare(f"{talking.node}/{name}", type_name)
             return None
         if time.monotonic() - talking.asked_s < min(talking.timeout_s, FOUND_WITHIN_S):
             return ""
         if node:
             return say(
-                "{node} shows no services for its parameters: it has just come, or was started "
-                "with them off",
+                "{node} has no parameter services: it has just appeared, or was started without "
+                "them",
                 node=talking.node,
             )
         return _gone(talking)

@@ -7,28 +7,32 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from graph.messages.yaml_reading import YamlNode, read
+from graph.messages.yaml_reading import read
 from text.sentences import say
-from text.yaml_faults import YamlError, character_error
+from text.yaml_faults import YamlError, character_error, fault
+from text.yaml_reading import mapping
 from text.yaml_scalars import quoted, written
+from text.yaml_tree import Branch, Listing, Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from graph.data import ParameterRow, Value
+    from text.yaml_tree import FilePlace
 
 KEY = "ros__parameters"
 DEEPEST = 16
-"""Levels of nested names; a name of more parts is written with its dots."""
+"""Levels of nested names; a name with more parts is written with dots."""
 LONGEST_KEY = 1024
 """Characters of a key that may stand before its colon without a `?` (YAML 1.1, section 5.1)."""
 NOT_WRITTEN = "bytes, which a file of parameters cannot hold"
 
 
 def dump(node: str, parameters: Iterable[ParameterRow]) -> str:
-    """Return the text of a file with these parameters of one node, in the order of their names.
+    """Return the text of a file with these parameters of one node, sorted by name.
 
-    Those without a value are left out; bytes are named in a comment, as ROS reads none of a file.
+    Those without a value are left out; bytes are only named in a comment, as ROS cannot read them
+    from a file.
     """
     rows = {row.name: row for row in sorted(parameters, key=lambda row: row.name)}
     tree: dict[str, object] = {}
@@ -41,14 +45,15 @@ def dump(node: str, parameters: Iterable[ParameterRow]) -> str:
 
 
 def load(text: str, node: str) -> dict[str, Value]:
-    """Return the parameters that a file's text has for a node, what stands later first of all.
+    """Return the parameters that a file's text has for a node; later entries take precedence.
 
     Takes what `dump` writes, several nodes in a file, and ROS's own wildcards (`/**`, `/*/arm`).
     Raises YamlError, with line and column.
     """
-    if not text.strip():
+    root = read(text)
+    if root is None:
         raise YamlError(1, 1, say("the file is empty"))
-    found = list(_nodes(read(text), ""))
+    found = list(_nodes(root, ""))
     values = {
         name: value
         for pattern, parameters in found
@@ -65,7 +70,7 @@ def load(text: str, node: str) -> dict[str, Value]:
 def save_file(
     path: Path, node: str, parameters: Iterable[ParameterRow], *, replace: bool = False
 ) -> None:
-    """Write a file that is either the old one or whole.
+    """Write a file atomically: it is either the old one or the complete new one.
 
     Raises FileExistsError unless `replace`, and any other OSError of the file system.
     """
@@ -98,7 +103,7 @@ def load_file(path: Path, node: str) -> dict[str, Value]:
 def _place(
     tree: dict[str, object], name: str, row: ParameterRow, rows: Mapping[str, object]
 ) -> None:
-    """Nest a name by its dots, unless a part of it is the name of another parameter."""
+    """Nest a name at its dots, unless a part of it is the name of another parameter."""
     parts = name.split(".")
     above = [".".join(parts[:end]) for end in range(1, len(parts))]
     if not all(parts) or len(parts) > DEEPEST or any(each in rows for each in above):
@@ -130,81 +135,73 @@ def _text(row: ParameterRow) -> str:
 
 def _scalar(value: object) -> str:
     text = written(value)  # type: ignore[arg-type]
-    # ROS reads some words otherwise than PyYAML, `y` and `1e5` among them: all texts in quotes.
+    # ROS reads some words differently from PyYAML, such as `y` and `1e5`: quote all texts.
     return f'"{text}"' if isinstance(value, str) and not text.startswith('"') else text
 
 
-def _nodes(branch: YamlNode, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
+def _nodes(branch: Branch, path: str) -> Iterator[tuple[str, dict[str, Value]]]:
     """Yield nodes, or patterns for them, with their parameters."""
-    for key, below in branch.value.items():
+    for key, entry in branch.entries.items():
         if key == KEY:
             if not path:
                 words = say(
                     "`{key}:` is not under any node; write the node's name, or `/**:`, above it",
                     key=KEY,
                 )
-                raise YamlError(below.key_line, below.key_column, words)
+                raise fault(entry.key_place, words)
             parameters: dict[str, Value] = {}
-            _flatten(_fields(below), "", parameters)
+            _flatten(mapping(entry.value), "", parameters)
             yield path, parameters
             continue
-        if not isinstance(below.value, dict):
+        if not isinstance(entry.value, Branch):
             words = say(
                 "expected `{key}:` under the name of a node, found {name} with a value",
                 key=KEY,
                 name=repr(key),
             )
-            raise YamlError(below.key_line, below.key_column, words)
-        yield from _nodes(below, f"{path}/{key.strip('/')}")
+            raise fault(entry.key_place, words)
+        yield from _nodes(entry.value, f"{path}/{key.strip('/')}")
 
 
-def _fields(node: YamlNode) -> YamlNode:
-    if not isinstance(node.value, dict):
-        words = say("expected parameters as `name: value`")
-        raise YamlError(node.line, node.column, words)
-    return node
-
-
-def _flatten(branch: YamlNode, prefix: str, found: dict[str, Value]) -> None:
-    for key, below in branch.value.items():
+def _flatten(branch: Branch, prefix: str, found: dict[str, Value]) -> None:
+    for key, entry in branch.entries.items():
         name = f"{prefix}{key}"
-        if isinstance(below.value, dict):
-            _flatten(below, f"{name}.", found)
+        if isinstance(entry.value, Branch):
+            _flatten(entry.value, f"{name}.", found)
         elif name in found:
             words = say("the parameter {name} appears a second time", name=repr(name))
-            raise YamlError(below.key_line, below.key_column, words)
+            raise fault(entry.key_place, words)
+        elif isinstance(entry.value, Listing):
+            found[name] = _list(entry.value, name)
         else:
-            found[name] = _value(below, name)
+            found[name] = _single(entry.value, entry.key_place, name)
 
 
-def _value(node: YamlNode, name: str) -> Value:
-    if node.value is None:
-        line, column = node.key_line or node.line, node.key_column or node.column
-        raise YamlError(line, column, say("{name} has no value", name=repr(name)))
-    if isinstance(node.value, list):
-        return _list(node, name)
-    value: Value = node.value
-    return value
+def _single(scalar: Scalar, place: FilePlace, name: str) -> Value:
+    if scalar.value is None:
+        raise fault(place, say("{name} has no value", name=repr(name)))
+    return scalar.value
 
 
-def _list(node: YamlNode, name: str) -> Value:
-    for each in node.value:
-        if isinstance(each.value, (dict, list)):
+def _list(listing: Listing, name: str) -> Value:
+    values = []
+    for item in listing.items:
+        if not isinstance(item, Scalar):
             words = say("{name} is a list: expected a single value here", name=repr(name))
-            raise YamlError(each.line, each.column, words)
-    values = [_value(each, name) for each in node.value]
+            raise fault(item.place, words)
+        values.append(_single(item, item.place, name))
     kinds = {float if type(each) is int else type(each) for each in values}
     if len(kinds) > 1:
         words = say(
             "{name} has values of different types; a list of parameters has one type",
             name=repr(name),
         )
-        raise YamlError(node.line, node.column, words)
+        raise fault(listing.place, words)
     return values
 
 
 def _pattern(pattern: str) -> re.Pattern[str]:
-    """Return what matches the full names of the nodes that a key of a file is for."""
+    """Return a pattern for the full names of the nodes that a key of a file applies to."""
     tokens = {"*": "/[^/]+", "**": "(?:/[^/]+)*"}
     parts = pattern.strip("/").split("/")
     return re.compile("".join(tokens.get(part, "/" + re.escape(part)) for part in parts))

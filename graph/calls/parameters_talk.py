@@ -1,7 +1,7 @@
 """The exchange between Deck and a node about its parameters, request by request.
 
 A talk is a generator: it yields questions, is sent the answers as trees, and knows neither time
-nor ROS; `graph.calls.parameters` carries the questions over.
+nor ROS; `graph.calls.parameters` delivers the questions.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SERVICES = {
     "get_parameters": "rcl_interfaces/srv/GetParameters",
     "set_parameters": "rcl_interfaces/srv/SetParameters",
 }
-"""What a node is asked by, and the types."""
+"""The services through which a node is asked, and their types."""
 AT_ONCE = 200
 """Parameters in one question: a node with thousands of them must fit into its messages."""
 
@@ -30,7 +30,7 @@ class Question(NamedTuple):
     """A request to one of a node's own services."""
 
     service: str
-    """`list_parameters`, under the node's name."""
+    """The service relative to the node's name: `list_parameters`."""
     request: Mapping[str, Value]
 
 
@@ -38,7 +38,7 @@ Talk = Generator[Question, Mapping[str, Any], None]
 
 
 def read(rows: list[ParameterRow]) -> Talk:
-    """Learn all parameters; they are in `rows`, in the order of their names, when it ends."""
+    """Read all parameters into `rows`, which is sorted by name when this ends."""
     listed = yield Question("list_parameters", {"depth": 0})
     names = sorted(set(listed["result"]["names"]))
     descriptors = yield from _describe(names)
@@ -49,7 +49,7 @@ def read(rows: list[ParameterRow]) -> Talk:
 
 
 def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Talk:
-    """Set parameters by the types that they have; each that is not taken is put into `refused`."""
+    """Set parameters, keeping their types; each that is not accepted is put into `refused`."""
     descriptors = yield from _describe(list(wanted))
     made: dict[str, Value] = {}
     for name, value in wanted.items():
@@ -68,13 +68,13 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Talk:
             if not result["successful"]:
                 refused[name] = result["reason"] or say("the node refuses it and gives no reason")
         for name in some[len(results) :]:
-            refused[name] = say("the node says nothing about it")
+            refused[name] = say("the node's answer does not mention it")
 
 
 def _made(
     descriptor: Mapping[str, Any] | None, value: Value
 ) -> tuple[str, dict[str, Value] | None]:
-    """Return why not, or the tree of the ParameterValue."""
+    """Return why the value does not fit, or the tree of its ParameterValue."""
     if descriptor is None:
         return say("the node has no such parameter"), None
     if descriptor["read_only"]:
@@ -83,7 +83,7 @@ def _made(
     try:
         return "", carried(type_name, value)
     except WrongValueError as error:
-        # The type of a dynamic one is kept where the value fits it.
+        # A dynamically typed parameter keeps its type if the value fits.
         return _made_anew(value) if descriptor["dynamic_typing"] else (error.words, None)
 
 
@@ -101,7 +101,7 @@ def _describe(names: list[str]) -> Generator[Question, Mapping[str, Any], dict[s
 def _of_each(
     service: str, field: str, names: list[str]
 ) -> Generator[Question, Mapping[str, Any], dict[str, Any]]:
-    """Ask for something of each parameter; those that the node does not have are left out."""
+    """Ask for something about each parameter; those that the node does not have are left out."""
     found: dict[str, Any] = {}
     parts = list(_parts(names))
     while parts:
@@ -111,7 +111,7 @@ def _of_each(
         if len(answers) == len(some):
             found.update(zip(some, answers, strict=True))
         elif len(some) > 1:
-            # One that is not there, or has no value, empties the answer for all.
+            # One parameter that does not exist, or has no value, empties the answer for all.
             middle = len(some) // 2
             parts[:0] = [some[:middle], some[middle:]]
     return found

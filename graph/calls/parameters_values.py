@@ -1,4 +1,4 @@
-"""Values of parameters: as ROS carries them, as plain values, and as a person types them."""
+"""Parameter values: as ROS transports them, as plain values, and as a person types them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from graph.data import ParameterRow
 from text.sentences import say
 from text.suggestions import no_number
+from text.yaml_scalars import meaning
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -27,17 +28,15 @@ TYPES = (
 )
 """By their numbers (source: rcl_interfaces/msg/ParameterType)."""
 INTEGERS = range(-(2**63), 2**63)
-TRUE = frozenset({"true", "yes", "on"})
-FALSE = frozenset({"false", "no", "off"})
 SHOWN = 40
-"""Characters of a wrong value that a word repeats."""
+"""Characters of a wrong value that an error repeats."""
 
 
 class WrongValueError(ValueError):
-    """A value does not fit its parameter; `words`, or str(), say what was expected and given."""
+    """A value does not fit its parameter; `words` and str() say what was expected and given."""
 
     def __init__(self, words: str) -> None:
-        """Say why not, as `text.sentences.say` makes it."""
+        """Store the reason, made by `text.sentences.say`."""
         super().__init__(words)
         self.words = words
 
@@ -47,7 +46,7 @@ def row(
 ) -> ParameterRow:
     """Return one parameter from the trees of its ParameterDescriptor and its ParameterValue.
 
-    A parameter that was declared and never given a value has its declared type and no value.
+    A parameter that was declared but never given a value has its declared type and no value.
     """
     value = plain(carried) if carried is not None else None
     type_name = TYPES[carried["type"]] if carried is not None and value is not None else ""
@@ -71,7 +70,7 @@ def row(
 
 
 def type_of(descriptor: Mapping[str, Any]) -> str:
-    """Return the type that a parameter was declared with; `not_set` where any will do."""
+    """Return the type that a parameter was declared with; `not_set` if any type will do."""
     number = descriptor["type"]
     return TYPES[number] if number in range(len(TYPES)) else TYPES[0]
 
@@ -86,10 +85,10 @@ def plain(carried: Mapping[str, Any]) -> Value | None:
 
 
 def carried(type_name: str, value: Value) -> dict[str, Value]:
-    """Return the tree of the ParameterValue of this type for a value as a person gives it.
+    """Return the tree of the ParameterValue of this type for a value that a person gave.
 
-    An integer will do for a double, and the text of a value for the value. For `not_set` the type
-    is that of the value. Raises WrongValueError if it does not fit.
+    An integer is accepted for a double, and the text of a value for the value. For `not_set` the
+    type is that of the value. Raises WrongValueError if it does not fit.
     """
     if type_name == TYPES[0]:
         type_name = _type_for(value)
@@ -117,48 +116,38 @@ def _type_for(value: Value) -> str:
 
 
 def _bool(value: Value) -> bool:
-    if isinstance(value, bool):
-        return value
-    word = value.strip().lower() if isinstance(value, str) else ""
-    if word not in TRUE | FALSE:
+    meant = _meant(value)
+    if not isinstance(meant, bool):
         raise WrongValueError(say("expected true or false, got {value}", value=_shown(value)))
-    return word in TRUE
+    return meant
 
 
 def _integer(value: Value) -> int:
-    number: int | None = None
-    if isinstance(value, str):
-        try:
-            number = int(value.strip(), 0)
-        except ValueError:
-            number = None
-    elif isinstance(value, (int, float)) and not isinstance(value, bool):
-        number = int(value) if isinstance(value, int) or value.is_integer() else None
-    if number is None:
+    number = _meant(value)
+    if isinstance(number, float) and number.is_integer():
+        number = int(number)
+    if isinstance(number, bool) or not isinstance(number, int):
         raise WrongValueError(say("expected a whole number, got {value}", value=_shown(value)))
     if number not in INTEGERS:
-        raise WrongValueError(
-            say("{value} is too large for an integer of 64 bits", value=_shown(value))
-        )
+        raise WrongValueError(say("{value} is too large for a 64-bit integer", value=_shown(value)))
     return number
 
 
 def _double(value: Value) -> float:
-    if isinstance(value, str):
-        # `.inf` and `.nan` are how YAML writes them.
-        text = value.strip().lower().replace(".inf", "inf").replace(".nan", "nan")
-        try:
-            return float(text)
-        except ValueError:
-            raise WrongValueError(no_number(value, _shown(value))) from None
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    meant = _meant(value)
+    if isinstance(meant, bool) or not isinstance(meant, (int, float)):
         raise WrongValueError(no_number(value, _shown(value)))
     try:
-        return float(value)
+        return float(meant)
     except OverflowError:
         raise WrongValueError(
             say("{value} is too large for a double", value=_shown(value))
         ) from None
+
+
+def _meant(value: Value) -> Value | None:
+    """Return a single value; text that was typed means what it would mean in YAML."""
+    return meaning(value.strip()) if isinstance(value, str) else value
 
 
 def _string(value: Value) -> str:

@@ -13,7 +13,7 @@ from graph.messages.dated import draft
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError, load_service
 from graph.messages.values import to_tree
-from text.sentences import say
+from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 
 QUEUE = 10
-"""Requests that a service keeps while it is busy, by default (source: rmw, the services' QoS)."""
+"""Requests that a busy service queues by default (source: rmw, the services' QoS)."""
 GONE_AFTER_S = 0.5
 """A last answer may come a little after its service has left the graph."""
 LATE_KEPT = 20
-"""Calls whose time is over and whose answer would still be taken; their clients are kept, too."""
+"""Timed-out calls whose answer would still be taken; their clients are kept, too."""
 
 
 @dataclass
@@ -42,11 +42,11 @@ class _Call:
     started_s: float
     timeout_s: float
     sequence: int | None = None
-    """Number of the request, once it is sent."""
+    """Number of the request, once sent."""
     served_s: float = 0.0
-    """When its service was last seen, once it is sent."""
+    """When its service was last seen, once sent."""
     is_late: bool = False
-    """Whether its time is over; `future` is then the one for what still comes of it."""
+    """Whether it has timed out; `future` is then the one for a late answer."""
 
 
 class Calls:
@@ -66,10 +66,10 @@ class Calls:
         timeout_s: float,
         started_s: float,
     ) -> None:
-        """Begin a call; the future's result tells of every failure in words, it never raises.
+        """Begin a call; the future's result reports every failure in words, it never raises.
 
-        `known` is what the graph says of the service, `started_s` when it was asked for. A call
-        that was sent and has no answer within `timeout_s` is told as failed, and listened for on.
+        `known` is what the graph knows of the service, `started_s` when the call was asked for. A
+        call without an answer within `timeout_s` is reported as failed, but still listened for.
         """
         if known and type_name not in known.type_names:
             types = ", ".join(known.type_names)
@@ -88,7 +88,7 @@ class Calls:
             words = say("{field}: {message}", field=error.field, message=error.message)
             future.set_result(_failed(service, words if error.field else error.message, started_s))
             return
-        except Exception as error:  # noqa: BLE001 - of rclpy's, a name that is none
+        except Exception as error:  # noqa: BLE001 - rclpy's, for an invalid name
             words = say("{name} cannot be called: {error}", name=service, error=str(error))
             future.set_result(_failed(service, words, started_s))
             return
@@ -96,14 +96,14 @@ class Calls:
         self.step()
 
     def prepare(self, service: str, type_name: str) -> Client:
-        """Make the client now, so that its first call need not wait for it.
+        """Create the client now, so that its first call need not wait for it.
 
-        Raises UnknownTypeError, and what rclpy raises for a name that is none.
+        Raises UnknownTypeError, and what rclpy raises for an invalid name.
         """
         return self._clients.get(service, type_name, {call.client for call in self._calls})
 
     def step(self) -> bool:
-        """Send, take answers, give up; tell whether anybody waits for one that is in time."""
+        """Send, take answers, give up; return whether any call still waits within its time-out."""
         if not self._calls:
             return False
         answers = self._take_answers()
@@ -120,7 +120,7 @@ class Calls:
         """End every call that is under way."""
         while self._calls:
             call = self._calls.pop()
-            call.future.set_result(_failed(call.service, str(error), call.started_s))
+            call.future.set_result(_failed(call.service, reason_of(error), call.started_s))
 
     def _result(self, call: _Call, answers: dict[tuple[Client, int], Any]) -> CallResult | None:
         try:
@@ -140,11 +140,11 @@ class Calls:
         return None
 
     def _give_up(self, call: _Call) -> None:
-        """Tell that its time is over; an answer to one that was sent is still listened for."""
+        """Report the time-out; the answer to a request that was sent is still awaited."""
         future = call.future
         if call.sequence is None:
             self._calls.remove(call)
-            words = say("{name}: nobody serves it within {seconds:g} s", **_facts(call))
+            words = say("{name}: no server appeared within {seconds:g} s", **_facts(call))
             future.set_result(_failed(call.service, words, call.started_s))
             return
         late = [other for other in self._calls if other.is_late]
@@ -153,14 +153,14 @@ class Calls:
             words = say("{name}: its answer is no longer awaited", name=oldest.service)
             oldest.future.set_result(_failed(oldest.service, words, oldest.started_s))
         call.is_late, call.future = True, Future()
-        # Whoever stops waiting for it must not leave one that cannot be set.
+        # A caller that stops waiting must not leave a future behind that cannot be set.
         call.future.set_running_or_notify_cancel()
         words = say("{name}: no answer within {seconds:g} s", **_facts(call))
         told = _failed(call.service, words, call.started_s)
         future.set_result(replace(told, late=call.future))
 
     def _has_its_turn(self, call: _Call) -> bool:
-        """Whether the service is there and has room: what overflows its queue gets no answer."""
+        """Whether the service exists and has room: what overflows its queue gets no answer."""
         sent = sum(
             other.client is call.client and other.sequence is not None and not other.is_late
             for other in self._calls
@@ -168,7 +168,7 @@ class Calls:
         return sent < QUEUE and self._clients.is_ready(call.client)
 
     def _take_answers(self) -> dict[tuple[Client, int], Any]:
-        """Take all answers there are; those to calls that nobody listens for are dropped here."""
+        """Take all answers there are; those to calls that nobody awaits are dropped here."""
         answers = {}
         for client in {call.client for call in self._calls}:
             with client.handle:

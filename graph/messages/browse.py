@@ -1,7 +1,7 @@
-"""Every interface that is installed, and each type down to its fields.
+"""Every installed interface, and each type down to its fields.
 
-All of it may be called from any thread, and is remembered: what is installed does not change while
-Deck runs.
+All functions may be called from any thread, and results are cached: what is installed does not
+change while Deck runs.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 KINDS = ("msg", "srv", "action")
 _EXPORTED = re.compile(r"^from (\w+)\.(msg|srv|action)\._\w+ import ([^\W_]+)(?!\w)", re.MULTILINE)
-"""How the generator of Python interfaces begins a line of `std_msgs/msg/__init__.py`. Names with an
-underscore are the halves of services and actions."""
+"""The lines that the generator of Python interfaces writes into `std_msgs/msg/__init__.py`. Names
+with an underscore are the parts of services and actions."""
 
 
 @dataclass(frozen=True)
@@ -44,16 +44,10 @@ class MessageField:
     """As .msg files write it: `float64[9]`, `string<=10`, `geometry_msgs/Point[]`."""
     default: Value
     message: str | None = None
-    """The type of the message that it holds, `geometry_msgs/msg/Point`: ask for its definition."""
+    """The type of the message that it holds, `geometry_msgs/msg/Point`, to pass to `definition`."""
     least: int | None = None
     greatest: int | None = None
-    """Of integers; None for all else."""
-    size: int | None = None
-    """Of an array of fixed length."""
-    most: int | None = None
-    """Greatest number of elements of a bounded array."""
-    longest: int | None = None
-    """Greatest number of characters of a bounded text."""
+    """Of integers; None for everything else."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +60,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Part:
-    """Fields and constants of a message, or of one half of a service, one third of an action."""
+    """Fields and constants of a message, or of one part of a service or an action."""
 
     name: str
     """`message`; `request`, `response`; `goal`, `result`, `feedback`."""
@@ -76,29 +70,25 @@ class Part:
 
 @dataclass(frozen=True)
 class Definition:
-    """What a type is made of."""
+    """The definition of a type."""
 
     type_name: str
     parts: tuple[Part, ...]
-
-    @property
-    def kind(self) -> str:
-        """`msg`, `srv` or `action`."""
-        return self.type_name.split("/")[1]
 
 
 @lru_cache(maxsize=1)
 def interfaces() -> tuple[str, ...]:
     """Return the names of all installed types, sorted: `std_msgs/msg/Bool`.
 
-    Of the Python packages on the path: what rclpy can use, from wheels, apt, conda and colcon.
+    They come from the Python packages on the path: what rclpy can use, from wheels, apt, conda and
+    colcon.
     """
     return tuple(sorted({name for path in sys.path for name in _installed_in(Path(path))}))
 
 
 @lru_cache(maxsize=512)
 def definition(type_name: str) -> Definition:
-    """Return what a message, a service or an action is made of. Raises UnknownTypeError."""
+    """Return the definition of a message, service or action. Raises UnknownTypeError."""
     parts = type_name.split("/")
     kind = parts[1] if len(parts) == NAME_PARTS else ""
     if kind == "msg":
@@ -127,7 +117,7 @@ def _installed_in(folder: Path) -> Iterator[str]:
             try:
                 text = module.read_text(encoding="utf-8", errors="replace")
             except OSError:
-                # Not for us to read, so not for rclpy either.
+                # Not readable for this user, so not for rclpy either.
                 continue
             for found in _EXPORTED.finditer(text):
                 if found[1] == package and found[2] == kind:
@@ -150,9 +140,6 @@ def _field(name: str, text: str, default: Value) -> MessageField:
         message=kind.message_type if kind.is_message else None,
         least=least,
         greatest=greatest,
-        size=kind.size,
-        most=kind.limit,
-        longest=kind.text_limit,
     )
 
 
@@ -160,5 +147,5 @@ def _constants(cls: type[Any]) -> Iterator[Constant]:
     meta = type(cls)
     constants = vars(meta).get(f"_{meta.__name__}__constants", {})
     for name, value in constants.items():
-        # A `byte` is a bytes of one in Python; numbers are what people know.
+        # A `byte` is a bytes object of length 1 in Python; people know it as a number.
         yield Constant(name, value[0] if isinstance(value, bytes) else value)

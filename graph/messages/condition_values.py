@@ -1,4 +1,4 @@
-"""The value of an expression over a message: each kind of syntax node that `condition` allows."""
+"""Evaluates an expression about a message: every kind of syntax node that `condition` allows."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CONSTANTS: dict[str, Any] = {"true": True, "false": False, "inf": math.inf, "nan
 MOST_BYTE = 255
 MOST_WHOLE = 2**64
 FUNCTIONS = ("abs", "len", "max", "min", "sum")
-"""Each takes one value."""
+"""Functions of one argument."""
 _ARITHMETIC: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -37,19 +37,19 @@ class RefusalError(Exception):
     """A part of the expression has no value for this message."""
 
     def __init__(self, node: ast.AST, words: str) -> None:
-        """Say which part, and why as `text.sentences.say` makes it."""
+        """Store the part, and the reason, made by `text.sentences.say`."""
         super().__init__(words)
         self.node = node
         self.words = words
 
 
 def evaluate(node: ast.expr, names: Mapping[str, Any]) -> Any:  # noqa: ANN401 - any value
-    """Return the value of an expression that was checked before. Raises RefusalError."""
+    """Return the value of an expression that has been checked. Raises RefusalError."""
     return _KINDS[type(node)](node, names)
 
 
 def truth(node: ast.expr, value: Any) -> bool:  # noqa: ANN401
-    """Return whether a value counts as true: a number other than 0, a text that is not empty."""
+    """Return whether a value counts as true: a non-zero number, a non-empty string."""
     if _is_number(value) or isinstance(value, str):
         return bool(value)
     raise RefusalError(
@@ -83,7 +83,7 @@ def _element(node: ast.Subscript, names: Mapping[str, Any]) -> Any:  # noqa: ANN
     if isinstance(value, Mapping) or not _has_length(value):
         raise RefusalError(node, say("{kind} has no elements", kind=_kind(value)))
     if not isinstance(index, int) or isinstance(index, bool):
-        raise RefusalError(node, say("an element is chosen by a whole number"))
+        raise RefusalError(node, say("the index of an element must be a whole number"))
     if not -len(value) <= index < len(value):
         raise RefusalError(node, say("there are {n} elements, counted from 0", n=len(value)))
     return _plain(value[index])
@@ -103,13 +103,13 @@ def _unary(node: ast.UnaryOp, names: Mapping[str, Any]) -> Any:  # noqa: ANN401
 
 
 def _binary(node: ast.BinOp, names: Mapping[str, Any]) -> Any:  # noqa: ANN401
-    # Numbers alone: a text times a number would be as long as somebody likes.
+    # Numbers only: a string times a number could become arbitrarily long.
     left = _number(node.left, evaluate(node.left, names))
     right = _number(node.right, evaluate(node.right, names))
     try:
         return _ARITHMETIC[type(node.op)](left, right)
     except ZeroDivisionError as error:
-        raise RefusalError(node, say("it divides by zero")) from error
+        raise RefusalError(node, say("division by zero")) from error
     except ArithmeticError as error:
         raise RefusalError(node, say("the number is too large")) from error
 
@@ -136,7 +136,7 @@ def _compared(node: ast.Compare, sign: ast.cmpop, left: Any, right: Any) -> bool
     )
     if not same:
         kinds = {"left": _kind(left), "right": _kind(right)}
-        raise RefusalError(node, say("{left} and {right} cannot be compared so", **kinds))
+        raise RefusalError(node, say("{left} and {right} cannot be compared like this", **kinds))
     return _ORDERS[type(sign)](left, right)
 
 
@@ -151,7 +151,7 @@ def _is_in(node: ast.Compare, one: Any, many: Any) -> bool:  # noqa: ANN401
             )
         if isinstance(many, list):
             return any(_listed_out(_plain(each)) == _listed_out(one) for each in many)
-        # An array of numbers, however long. What no array can hold numpy would not compare.
+        # An array of numbers, however long. numpy refuses to compare what no array can hold.
         holdable = _is_number(one) and (isinstance(one, float) or abs(one) <= MOST_WHOLE)
         return holdable and bool((many == one).any())
     kinds = {"left": _kind(one), "right": _kind(many)}
@@ -172,7 +172,7 @@ def _called(node: ast.Call, names: Mapping[str, Any]) -> Any:  # noqa: ANN401
         if not len(value):
             raise RefusalError(argument, say("it is empty"))
         if hasattr(value, "dtype") and name != "sum":
-            # At once, in numpy: an array may have a million elements. Its sum would wrap or warn.
+            # In numpy, as an array may have a million elements. Its own sum could overflow or warn.
             return _plain(getattr(value, name)())
         numbers = [_plain(each) for each in _listed_out(value)]
         if all(map(_is_number, numbers)):
@@ -196,12 +196,12 @@ _KINDS: dict[type[ast.expr], Callable[[Any, Mapping[str, Any]], Any]] = {
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401
-    """Return a scalar of numpy as one of Python: that one neither warns nor wraps around."""
+    """Return a numpy scalar as a Python number, which neither warns nor wraps around."""
     return value.item() if hasattr(value, "item") and not getattr(value, "ndim", 0) else value
 
 
 def _listed_out(value: Any) -> Any:  # noqa: ANN401
-    """Return an array as a list, to be compared as a whole."""
+    """Return an array as a list, which compares as a whole."""
     if hasattr(value, "tolist"):
         return value.tolist()
     return list(value) if isinstance(value, bytes) else value

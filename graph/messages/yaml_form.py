@@ -16,14 +16,16 @@ from graph.messages.types import (
     load_service,
 )
 from graph.messages.values import fields_of, to_tree
-from graph.messages.yaml_reading import read
+from graph.messages.yaml_reading import read_message
 from graph.messages.yaml_text import to_yaml
 from text.sentences import say
+from text.yaml_tree import Branch, Listing, Scalar, field_name, find, place_of, plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from graph.data import Value
+    from text.yaml_tree import FilePlace, Tree, Where
 
 
 MOST_NAMES = 6
@@ -83,18 +85,41 @@ def check(type_name: str, text: str) -> Mapping[str, Value]:
     Raises YamlError, FieldError with the field's line and column, or UnknownTypeError.
     """
     cls = form_class(type_name)
-    root = read(text)
-    tree: Mapping[str, Value] = root.plain()
+    root = read_message(text)
+    tree: Mapping[str, Value] = plain(root)
     try:
         draft(cls, tree)
     except FieldError as error:
-        node = root.find(error.field)
-        at_key = isinstance(error, NoSuchFieldError) or isinstance(node.value, (dict, list))
-        is_named = at_key and node.key_line > 0
-        error.line = node.key_line if is_named else node.line
-        error.column = node.key_column if is_named else node.column
+        place = _place(root, error)
+        error.line, error.column = place.line, place.column
         raise
     return tree
+
+
+def _place(root: Branch, error: FieldError) -> FilePlace:
+    """Return what to point at: a single value, or the name that stands before anything else."""
+    where = _where(root, error.field)
+    at_key = isinstance(error, NoSuchFieldError) or not isinstance(find(root, where), Scalar)
+    return place_of(root, where, key=at_key)
+
+
+def _where(tree: Tree, field: str, above: Where = ()) -> Where:
+    """Return the path of a field such as `points[2].x`, or of the nearest that is around it."""
+    for part, below in _parts(tree):
+        where = (*above, part)
+        name = field_name(where)
+        if name == field:
+            return where
+        if field.startswith((f"{name}.", f"{name}[")):
+            return _where(below, field, where)
+    return above
+
+
+def _parts(tree: Tree) -> Iterator[tuple[str | int, Tree]]:
+    if isinstance(tree, Branch):
+        yield from ((name, entry.value) for name, entry in tree.entries.items())
+    elif isinstance(tree, Listing):
+        yield from enumerate(tree.items)
 
 
 def _remarks(

@@ -1,12 +1,10 @@
-"""Messages as YAML, as `ros2 topic echo` and `ros2 topic pub` have it, and back into trees."""
+"""Messages as YAML, as `ros2 topic echo` and `ros2 topic pub` have it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from graph.messages.yaml_reading import read
-from text.yaml_faults import YamlError
 from text.yaml_scalars import written
 
 if TYPE_CHECKING:
@@ -14,20 +12,8 @@ if TYPE_CHECKING:
 
     from graph.data import Value
 
-__all__ = ["YamlError", "from_yaml", "is_cut", "to_yaml"]
-
 LONGEST_TEXT = 64 * 1024
 """Characters of a text, where arrays are cut too: what a terminal still takes as a clipboard."""
-
-
-def from_yaml(text: str) -> Mapping[str, Value]:
-    """Return the fields that a text of YAML holds, at most 1 MiB of it.
-
-    Raises YamlError for anything that PyYAML refuses, and for anchors, aliases, tags, a name given
-    twice, several documents, and what is no mapping.
-    """
-    fields: Mapping[str, Value] = read(text).plain()
-    return fields
 
 
 def to_yaml(

@@ -1,7 +1,7 @@
 """The observer: one ROS node on a thread of its own, in the screen's process.
 
-It looks at the graph and at its queues a few times a second and hands over plain data. Nothing
-here is woken by a message, and no method of the observer waits for anything.
+It polls the graph and its queues a few times a second and hands over plain data. Messages do not
+wake it, and no method of the observer waits for anything.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from graph.observer.requests import (
     SendMessage,
 )
 from graph.ros import open_ros
-from text.sentences import say
+from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -69,19 +69,19 @@ class Observer:
         self._wake.set()
 
     def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
-        """Begin to observe; `on_update` is called on the observer's own thread.
+        """Start observing; `on_update` is called on the observer's own thread.
 
-        What was asked for before, and while rclpy is being imported, is done as soon as it is.
+        Requests made earlier, or while rclpy is being imported, are served as soon as it is loaded.
         """
         self._thread = threading.Thread(
             target=self._run, args=(on_update,), name="deck-observer", daemon=True
         )
-        # DDS threads must be gone before the interpreter is.
+        # DDS threads must end before the interpreter does.
         atexit.register(self.stop)
         self._thread.start()
 
     def stop(self) -> None:
-        """Leave the graph; what is under way fails. Returns within a few seconds, whatever."""
+        """Leave the graph; what is under way fails. Always returns within a few seconds."""
         self._stopping = True
         self._wake.set()
         atexit.unregister(self.stop)
@@ -103,13 +103,13 @@ class Observer:
         self._look_at(all_topics=all_topics)
 
     def watch_goals(self, actions: Iterable[str]) -> None:
-        """Tell in each update of the goals that others have sent to exactly these actions."""
+        """Report in each update the goals that others have sent to exactly these actions."""
         self._look_at(actions=frozenset(actions))
 
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False
     ) -> Future[None]:
-        """Make a publisher now, so that its first message goes out at once."""
+        """Create a publisher now, so that its first message goes out at once."""
         request = PreparePublisher(topic, type_name, latched)
         self._requests.put(request)
         return request.future
@@ -117,11 +117,11 @@ class Observer:
     def publish(
         self, topic: str, type_name: str, value: Mapping[str, Value], *, latched: bool = False
     ) -> Future[int]:
-        """Publish one message; the future tells how many subscribers it went to.
+        """Publish one message; the future returns how many subscribers it went to.
 
-        A new publisher waits up to a second for its subscribers, in the first seconds up to four.
-        A latched message goes out at once and stays for those who come later; only the count
-        waits. The future raises PublishError, UnknownTypeError, FieldError or
+        A new publisher waits up to a second for its subscribers, or up to four seconds just after
+        the start. A latched message goes out at once and stays for late subscribers; only the
+        count waits. The future raises PublishError, UnknownTypeError, FieldError or
         ObserverError.
         """
         request = SendMessage(topic, type_name, value, latched)
@@ -139,7 +139,7 @@ class Observer:
         request: Mapping[str, Value],
         timeout_s: float = ANSWER_WITHIN_S,
     ) -> Future[CallResult]:
-        """Call a service; the result tells of an answer or why there is none, it never raises."""
+        """Call a service; the result holds the answer or the failure, the future never raises."""
         asked = CallService(service, type_name, request, timeout_s)
         self._requests.put(asked)
         return asked.future
@@ -147,9 +147,9 @@ class Observer:
     def start_publishing(
         self, topic: str, type_name: str, value: Mapping[str, Value], hz: float
     ) -> Future[int]:
-        """Publish a message at 0.1 to 100 Hz until it is stopped, or the observer is.
+        """Publish a message at 0.1 to 100 Hz until this, or the observer, is stopped.
 
-        The future tells its number; it raises PublishError, UnknownTypeError, FieldError or
+        The future returns its number; it raises PublishError, UnknownTypeError, FieldError or
         ObserverError.
         """
         request = Begin[int](
@@ -161,18 +161,18 @@ class Observer:
         return request.future
 
     def stop_publishing(self, number: int) -> None:
-        """Publish that one no more; updates do not tell of it any longer."""
+        """Stop this publication; updates no longer report it."""
         self._requests.put(Perform(lambda node: node.publications.stop(number)))
 
     def stop_publishing_all(self) -> None:
-        """Publish nothing at a rate any more, not even what was asked for a moment ago."""
+        """Stop all periodic publications, even those asked for a moment ago."""
         request = Perform(lambda node: node.publications.close())
         self._requests.hurry(request)
-        # What has been asked for and has not begun does so before this one's turn.
+        # Publications asked for but not yet started are started before this request's turn.
         self._requests.put(request)
 
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
-        """Make a publisher for what may be held, and publish nothing.
+        """Create a publisher for `hold`, and publish nothing.
 
         The future raises PublishError, UnknownTypeError or ObserverError.
         """
@@ -186,10 +186,10 @@ class Observer:
         return request.future
 
     def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
-        """Publish a message again and again until `word.until_s`, unless asked again before.
+        """Publish a message repeatedly until `word.until_s`, unless called again before that.
 
-        Then `word.rest` is published, and nothing more. The future tells how many subscribers are
-        matched now; it raises PublishError, UnknownTypeError, FieldError or ObserverError.
+        Then `word.rest` is published, and nothing more. The future returns how many subscribers
+        are matched now; it raises PublishError, UnknownTypeError, FieldError or ObserverError.
         """
 
         def hold(node: ObserverNode, future: Future[int]) -> None:
@@ -202,11 +202,11 @@ class Observer:
         return request.future
 
     def let_go(self, topic: str) -> None:
-        """Publish the message of rest of what is held, at once."""
+        """Publish the rest message of a held topic at once."""
         self._requests.hurry(Perform(lambda node: node.dead_man_switch.let_go(topic)))
 
     def send_goal(self, action: str, type_name: str, goal: Mapping[str, Value]) -> Future[int]:
-        """Send a goal; the future tells its number, and updates how it goes.
+        """Send a goal; the future returns its number, and updates report its progress.
 
         It raises GoalError, UnknownTypeError, FieldError or ObserverError.
         """
@@ -219,26 +219,26 @@ class Observer:
         return request.future
 
     def cancel_goal(self, number: int) -> None:
-        """Ask for a goal to be cancelled; updates tell whether its server agrees."""
+        """Ask for a goal to be cancelled; updates report whether its server agrees."""
         self._requests.put(Perform(lambda node: node.goals.cancel(number)))
 
     def cancel_seen_goal(self, action: str, goal_id: str) -> None:
-        """Ask for a goal of somebody else's to be cancelled; updates tell what came of it."""
+        """Ask for another client's goal to be cancelled; updates report the outcome."""
         self._requests.put(Perform(lambda node: node.seen_goals.cancel(action, goal_id)))
 
     def forget_goal(self, number: int) -> None:
-        """Tell no more of a goal; one that has not ended is cancelled."""
+        """Stop reporting a goal; one that has not ended is cancelled."""
         self._requests.put(Perform(lambda node: node.goals.forget(number)))
 
     def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
         """Read all parameters of a node, with descriptors; `timeout_s` is for each answer.
 
-        The result tells of them or why there are none, the future never raises.
+        The result holds them or why there are none, the future never raises.
         """
         asked_s = time.monotonic()
         request = Begin[ParametersResult](
             lambda own, future: own.parameters.read(node, timeout_s, asked_s, future),
-            lambda error: ParametersResult(node, (), str(error), time.monotonic() - asked_s),
+            lambda error: ParametersResult(node, (), reason_of(error), time.monotonic() - asked_s),
         )
         self._requests.put(request)
         return request.future
@@ -246,14 +246,14 @@ class Observer:
     def set_parameters(
         self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[SetResult]:
-        """Set parameters by the types that they have, each for itself.
+        """Set parameters, keeping their types, each independently.
 
-        The result tells of each that was refused, and why; the future never raises.
+        The result lists those that were refused, and why; the future never raises.
         """
         asked_s = time.monotonic()
         request = Begin[SetResult](
             lambda own, future: own.parameters.write(node, values, timeout_s, asked_s, future),
-            lambda error: SetResult(node, {}, str(error), time.monotonic() - asked_s),
+            lambda error: SetResult(node, {}, reason_of(error), time.monotonic() - asked_s),
         )
         self._requests.put(request)
         return request.future
@@ -272,7 +272,7 @@ class Observer:
             # This imports rclpy; the screen need not wait for it.
             node = ObserverNode(open_ros(self._domain, self._discovery))
             node.serve_urgent = lambda: self._serve_urgent(node)
-        except Exception as error:  # noqa: BLE001 - told to the screen
+        except Exception as error:  # noqa: BLE001 - reported to the screen
             words = say("ROS cannot be used: {error}", error=str(error))
             end = ObserverError(words)
             self._tell(on_update, GraphUpdate(time.time(), error=words))
@@ -295,11 +295,11 @@ class Observer:
                 if now_s >= next_look_s or self._interest is not interest:
                     interest = self._interest
                     period_s = LOOK_AT_GRAPH_S if node.is_idle else self._period_s
-                    # In step, save that a look out of turn does not put off the next.
+                    # At a steady pace; an extra look out of turn does not delay the next.
                     next_look_s = max(now_s, min(next_look_s, now_s) + period_s)
                     self._look(node, interest, on_update)
             except Exception as error:
-                # The graph is in motion while it is looked at: the next look has another chance.
+                # The graph changes while it is being scanned: the next look has another chance.
                 logger.exception("a look at the graph failed")
                 error_update = GraphUpdate(
                     time.time(), error=say("the ROS graph: {error}", error=str(error))
@@ -311,7 +311,7 @@ class Observer:
                 self._wake.clear()
 
     def _serve_urgent(self, node: ObserverNode) -> None:
-        """Do what cannot wait for the end of a look: stops, and what is held."""
+        """Serve what cannot wait for the end of a look: stops, and held topics."""
         self._requests.carry_out_urgent(node)
         node.dead_man_switch.step()
 
@@ -326,5 +326,5 @@ class Observer:
         try:
             on_update(update)
         except Exception:
-            # A screen that is being closed; the observer is stopped next.
+            # The screen is being closed; the observer is stopped next.
             logger.exception("an update was not taken")

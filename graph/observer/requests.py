@@ -1,4 +1,4 @@
-"""Requests of other threads to the observer, and the queue that carries them to its own thread."""
+"""Requests from other threads to the observer, and the queue that carries them to its thread."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
 
 from graph.data import CallResult
+from text.sentences import reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -24,7 +25,7 @@ class ObserverError(Exception):
     """The observer cannot work, or has been stopped; `words` says why."""
 
     def __init__(self, words: str) -> None:
-        """Say why, as `text.sentences.say` makes it."""
+        """Store the reason, made by `text.sentences.say`."""
         super().__init__(words)
         self.words = words
 
@@ -33,18 +34,18 @@ class Request(Protocol):
     """Something to be done on the observer's thread."""
 
     def carry_out(self, node: ObserverNode) -> None:
-        """Do it; may raise anything."""
+        """Perform it; may raise anything."""
 
     def fail(self, error: Exception) -> None:
         """Say that it cannot be done."""
 
 
 class UrgentRequest(NamedTuple):
-    """A request that may be carried out in the middle of a poll, once what it needs is there."""
+    """A request that may be carried out in the middle of a poll, once its needs are met."""
 
     request: Request
     ready: Callable[[ObserverNode], bool]
-    """Whether it needs no look at the graph any more."""
+    """Whether it no longer needs a look at the graph."""
 
 
 @dataclass(frozen=True)
@@ -121,12 +122,13 @@ class CallService:
         """Say that it cannot be done."""
         if not self.future.cancelled():
             elapsed_s = time.monotonic() - self.asked_s
-            self.future.set_result(CallResult(self.service, False, None, str(error), elapsed_s))
+            refused = CallResult(self.service, False, None, reason_of(error), elapsed_s)
+            self.future.set_result(refused)
 
 
 @dataclass(frozen=True)
 class Perform:
-    """Have something done without waiting for it; without an observer nothing is done."""
+    """Do something that nobody waits for; without an observer nothing is done."""
 
     act: Callable[[ObserverNode], None]
 
@@ -135,7 +137,7 @@ class Perform:
         self.act(node)
 
     def fail(self, error: Exception) -> None:
-        """Keep silent: what it was about has ended with the observer."""
+        """Do nothing: its subject has ended with the observer."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,7 @@ class Begin(Generic[T]):
     begin: Callable[[ObserverNode, Future[T]], None]
     """Called on the observer's thread; may raise anything."""
     refusal: Callable[[Exception], T] | None = None
-    """Makes the result that says why not, where the future is never to raise."""
+    """Makes the result that says why not, for a future that must never raise."""
     future: Future[T] = field(default_factory=Future)
 
     def carry_out(self, node: ObserverNode) -> None:
@@ -175,11 +177,11 @@ class RequestQueue:
         self._failure: ObserverError | None = None
 
     def put(self, request: Request) -> None:
-        """Have it carried out in its turn, between two looks at the graph."""
+        """Queue a request, to be carried out in its turn, between two looks at the graph."""
         self._put(self._requests, request, request)
 
     def hurry(self, request: Request, ready: Callable[[ObserverNode], bool] | None = None) -> None:
-        """Have it carried out before all others, in the middle of a look if it is `ready`."""
+        """Queue a request before all others; it may interrupt a look if it is `ready`."""
         self._put(self._urgent, UrgentRequest(request, ready or _always), request)
 
     def carry_out(self, node: ObserverNode) -> None:
@@ -189,12 +191,12 @@ class RequestQueue:
             _carry_out(request, node)
 
     def carry_out_urgent(self, node: ObserverNode) -> None:
-        """Do what cannot wait for the end of a look, as far as it needs none itself."""
+        """Do what cannot wait for the end of a look, unless it needs a look itself."""
         while self._urgent and self._urgent[0].ready(node):
             _carry_out(self._urgent.popleft().request, node)
 
     def refuse(self, failure: ObserverError) -> None:
-        """Let fail what has been asked for, and whatever is asked from now on."""
+        """Fail all pending requests, and all requests from now on."""
         with self._lock:
             self._failure = failure
         while self._urgent:
@@ -219,5 +221,5 @@ def _always(_node: ObserverNode) -> bool:
 def _carry_out(request: Request, node: ObserverNode) -> None:
     try:
         request.carry_out(node)
-    except Exception as error:  # noqa: BLE001 - told to whoever asked for it
+    except Exception as error:  # noqa: BLE001 - reported to the caller
         request.fail(error)

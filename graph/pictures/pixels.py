@@ -32,17 +32,18 @@ COLOURS = {
     "mono8": (1, (0, 0, 0)),
     "8UC1": (1, (0, 0, 0)),
 }
-"""Bytes of a pixel, and which of them are red, green and blue."""
+"""Bytes per pixel, and which of them are red, green and blue."""
 DEPTHS = {"mono16": "u2", "16UC1": "u2", "32FC1": "f4"}
 """Numbers with no colour of their own: shown from black, the least, to white, the greatest."""
 YUV = {"uyvy": "UYVY", "yuv422": "UYVY", "yuyv": "YUY2", "yuv422_yuy2": "YUY2"}
-"""Two pixels share U and V; to OpenCV's name of the order (`yuv422` is the old name of `uyvy`)."""
+"""Encodings in which two pixels share U and V, to OpenCV's name of the order (`yuv422` is the old
+name of `uyvy`)."""
 BAYER = {
     f"bayer_{pattern}{bits}": (pattern.upper(), bits // 8)
     for bits in (8, 16)
     for pattern in ("rggb", "bggr", "gbrg", "grbg")
 }
-"""One colour a pixel; the pattern from the top left on, by rows, and the bytes of a pixel."""
+"""One colour per pixel: the pattern by rows from the top left, and the bytes per pixel."""
 
 
 class ImageError(ValueError):
@@ -58,11 +59,11 @@ class UnknownEncodingError(ImageError):
     """The pixels may be valid, but their encoding is not supported."""
 
     def __init__(self, encoding: str) -> None:
-        """Name those that can be read."""
+        """Name the encodings that can be read."""
         known = ", ".join([*COLOURS, *DEPTHS, *YUV, *BAYER])
         super().__init__(
             say(
-                "encoding '{encoding}' is not shown; known: {known}",
+                "encoding '{encoding}' is not supported; supported: {known}",
                 encoding=encoding,
                 known=known,
             )
@@ -94,7 +95,7 @@ def _whole(value: Mapping[str, Value], name: str) -> int:
 def pixel_rows(
     data: bytes | bytearray | memoryview, width: int, height: int, step: int, pixel_bytes: int
 ) -> Rgb:
-    """Return the bytes of the pixels, shape (height, width * pixel_bytes), padding cut off."""
+    """Return the bytes of the pixels, shape (height, width * pixel_bytes), without padding."""
     import numpy as np
 
     if width < 1 or height < 1:
@@ -126,7 +127,7 @@ def pixel_rows(
 
 
 def in_order(pixels: Rgb, order: tuple[int, ...]) -> Rgb:
-    """Return pixels of shape (height, width, bytes) with red, green and blue in their places."""
+    """Return pixels of shape (height, width, bytes) reordered to red, green and blue."""
     if order == (2, 1, 0):
         return pixels[:, :, 2::-1]
     if order == (0, 1, 2):
@@ -135,7 +136,7 @@ def in_order(pixels: Rgb, order: tuple[int, ...]) -> Rgb:
 
 
 def grey(numbers: NDArray[np.generic]) -> Rgb:
-    """Return grey from the least to the greatest finite number; what is not finite is black."""
+    """Return grey from the least to the greatest finite number; non-finite numbers are black."""
     import numpy as np
 
     values = numbers.astype(np.float64)

@@ -12,7 +12,7 @@ from graph.messages.dated import Draft, draft
 from graph.messages.types import load_message
 from graph.publishing.outbox import PublishError, open_publisher, refuse_other_type
 from graph.qos import Qos, to_be_heard
-from text.sentences import say
+from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 LEAST_HZ = 0.1
 MOST_HZ = 100.0
 LATE_S = 0.5
-"""What is later than this, after Deck was stopped or the machine asleep, is not made up for."""
+"""A longer delay, when Deck was stopped or the machine asleep, is not made up for."""
 
 
 @dataclass
@@ -39,13 +39,13 @@ class _Repeated:
     type_name: str
     hz: float
     message: Draft | bytes
-    """Serialized once, unless it holds the time of sending."""
+    """Serialized once, unless it contains the time of sending."""
     cls: type[Any]
     qos: Qos
     publisher: Publisher
     due_s: float
     onlookers: int = 0
-    """Deck's own subscribers; told by the look at the graph that the new publisher brings on."""
+    """Deck's own subscribers; set by the look at the graph that the new publisher triggers."""
     sent: int = 0
     error: str = ""
 
@@ -57,15 +57,15 @@ class _Repeated:
             try:
                 held = self.message
                 self.publisher.publish(held if isinstance(held, bytes) else held.dated())
-            except Exception as error:  # noqa: BLE001 - told in its row
-                self.error = getattr(error, "words", "") or str(error)
+            except Exception as error:  # noqa: BLE001 - reported in its row
+                self.error = reason_of(error)
             else:
                 self.sent += 1
-            # Counted on from when it was due, not from when it went out.
+            # Counted from when it was due, not from when it went out.
             self.due_s += 1.0 / self.hz
 
     def row(self) -> Publication:
-        """Return it as the screen is to see it."""
+        """Return it as the screen shows it."""
         listeners = max(0, self.publisher.get_subscription_count() - self.onlookers)
         return Publication(
             self.number, self.topic, self.type_name, self.hz, self.sent, listeners, self.error
@@ -89,14 +89,14 @@ class RepeatedPublications:
         ends: TopicEnds | None,
         future: Future[int],
     ) -> None:
-        """Publish from now on; the future tells the number.
+        """Publish from now on; the future returns the number.
 
-        Raises PublishError, also for a rate that is none, UnknownTypeError or FieldError.
+        Raises PublishError, also for an invalid rate, UnknownTypeError or FieldError.
         """
         if isinstance(hz, bool) or not LEAST_HZ <= hz <= MOST_HZ:
             raise PublishError(
                 say(
-                    "a rate is between {least:g} and {most:g} Hz, not {hz:g}",
+                    "the rate must be between {least:g} and {most:g} Hz, not {hz:g}",
                     least=LEAST_HZ,
                     most=MOST_HZ,
                     hz=hz,
@@ -117,13 +117,13 @@ class RepeatedPublications:
         future.set_result(number)
 
     def stop(self, number: int) -> None:
-        """Publish that one no more."""
+        """Stop this publication."""
         repeated = self._repeated.pop(number, None)
         if repeated is not None:
             self._node.destroy_publisher(repeated.publisher)
 
     def tune(self, topics: Mapping[str, TopicEnds]) -> None:
-        """Offer what those who have come to listen ask for."""
+        """Adapt the offered QoS to new subscribers."""
         for repeated in self._repeated.values():
             ends = topics.get(repeated.topic)
             repeated.onlookers = ends.onlookers if ends else 0
@@ -147,10 +147,10 @@ class RepeatedPublications:
         return min((each.due_s for each in working), default=None)
 
     def rows(self) -> tuple[Publication, ...]:
-        """Return all of them, oldest first; what has ended by itself tells why."""
+        """Return all of them, oldest first; one that stopped by itself says why."""
         return tuple(each.row() for each in self._repeated.values())
 
     def close(self) -> None:
-        """Publish nothing any more."""
+        """Stop publishing."""
         for number in list(self._repeated):
             self.stop(number)

@@ -1,4 +1,4 @@
-"""The free disk space of a recording: how fast it shrinks, and when to stop."""
+"""The free disk space during a recording: how fast it shrinks, and when to stop."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from text.sentences import Words
 
 RESERVE_BYTES = 500_000_000
-"""Left free: what waits in memory must still fit, and a system without room fails elsewhere."""
+"""Kept free: what waits in memory must still fit, and a system with a full disk fails elsewhere."""
 WINDOW_S = 5.0
-"""Over how long the rate is taken."""
+"""Time over which the rate is measured."""
 MEGA = 1e6
 
 
 def free_bytes(folder: Path) -> int:
-    """Return what an ordinary user may still write where this folder is, or is to be."""
+    """Return how many bytes an ordinary user may still write where this folder is, or will be."""
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     found = os.statvfs(folder)
@@ -31,7 +31,7 @@ def free_bytes(folder: Path) -> int:
 
 
 class DiskRoom:
-    """Watches the disk below a folder while a recording goes on."""
+    """Watches a folder's disk during a recording."""
 
     def __init__(
         self,
@@ -39,16 +39,16 @@ class DiskRoom:
         reserve_bytes: int = RESERVE_BYTES,
         free: Callable[[Path], int] | None = None,
     ) -> None:
-        """`free` tells how many bytes are free where a folder is, by default as the system does.
+        """`free` returns how many bytes are free at a folder; by default it asks the system.
 
         It may raise OSError.
         """
         self.bytes_per_s = 0.0
         """How fast the recording grows, over the last seconds."""
         self.left_s: float | None = None
-        """How long it may still go on at this rate; None if nobody can tell."""
+        """How long it may still continue at this rate; None if unknown."""
         self.end: Words | None = None
-        """Why it must end now."""
+        """Why the recording must stop now."""
         self._folder = folder
         self._reserve_bytes = reserve_bytes
         self._free = free or free_bytes
@@ -59,7 +59,7 @@ class DiskRoom:
         try:
             free = self._free(self._folder)
         except OSError:
-            return  # Whoever makes the folder says more.
+            return  # Creating the folder will give a better error.
         if free <= self._reserve_bytes:
             raise BagError(
                 say(
@@ -72,7 +72,7 @@ class DiskRoom:
             )
 
     def look(self, now_s: float, written_bytes: int) -> None:
-        """Take note of how much has been recorded by now, and of what is free."""
+        """Note how much has been recorded by now, and how much is free."""
         self._seen.append((now_s, written_bytes))
         while len(self._seen) > 2 and self._seen[1][0] <= now_s - WINDOW_S:
             self._seen.popleft()
@@ -88,8 +88,8 @@ class DiskRoom:
         self.left_s = max(0.0, spare / self.bytes_per_s) if self.bytes_per_s > 0 else None
         if spare <= 0:
             self.end = say(
-                "recording has ended: {free} MB are free on the disk of {path}. All that was "
-                "recorded till then is whole. Free some space and record again",
+                "recording has stopped: {free} MB are free on the disk of {path}. Everything "
+                "recorded so far is intact. Free some space and record again",
                 free=round(free / MEGA),
                 path=self._folder,
             )

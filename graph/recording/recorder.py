@@ -1,7 +1,7 @@
 """The recorder: a ROS node and a thread of its own that put raw messages into a rosbag2 directory.
 
-Queues are emptied in turns and nothing is decoded; the disk has another thread. What is lost on
-the way, by the middleware or by a disk that is too slow, is counted and told.
+Queues are emptied in turn and nothing is decoded; another thread writes to the disk. Messages lost
+on the way, by the middleware or because the disk is too slow, are counted and reported.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ logger = logging.getLogger(__name__)
 
 TURN_S = 0.05
 LOOK_S = 0.25
-"""How often queues are emptied, and how often new topics are looked for."""
+"""How often to empty the queues, and how often to look for new topics."""
 FINISH_WITHIN_S = 30.0
 SLOW_BYTES = 64_000_000
-"""From so much waiting on, the disk is called slow."""
+"""With this much waiting, the disk is reported as slow."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class RecordedTopic:
     messages: int
     bytes: int
     lost: int = 0
-    """Published and not recorded."""
+    """Published but not recorded."""
 
 
 @dataclass(frozen=True)
@@ -56,24 +56,24 @@ class RecordingStatus:
     seconds: float
     messages: int = 0
     bytes: int = 0
-    """Of the messages, as they were serialized."""
+    """Size of the serialized messages."""
     topics: tuple[RecordedTopic, ...] = ()
     lost: int = 0
     """Messages that are missing, for whatever reason."""
     dropped: int = 0
-    """Those of them for which the disk was too slow, or full."""
+    """Those missing because the disk was too slow, or full."""
     bytes_per_s: float = 0.0
-    """How fast it grows, over the last seconds."""
+    """How fast the recording grows, over the last seconds."""
     left_s: float | None = None
-    """How long the disk has room at this rate; None if nobody can tell."""
+    """How long the disk has room at this rate; None if unknown."""
     slow: bool = False
     """Whether the disk does not keep up."""
     error: str = ""
-    """Why nothing is recorded any more, in words that can be translated."""
+    """Why nothing is recorded any more, as translatable words."""
     skipped: Mapping[str, str] = field(default_factory=dict)
     """Topic to why it cannot be recorded."""
     absent: tuple[str, ...] = ()
-    """Topics that were asked for and that nobody has published so far."""
+    """Topics that were asked for but that nobody has published so far."""
     ended: bool = False
 
 
@@ -91,10 +91,10 @@ class Recorder:
         images: bool = True,
         reserve_bytes: int = RESERVE_BYTES,
     ) -> None:
-        """`topics`: None for all, also those that appear later.
+        """`topics`: None for all, including those that appear later.
 
-        With `hidden`, all has the inner topics of actions in it; without `images`, no pictures.
-        It ends by itself when no more than `reserve_bytes` are free on the disk.
+        With `hidden`, all includes the inner topics of actions; without `images`, no pictures.
+        It stops by itself when no more than `reserve_bytes` are free on the disk.
         """
         self._domain = domain
         self._discovery = discovery
@@ -111,7 +111,7 @@ class Recorder:
         self._topics: RecordingTopics | None = None
 
     def start(self) -> None:
-        """Make the folder and begin. Raises BagError if it cannot be made or the disk is full."""
+        """Create the folder and begin. Raises BagError if that fails or the disk is full."""
         from graph.recording.file import BagFile
 
         self._room.check()
@@ -119,12 +119,12 @@ class Recorder:
         self._thread = threading.Thread(
             target=self._run, args=(file,), name="deck-recorder", daemon=True
         )
-        # DDS threads must be gone before the interpreter is.
+        # DDS threads must end before the interpreter does.
         atexit.register(self.stop)
         self._thread.start()
 
     def stop(self) -> RecordingStatus:
-        """End the bag in order; returns within half a minute, whatever the disk does."""
+        """Close the bag properly; returns within half a minute, whatever the disk does."""
         self._stopping.set()
         atexit.unregister(self.stop)
         if self._thread is not None:
@@ -133,7 +133,7 @@ class Recorder:
 
     @property
     def status(self) -> RecordingStatus:
-        """How it stands now."""
+        """The current state."""
         until_s = time.monotonic() if self._ended_s is None else self._ended_s
         writer, topics = self._writer, self._topics
         common = (str(self._folder), self._since_s, until_s - self._begun_s)
@@ -177,13 +177,13 @@ class Recorder:
         finally:
             if not writer.finish(FINISH_WITHIN_S) and not writer.error:
                 self._error = say(
-                    "{path}: the disk does not take what was recorded; the bag may be cut short",
+                    "{path}: the disk does not accept the recorded data; the bag may be cut short",
                     path=file.path,
                 )
             self._ended_s = time.monotonic()
 
     def _record(self, writer: RecordingWriter) -> None:
-        # This imports rclpy; whoever records need not wait for it.
+        # This imports rclpy; the caller need not wait for it.
         from graph.ros import open_ros
 
         ros = open_ros(self._domain, self._discovery, "recorder")
@@ -197,7 +197,7 @@ class Recorder:
 
     def _take_turns(self, topics: RecordingTopics, writer: RecordingWriter) -> None:
         look_at_s = 0.0
-        # Where the disk takes no more, what comes until somebody stops it is counted as dropped.
+        # When the disk is full, messages that come before `stop` are counted as dropped.
         while True:
             ending = self._stopping.is_set() or bool(self._error)
             if time.monotonic() >= look_at_s:

@@ -1,7 +1,7 @@
 """A bag played back as if it were a live graph, without ROS.
 
-`Replay` fits the screen's port for a graph; what would change something it refuses. It has a
-thread of its own, which reads, counts and decodes; what the screen asks is done there, in order.
+`Replay` implements the screen's port for a graph, but refuses whatever would change something. It
+has its own thread, which reads, counts and decodes, and serves the screen's requests in order.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Replay:
         """Open the bag and play it from `start_s` once it is started. Raises BagError."""
         self.period_s = 0.1
         self.bag = open_bag(path)
-        """What there is; its messages are for this replay's thread."""
+        """The open bag; only this replay's thread may read its messages."""
         self._state = ReplayState(
             length_s=self.bag.length_s,
             start_s=self.bag.start_ns * NANOSECONDS,
@@ -68,7 +68,7 @@ class Replay:
 
     @property
     def state(self) -> ReplayState:
-        """How it stands now."""
+        """The current state."""
         return self._state
 
     def start(self, on_update: Callable[[GraphUpdate], None]) -> None:
@@ -79,7 +79,7 @@ class Replay:
         self._thread.start()
 
     def stop(self) -> None:
-        """End it and let go of the bag."""
+        """Stop, and close the bag."""
         self._stopping = True
         self._wake.set()
         if self._thread is None:
@@ -102,7 +102,7 @@ class Replay:
         """Do nothing: a bag has no actions."""
 
     def toggle(self) -> None:
-        """Pause, or go on; at the end begin anew."""
+        """Pause or continue; at the end, start again."""
 
         def do(player: Player) -> None:
             if player.ended:
@@ -114,15 +114,11 @@ class Replay:
         self._order(do)
 
     def pause(self) -> None:
-        """Stand still."""
+        """Pause."""
         self._order(lambda _player: self._set(paused=True))
 
-    def play(self) -> None:
-        """Go on."""
-        self._order(lambda _player: self._set(paused=False))
-
     def step(self) -> None:
-        """Pause, and take the next message: of the topics that are looked at, if any are."""
+        """Pause, and take the next message, of the watched topics if there are any."""
 
         def do(player: Player) -> None:
             self._set(paused=True)
@@ -131,22 +127,22 @@ class Replay:
         self._order(do)
 
     def seek(self, position_s: float) -> None:
-        """Jump to so many seconds after the first message."""
+        """Jump to this many seconds after the first message."""
         self._order(lambda player: self._jump(player, position_s))
 
     def skip(self, seconds: float) -> None:
-        """Jump forward by so many seconds, back if negative."""
+        """Jump forward by this many seconds, back if negative."""
         self._order(lambda player: self._jump(player, player.position_s + seconds))
 
     def change_rate(self, *, faster: bool) -> None:
-        """Take the next rate above or below."""
+        """Switch to the next rate above or below."""
         self._order(lambda _: self._set(rate=next_rate(self._state.rate, faster=faster)))
 
     def set_loop(self, loop: bool) -> None:
-        """Begin anew at the end, or stay there."""
+        """Start again at the end, or stay there."""
         self._order(lambda _player: self._set(loop=loop))
 
-    # What a recording cannot do: whoever asks gets a word, never silence.
+    # Requests that a recording cannot serve: the caller gets a reason, never silence.
 
     def prepare_publisher(
         self, topic: str, type_name: str, *, latched: bool = False
@@ -195,19 +191,19 @@ class Replay:
         request: Mapping[str, Value],
         timeout_s: float = ANSWER_WITHIN_S,
     ) -> Future[CallResult]:
-        """Answer that there is nobody to answer."""
+        """Answer that there is no service."""
         del type_name, request, timeout_s
         return _done(CallResult(service, False, None, _refusal(), 0.0))
 
     def parameters(self, node: str, timeout_s: float = ANSWER_WITHIN_S) -> Future[ParametersResult]:
-        """Answer that there is nobody to ask."""
+        """Answer that there are no parameters."""
         del timeout_s
         return _done(ParametersResult(node, error=_refusal()))
 
     def set_parameters(
         self, node: str, values: Mapping[str, Value], timeout_s: float = ANSWER_WITHIN_S
     ) -> Future[SetResult]:
-        """Answer that there is nobody to tell."""
+        """Answer that no parameter can be set."""
         del values, timeout_s
         return _done(SetResult(node, error=_refusal()))
 
@@ -239,7 +235,7 @@ class Replay:
 
     def _jump(self, player: Player, position_s: float) -> None:
         player.seek(position_s)
-        # Whoever looks sees the place that was jumped to.
+        # The screen sees the target of the jump even while paused.
         self._shown = Interest()
 
     def _run(self, on_update: Callable[[GraphUpdate], None]) -> None:
@@ -277,7 +273,7 @@ class Replay:
 
     def _advance(self, player: Player, seconds: float) -> None:
         if player.ended and self._state.loop:
-            # Not at once: the last messages have been handed over by now.
+            # Not earlier: by now the last messages have been handed over.
             self._jump(player, 0.0)
             return
         player.advance(seconds * self._state.rate)
@@ -285,7 +281,7 @@ class Replay:
             self._set(paused=True)
 
     def _carry_out(self, player: Player) -> bool:
-        """Do what was asked for; tell whether anything was."""
+        """Serve pending requests; return whether there were any."""
         found = bool(self._orders)
         while self._orders:
             self._orders.popleft()(player)
@@ -311,7 +307,7 @@ def _refusal() -> str:
 
 
 def refused() -> Future[T]:
-    """Return what somebody gets who asks a recording for what would change something."""
+    """Return the answer to a request that would change something in a recording."""
     future: Future[T] = Future()
     future.set_exception(ObserverError(_refusal()))
     return future

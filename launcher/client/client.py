@@ -1,4 +1,4 @@
-"""The launcher for those who use it: start a profile, attach to a session, ask and listen."""
+"""The client side of the launcher: start a profile, attach to a session, control and follow it."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ if TYPE_CHECKING:
 
 HELLO_WITHIN_S = 10.0
 HEARD_WITHIN_S = 30.0
-"""A supervisor that does not say for so long that it has heard of its end hangs."""
+"""A supervisor that has not acknowledged a shutdown request after this time has hung."""
 HEARD_IN_A_HURRY_S = 5.0
 ENDED_IN_A_HURRY_S = 20.0
-"""The supervisor's own limits, together with what it takes to say goodbye."""
+"""The supervisor's own time limits, plus the time it takes to close its connections."""
 UNSENT_WITHIN_S = 1.0
 
 
@@ -69,18 +69,18 @@ async def launch(
     """Start a profile and connect to its supervisor.
 
     Args:
-        profile: its file, or the profile as already read (then the next three are not used)
+        profile: its file, or a profile already loaded (then the next three are ignored)
         hardware: `mock` or `real`
         overrides: `node.param=value`
-        domain: the ROS domain, over what the profile and the environment say
+        domain: the ROS domain, overriding the profile and the environment
         foreground: whether the nodes end with this process, or with `aclose`
-        node_lang: `en` or `ru`, what the nodes log in; empty: as the environment says
-        supervisor: one that has been started ahead, for this call alone
+        node_lang: the language the nodes log in, `en` or `ru`; empty: as the environment says
+        supervisor: one that was started in advance, for this call only
 
     Raises:
-        ProfileError, DomainError: if it cannot be used; nothing was started.
-        AlreadyRunningError: if one of its nodes runs in that domain already.
-        RunDirError: if there is no place for sockets or logs.
+        ProfileError, DomainError: if the profile or domain cannot be used; nothing was started.
+        AlreadyRunningError: if one of its nodes is already running in that domain.
+        RunDirError: if there is no usable directory for sockets or logs.
         StartError: if the supervisor did not start.
     """
     supervisor = supervisor or StartingSupervisor()
@@ -106,21 +106,21 @@ async def launch(
 
 
 async def attach(name: str | None = None) -> SupervisorClient:
-    """Connect to a session that runs: the only one, or the one that `find_running` finds.
+    """Connect to a running session: the only one, or the one that `find_running` finds.
 
     Raises:
         NotRunningError: if there is none.
         SeveralRunningError: if there are several to choose from.
-        ConnectionLostError: if it has ended just now.
-        SilentSupervisorError: if it hangs.
-        ProtocolError: if it is of another version.
+        ConnectionLostError: if it has just ended.
+        SilentSupervisorError: if it does not respond.
+        ProtocolError: if it speaks another version of the protocol.
     """
     record = await asyncio.to_thread(find_running, name)
     return await _connect(record.folder)
 
 
 def running() -> list[SessionInfo]:
-    """Return every session that runs, oldest first."""
+    """Return all running sessions, oldest first."""
     return [record.session for record in running_records()]
 
 
@@ -161,7 +161,7 @@ async def _connect(folder: Path, lifeline: int = -1) -> SupervisorClient:
 async def _greeted(
     reader: asyncio.StreamReader, writer: asyncio.StreamWriter, folder: Path
 ) -> dict[str, Any]:
-    """Say which version this is, and return the answer of a supervisor of the same one."""
+    """Announce our protocol version; return the greeting of a supervisor with the same version."""
     try:
         writer.write(encode({"deck": VERSION}))
         hello: dict[str, Any] = json.loads(
@@ -174,8 +174,8 @@ async def _greeted(
     if hello.get("deck") != VERSION:
         raise ProtocolError(
             say(
-                "the running session is of another version of Deck ({theirs}, this is {ours});"
-                " use that version to stop it",
+                "the running session belongs to another version of Deck ({theirs}, this "
+                "is {ours}); use that version to stop it",
                 theirs=hello.get("deck"),
                 ours=VERSION,
             )
@@ -193,14 +193,14 @@ class SupervisorClient:
         writer: asyncio.StreamWriter,
         lifeline: int,
     ) -> None:
-        """`lifeline` is a descriptor that holds a foreground session, or -1."""
+        """`lifeline` is a descriptor that keeps a foreground session alive, or -1."""
         self.session: SessionInfo = unpack_session(hello["session"])
         self.own = lifeline >= 0
-        """Whether this client has started it in the foreground: it ends with it."""
+        """Whether this client started the session, in the foreground: it ends with this client."""
         self.nodes: dict[str, NodeStatus] = {}
-        """Every node in the profile's order, kept current."""
+        """All nodes in the profile's order, kept up to date."""
         self.strays: tuple[Stray, ...] = ()
-        """What an earlier run has left behind, kept current."""
+        """Processes that an earlier run left behind, kept up to date."""
         self._reader = reader
         self._writer = writer
         self._lifeline = lifeline
@@ -214,11 +214,11 @@ class SupervisorClient:
         self._listening = asyncio.create_task(self._listen())
 
     async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
-        """Yield what happens, `ClosedEvent` last; for one listener.
+        """Yield events, `ClosedEvent` last; for a single consumer.
 
-        It begins with the log of before, its newest `past` lines, and the statuses as they were
-        when the connection was made. News that nobody takes are merged: there is never more than
-        one event of a kind to catch up with.
+        The first events are the newest `past` lines of the log so far, and the statuses at the time
+        of connecting. Events that are not consumed are merged: there is never a backlog of more
+        than one event of each kind.
         """
         known: dict[str, int] = {}
         if past:
@@ -234,40 +234,40 @@ class SupervisorClient:
             yield event
 
     async def start(self, *names: str) -> None:
-        """Start these nodes with all that they need, all if none is named.
+        """Start these nodes and everything they need; all nodes if none is named.
 
-        One that waits for others, or for its next try, starts at once.
+        A node that is waiting for others, or for its next attempt, starts at once.
         """
         await self._ask("start", nodes=names)
 
     async def stop(self, *names: str, now: bool = False) -> None:
-        """Stop these nodes, dependants first, all if none is named; return when they have ended.
+        """Stop these nodes, dependants first; all if none is named. Return when they have ended.
 
-        `now`, or asking a second time, skips the waiting between the signals.
+        `now`, or a second call, skips the waits between the signals.
         """
         await self._ask("stop", nodes=names, now=now)
 
     async def restart(self, *names: str) -> None:
-        """Begin to stop and start these nodes, all if none is named."""
+        """Begin to restart these nodes; all if none is named."""
         await self._ask("restart", nodes=names)
 
     async def history(self, node: str | None, limit: int) -> list[LogLine]:
-        """Return the newest lines, oldest first, of one node or of all in the order of time."""
+        """Return the newest lines, oldest first, of one node, or of all nodes in order of time."""
         lines = await self._ask("history", node=node, limit=limit)
         return [unpack_line(line) for line in lines]
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
-        """End what an earlier run has left behind; return when it has ended."""
+        """End these processes of an earlier run; return when they have ended."""
         await self._ask("stop_strays", strays=[pack_stray(stray) for stray in strays])
 
     async def shutdown(self, now: bool = False) -> None:
-        """Stop all nodes, dependants first, and the supervisor; return when it has ended.
+        """Stop all nodes, dependants first, then the supervisor; return when it has ended.
 
-        `now`, or asking a second time, skips the waiting, also that of a call under way.
+        `now`, or a second call, skips the waits, including those of a call in progress.
 
         Raises:
-            SilentSupervisorError: if it hangs. One that this client has started is no more then,
-                nor are its nodes.
+            SilentSupervisorError: if it does not respond. If this client started it, it and its
+                nodes have then been killed.
         """
         if self._closed.is_set():
             await self.aclose()
@@ -280,12 +280,12 @@ class SupervisorClient:
         except asyncio.TimeoutError:
             self._parting = self._parting or asyncio.create_task(self._part_with_silent())
         if self._parting is not None:
-            # Whoever has asked before and still waits hears of it as well.
+            # An earlier call that is still waiting gets this error as well.
             raise SilentSupervisorError(await asyncio.shield(self._parting))
         await self.aclose()
 
     async def _part_with_silent(self) -> Words:
-        """End a supervisor of our own that hangs, let go of another's; tell what is left."""
+        """Kill a hung supervisor if we started it, else disconnect from it; say what is left."""
         try:
             if self._lifeline >= 0:
                 return await kill_supervisor(self.session.run_id)
@@ -295,7 +295,7 @@ class SupervisorClient:
             await self.aclose()
 
     async def aclose(self) -> None:
-        """Disconnect. A foreground session ends if this is the client that started it."""
+        """Disconnect. A foreground session ends if this client started it."""
         if self._lifeline >= 0:
             os.close(self._lifeline)
             self._lifeline = -1

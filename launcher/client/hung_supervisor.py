@@ -1,4 +1,4 @@
-"""Ending a supervisor that hangs: it is killed, and what it has started goes with it."""
+"""Ending a hung supervisor: it is killed, and everything it has started ends with it."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from launcher.supervisor.words import who
 from text.sentences import Words, say
 
 GONE_WITHIN_S = 3.0
-"""All that it has started is gone 2 s after a supervisor that was killed."""
+"""Within 2 s of a supervisor's being killed, everything it has started is gone."""
 _LOOK_EVERY_S = 0.05
 
 
 async def kill_supervisor(run_id: str) -> Words:
-    """Kill the supervisor of a run; return what to tell of it, once nothing is left or in 3 s."""
+    """Kill the supervisor of a run; return the outcome once nothing is left, or after 3 s."""
     supervisor = living_supervisor(run_id)
     if supervisor is not None:
         send(supervisor, signal.SIGKILL)
@@ -29,10 +29,10 @@ async def kill_supervisor(run_id: str) -> Words:
     pid = supervisor_of(run_id)
     if not left:
         return say(
-            "the supervisor (pid {pid}) gave no answer; it was killed with all its nodes", pid=pid
+            "the supervisor (pid {pid}) did not answer; it was killed with all its nodes", pid=pid
         )
     return say(
-        "the supervisor (pid {pid}) gave no answer and was killed; still running: {who}",
+        "the supervisor (pid {pid}) did not answer and was killed; still running: {who}",
         pid=pid,
         who=who(left),
     )

@@ -1,4 +1,4 @@
-"""Which running session a name means."""
+"""Finding the running session that a name refers to."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from launcher.errors import NotRunningError, SeveralRunningError
 from launcher.profile.catalog import fitting, is_path
-from launcher.rundir import OWN_RUN_DIR, found_run_dir
+from launcher.rundir import found_run_dir
 from launcher.runs.found import supervisors
 from launcher.runs.record import read_records
+from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def running_records() -> list[RunRecord]:
-    """Return every session that runs, oldest first, also one whose run directory was lost.
+    """Return all running sessions, oldest first, including those whose run directory was lost.
 
-    Whoever keeps runs apart by `DECK_RUN_DIR` is told of his own only.
+    Sessions with another `DECK_RUN_DIR` are left out.
     """
     here = found_run_dir()
     records = read_records(here) if here is not None else []
@@ -35,9 +36,9 @@ def running_records() -> list[RunRecord]:
 
 
 def find_running(name: str | None = None) -> RunRecord:
-    """Return the session that runs: the only one, or the one of that run id or profile.
+    """Return the running session: the only one, or the one with that run id or profile.
 
-    A profile is given as to start it: by path, name, lesson number or beginning of a name.
+    A profile is given as it is for starting: by path, name, lesson number or start of a name.
 
     Raises:
         NotRunningError: if there is none.
@@ -62,6 +63,6 @@ def _meant(name: str, found: Sequence[RunRecord]) -> list[RunRecord]:
     if is_path(name):
         path = os.path.realpath(name)
         return [one for one in found if os.path.realpath(one.session.profile) == path]
-    # Not by the catalogue: the file may be gone, or out of sight from here.
+    # Not looked up in the catalogue: the file may be gone, or not visible from here.
     fits = fitting(name, {one.session.name for one in found})
     return [one for one in found if one.session.name in fits]

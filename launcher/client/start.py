@@ -1,8 +1,8 @@
-"""Starting a supervisor: a process in a session of its own, which gets its plan on stdin.
+"""Starting a supervisor: a process in its own session, which reads its plan from stdin.
 
-It begins to import what nodes need before it has a plan, so it is worth starting one as soon as
-it is known that there will be something to run, and reading the profile meanwhile. For that this
-module imports little itself.
+It begins importing the modules that nodes need before it has a plan, so it pays to start one as
+soon as it is clear that something will be run, and to read the profile in the meantime. That is why
+this module itself imports little.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ if TYPE_CHECKING:
     from launcher.supervisor.plan import Plan
 
 LESSON_PACKAGES = ("nodes",)
-"""Most profiles' nodes are from it. A name and no more: nothing of it is imported here."""
+"""The nodes of most profiles are in this package. It is only named here, not imported."""
 ANSWER_WITHIN_S = 30.0
 END_WITHIN_S = 4.0
-"""For so long one that is not wanted any more may stop what it has begun."""
+"""How long a supervisor that is no longer wanted may take to stop what it has started."""
 _LOOK_EVERY_S = 0.05
 
 
 class StartingSupervisor:
-    """A supervisor that waits for its plan; as a context, one that is let go of in the end."""
+    """A supervisor waiting for its plan; used as a context manager, it is released on exit."""
 
     def __init__(self) -> None:
         """Start it."""
@@ -43,7 +43,8 @@ class StartingSupervisor:
         self._words = os.memfd_create("supervisor")
         self._process = subprocess.Popen(
             [sys.executable, "-m", "launcher.supervisor", *LESSON_PACKAGES, ROOM_ARGUMENT],
-            # There `launcher` is this package, whatever the user's folder has of that name.
+            # In that folder `launcher` is this package, whatever else the user's folder may
+            # contain.
             cwd=Path(launcher.__file__).parent.parent,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -51,7 +52,7 @@ class StartingSupervisor:
             env={**os.environ, **_without_current_folder(), **room_for_marks()},
             start_new_session=True,
         )
-        # It is collected when it ends, however long that takes.
+        # It is reaped when it ends, however long that takes.
         threading.Thread(target=self._process.wait, name="supervisor", daemon=True).start()
 
     def __enter__(self) -> Self:
@@ -62,11 +63,11 @@ class StartingSupervisor:
 
     @property
     def waits(self) -> bool:
-        """Whether it runs and can be given a plan."""
+        """Whether it is running and can be given a plan."""
         return self._words >= 0 and self._process.poll() is None
 
     def give_up(self) -> None:
-        """Let go of it: if it has not begun anything, that is its end."""
+        """Release it: it ends if it has not started anything."""
         if not self._begun:
             self._kill()
         if self._words >= 0:
@@ -77,14 +78,14 @@ class StartingSupervisor:
                 stream.close()
 
     async def begin(self, plan: Plan) -> tuple[Path, int]:
-        """Give it the plan, once.
+        """Give it the plan; may be called once.
 
         Returns:
-            The folder of the run, and the descriptor that keeps a session in the foreground
-            alive: its end is the session's.
+            The folder of the run, and the descriptor that keeps a foreground session alive: when it
+            is closed, the session ends.
 
         Raises:
-            AlreadyRunningError: if one of the nodes runs in that domain already.
+            AlreadyRunningError: if one of the nodes is already running in that domain.
             RunDirError: if the run or log directory cannot be written.
             StartError: if it ended before it answered.
         """
@@ -102,7 +103,7 @@ class StartingSupervisor:
                 answer = await asyncio.wait_for(self._give(plan), ANSWER_WITHIN_S)
             except asyncio.TimeoutError:
                 await self._end()
-                words = say("the supervisor gave no answer for {s:g} s", s=ANSWER_WITHIN_S)
+                words = say("the supervisor did not answer within {s:g} s", s=ANSWER_WITHIN_S)
                 raise StartError(words) from None
             except asyncio.CancelledError:
                 await self._end()
@@ -121,7 +122,7 @@ class StartingSupervisor:
             self.give_up()
 
     async def _end(self) -> None:
-        """Have it end, if need be by force: it got a plan that nobody wants any more."""
+        """End it, by force if necessary: nobody wants the plan it was given any more."""
         import asyncio
 
         self.give_up()
@@ -134,7 +135,7 @@ class StartingSupervisor:
             self._kill()
 
     def _kill(self) -> None:
-        """Kill the supervisor; its guardian, which is what was started here, ends the rest."""
+        """Kill the supervisor; its guardian, the process started here, ends the rest."""
         supervisors = [each for each in processes() if each.parent == self._process.pid]
         for supervisor in supervisors:
             send(supervisor, signal.SIGKILL)
@@ -173,10 +174,10 @@ class StartingSupervisor:
 
 
 def _without_current_folder() -> dict[str, str]:
-    """Return Python's path as it is from here, for those in other folders.
+    """Return PYTHONPATH with the paths made absolute, for processes in other folders.
 
-    An empty part, as `export PYTHONPATH=$PYTHONPATH:/more` leaves behind, would be whatever folder
-    a process is in; nobody means that.
+    An empty entry, as `export PYTHONPATH=$PYTHONPATH:/more` leaves behind, would mean the current
+    folder of each process; nobody intends that.
     """
     written = os.environ.get("PYTHONPATH")
     parts = [os.path.abspath(part) for part in (written or "").split(os.pathsep) if part]  # noqa: PTH100
@@ -184,7 +185,7 @@ def _without_current_folder() -> dict[str, str]:
 
 
 async def _write(fd: int, data: bytes) -> None:
-    """Write to a pipe whose reader may hang; never a thread that would then hang as well."""
+    """Write to a pipe whose reader may hang, without a thread, which would then hang as well."""
     import asyncio
 
     loop, room = asyncio.get_running_loop(), asyncio.Event()

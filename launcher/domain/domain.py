@@ -1,8 +1,8 @@
-"""Which ROS domain a profile runs in, and who may hear it.
+"""The ROS domain that a profile runs in, and who can reach it.
 
-ROS 2 derives UDP ports from the domain. Linux hands the ports of domains above 101 out to
-whatever program asks for one, so 1 to 101 are the safe ones, and 232 is the last that has ports
-at all (ROS 2 documentation, "The ROS_DOMAIN_ID").
+ROS 2 derives UDP ports from the domain. Linux gives the ports of domains above 101 to any program
+that asks for a free one, so domains 1 to 101 are safe; 232 is the last one that has ports at all
+(ROS 2 documentation, "The ROS_DOMAIN_ID").
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ LAST_SAFE_DOMAIN = 101
 
 
 def default_domain() -> int:
-    """Return a domain from 1 to 101 of the user's own, so that classmates do not meet."""
+    """Return a domain from 1 to 101 that depends on the user, so that classmates do not meet."""
     return os.getuid() % LAST_SAFE_DOMAIN + 1
 
 
 def parse_domain(text: str, source: str) -> int:
-    """Read a domain given as text; `source` says where from: `--domain`, `ROS_DOMAIN_ID`."""
+    """Read a domain given as text; `source` says where it is from: `--domain`, `ROS_DOMAIN_ID`."""
     try:
         domain = int(text, 10)
     except ValueError:
@@ -37,8 +37,8 @@ def parse_domain(text: str, source: str) -> int:
     if not 0 <= domain <= LAST_DOMAIN:
         raise DomainError(
             say(
-                "{source}: {text!r} is not a ROS domain; expected a whole number from 0 to "
-                "{last}, best 1 to {safe}",
+                "{source}: {text!r} is not a ROS domain; expected a whole number from 0 "
+                "to {last}, preferably 1 to {safe}",
                 source=source,
                 text=text,
                 last=LAST_DOMAIN,
@@ -49,10 +49,10 @@ def parse_domain(text: str, source: str) -> int:
 
 
 def choose_domain(asked: int | None, profile: int | None, environ: Mapping[str, str]) -> int:
-    """Choose: what was asked for, else the profile's, else ROS_DOMAIN_ID, else the user's own.
+    """Choose the domain: the requested one, else the profile's, ROS_DOMAIN_ID, or the user's own.
 
     Raises:
-        DomainError: if the one that counts is out of range.
+        DomainError: if the chosen one is out of range.
     """
     if asked is not None:
         return parse_domain(str(asked), "--domain")
@@ -64,10 +64,10 @@ def choose_domain(asked: int | None, profile: int | None, environ: Mapping[str, 
 
 
 def ros_environment(base: Mapping[str, str], domain: int, discovery: Discovery) -> dict[str, str]:
-    """Return `base` with the variables set by which rcl chooses its domain and its peers.
+    """Return `base` with the variables from which rcl takes its domain and peers.
 
-    The deprecated ROS_LOCALHOST_ONLY would win over them, so it goes. Settings of Fast DDS that
-    somebody has chosen himself stay.
+    The deprecated ROS_LOCALHOST_ONLY would take precedence, so it is removed. Fast DDS settings
+    that the user has chosen stay.
     """
     environ = dict(base)
     environ.pop("ROS_LOCALHOST_ONLY", None)

@@ -1,7 +1,7 @@
-"""The kernel's table of processes, read from /proc: who is whose child, group and session.
+"""The kernel's table of processes, read from /proc: parents, groups and sessions.
 
-Times are kernel ticks since boot, as /proc gives them: two processes that share a number never
-share their start.
+Times are kernel ticks since boot, as /proc gives them: two processes with the same number never
+have the same start.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from launcher.rundir import OWN_RUN_DIR
+from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -21,10 +21,10 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 RUN_MARK = "DECK_RUN_ID"
 """Environment variable that says which run of Deck a process belongs to."""
 NODE_MARK = "DECK_NODE"
-"""Environment variable that says which node of that run it is, or descends from."""
+"""Environment variable that says which node of that run a process is, or descends from."""
 
 SUPERVISOR_MARK = "DECK_SUPERVISOR"
-"""Environment variable of a supervisor: its run's id, and where it holds its folder open."""
+"""Environment variable of a supervisor: the id of its run, and the descriptor of its folder."""
 
 _EXEC_WITHIN_S = 0.1
 _EXEC_LOOK_EVERY_S = 0.0005
@@ -44,11 +44,11 @@ class Process:
     session: int
     started_ticks: int
     cpu_ticks: int
-    """Processor time used so far, user and system."""
+    """CPU time used so far, user and system."""
 
     @property
     def zombie(self) -> bool:
-        """Whether it has ended and only waits for its parent to notice."""
+        """Whether it has ended and is only waiting to be reaped."""
         return self.state in "ZX"
 
 
@@ -73,19 +73,19 @@ def read_process(pid: int) -> Process | None:
 
 
 def _read(pid: int, file_name: str) -> bytes:
-    with open(f"/proc/{pid}/{file_name}", "rb") as file:  # noqa: PTH123 - for every process
+    with open(f"/proc/{pid}/{file_name}", "rb") as file:  # noqa: PTH123 - called for every process
         return file.read()
 
 
 def stat_fields(stat: bytes) -> list[bytes]:
     """Return the fields of /proc/PID/stat, proc(5), from the third on."""
-    # The name stands in brackets and may itself hold blanks and brackets.
+    # The name is in parentheses and may itself contain blanks and parentheses.
     return stat[stat.rindex(b")") + 2 :].split()
 
 
 def process_numbers() -> list[int]:
     """Return the number of every process that this user can see."""
-    # Path objects cost more than the rest.
+    # Path objects would cost more than all the rest.
     return [int(entry) for entry in os.listdir("/proc") if entry.isdigit()]  # noqa: PTH208
 
 
@@ -113,7 +113,7 @@ def read_marks(pid: int) -> Mapping[str, str] | None:
 
 
 def read_environment(pid: int, name: str) -> str:
-    """Return one variable of a process's environment, empty if it has none or is not ours."""
+    """Return one variable of a process's environment, empty if it is missing or not readable."""
     for entry in (_environ(pid) or b"").split(b"\0"):
         key, _, value = entry.partition(b"=")
         if key == name.encode():
@@ -124,8 +124,8 @@ def read_environment(pid: int, name: str) -> str:
 def _environ(pid: int) -> bytes | None:
     """Return a process's environment; None if it may not be read, or is not there yet.
 
-    In the midst of execve(2) there is none for a moment, which must not be taken for that of
-    somebody else: it is waited for.
+    In the middle of execve(2) there is none for a moment. That must not be mistaken for a process
+    of another user, so we wait for it.
     """
     deadline = time.monotonic() + _EXEC_WITHIN_S
     try:
@@ -144,7 +144,7 @@ def _environ(pid: int) -> bytes | None:
 
 
 def _is_being_executed(pid: int) -> bool:
-    """Whether a process is in the midst of execve(2): it has memory, and no code in it yet."""
+    """Whether a process is in the middle of execve(2): it has memory, but no code in it yet."""
     fields = stat_fields(_read(pid, "stat"))
     return bool(int(fields[20])) and not int(fields[23])
 
@@ -162,7 +162,7 @@ def command_line(pid: int) -> str:
 
 
 def boot_time_s() -> float:
-    """Return when the machine was booted, unix time to the second."""
+    """Return when the machine was booted, in unix time, to the second."""
     with open("/proc/stat", "rb") as file:  # noqa: PTH123
         for line in file:
             if line.startswith(b"btime "):

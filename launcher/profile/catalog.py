@@ -1,4 +1,4 @@
-"""Which profiles there are: the course's, those in `./profiles`, and any file by its path."""
+"""The available profiles: those of the course, those in `./profiles`, and any file by its path."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 ENDINGS = (".yaml", ".yml")
 LESSON = re.compile(r"0*([0-9]+[a-z]?)(?![0-9a-z])")
-"""The number that a profile's name begins with: 4b of `04b-electronic-differential`."""
+"""The number that a profile's name begins with: 4b in `04b-electronic-differential`."""
 
 
 @dataclass(frozen=True)
 class ProfileEntry:
-    """One profile as a list shows it."""
+    """One profile as an entry of a list."""
 
     name: str
-    """File name without its ending: `09-brain`."""
+    """File name without its suffix: `09-brain`."""
     path: Path
     """Absolute."""
     title: Mapping[str, str] = field(default_factory=dict)
@@ -39,15 +39,15 @@ class ProfileEntry:
     error: str = ""
     """Why it cannot be started, one problem a line; empty if it can."""
     problems: tuple[ProfileProblem, ...] = ()
-    """The same, piece by piece."""
+    """The same as separate problems."""
 
 
 def list_profiles(
     paths: Iterable[Path | str] = (), *, hardware: str = "mock"
 ) -> list[ProfileEntry]:
-    """Return every profile there is, the lessons in their order; broken ones with their error.
+    """Return all profiles, the lessons in their order; broken ones with their error.
 
-    `paths`: files and folders besides the course's profiles and `./profiles`.
+    `paths`: files and folders in addition to the course's profiles and `./profiles`.
     """
     files = [*_files_of(SHIPPED), *_files_of(Path("profiles"))]
     for path in map(Path, paths):
@@ -58,13 +58,13 @@ def list_profiles(
 
 
 def find_profile(name: str | Path) -> Path:
-    """Return the file of a profile given by path, name, lesson number or beginning of a name.
+    """Return the file of a profile given by path, name, lesson number or start of a name.
 
-    What is in `./profiles` goes before the course.
+    Profiles in `./profiles` take precedence over those of the course.
 
     Raises:
-        ProfileNotFoundError: with the names that were probably meant.
-        UsageError: if the beginning fits several.
+        ProfileNotFoundError: with the names that may have been meant.
+        UsageError: if several names begin like this.
     """
     text = str(name)
     if is_path(text):
@@ -79,18 +79,18 @@ def find_profile(name: str | Path) -> Path:
         return known[fits[0]]
     if fits:
         raise UsageError(
-            say("{name!r} may be any of: {names}", name=text, names=", ".join(sorted(fits)))
+            say("{name!r} fits several: {names}", name=text, names=", ".join(sorted(fits)))
         )
     raise ProfileNotFoundError(text, _likely(text, known))
 
 
 def is_path(text: str) -> bool:
-    """Whether this is a file of a profile rather than a name of one."""
+    """Whether this is the path of a profile rather than its name."""
     return os.sep in text or text.endswith(ENDINGS) or os.path.isfile(text)  # noqa: PTH113
 
 
 def fitting(text: str, known: Iterable[str]) -> list[str]:
-    """Return the names with this lesson number, else those that begin so."""
+    """Return the names with this lesson number, else those that begin with the text."""
     names = list(known)
     number = _number(text) if LESSON.fullmatch(text) else None
     fits = [name for name in names if _number(name) == number]
@@ -105,7 +105,7 @@ def _files_of(folder: Path) -> list[Path]:
 
 
 def _likely(text: str, known: Iterable[str]) -> list[str]:
-    """Return likely names, by the whole name and by the words that it is made of."""
+    """Return similar names, compared as a whole and word by word."""
     names = list(known)
     found = near(text, names, most=3, cutoff=0.7)
     for stem in names:
@@ -126,7 +126,7 @@ def _order(path: Path) -> tuple[int, int, str, str]:
 
 
 def _entry(path: Path, hardware: str) -> ProfileEntry:
-    # Validation takes pydantic along: whoever only looks for a file does without it.
+    # Validation imports pydantic, which merely finding a file does not need.
     from launcher.profile.load import load_profile
 
     try:

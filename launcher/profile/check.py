@@ -1,4 +1,4 @@
-"""What the parts of a profile mean together: names, commands, needs, modules."""
+"""Checks across the parts of a profile: names, commands, needs, modules."""
 
 from __future__ import annotations
 
@@ -10,20 +10,21 @@ from launcher.profile.files import file_of, files_beside
 from launcher.profile.model import LONGEST_NODE_NAME, NODE_NAME, is_file
 from launcher.profile.modules import is_installed, likely_names
 from launcher.profile.text import shown
-from launcher.profile.tree import empty, find, place_of
 from launcher.profile.when import WhenError, holds
 from text.sentences import say
 from text.suggestions import did_you_mean
+from text.yaml_tree import empty, find, place_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from launcher.profile.model import NodeDocument
-    from launcher.profile.tree import Branch, Problems, Where
+    from launcher.profile.problems import Problems
+    from text.yaml_tree import Branch, Where
 
 
 def applies(name: str, node: NodeDocument, hardware: str, tree: Branch, problems: Problems) -> bool:
-    """Whether a node's `when` lets it run on this hardware."""
+    """Whether a node's `when` allows it to run on this hardware."""
     if node.when is None:
         return True
     try:
@@ -35,7 +36,7 @@ def applies(name: str, node: NodeDocument, hardware: str, tree: Branch, problems
 
 
 def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) -> None:
-    """Check one node by itself: its name, and that there is exactly one thing to run."""
+    """Check one node on its own: its name, and that it has exactly one of `run` and `exec`."""
     where = ("nodes", name)
     place = place_of(tree, where, key=True)
     if not NODE_NAME.fullmatch(name) or len(name) > LONGEST_NODE_NAME:
@@ -65,7 +66,7 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
                 problems.add(
                     place_of(tree, (*where, "ready", key), key=True),
                     (*where, "ready", key),
-                    say("`{key}` belongs to a topic, and none is given here", key=key),
+                    say("`{key}` belongs to a topic, but none is given here", key=key),
                     say("write ready: {topic: /chatter, type: std_msgs/msg/String, rate: 1}"),
                 )
 
@@ -73,13 +74,14 @@ def check_node(name: str, node: NodeDocument, tree: Branch, problems: Problems) 
 def check_run(
     name: str, run: str, folders: Sequence[Path], tree: Branch, problems: Problems
 ) -> None:
-    """Check that what a node runs is there.
+    """Check that the module or file that a node runs exists.
 
-    `folders`: that of the profile, and others where people look for modules; Deck does not.
+    `folders`: that of the profile, and others where users may expect modules; Deck does not search
+    them.
     """
     where = ("nodes", name, "run")
     if is_file(run):
-        # Unlike Path.is_file, this takes a name that no file can have for what it is.
+        # Unlike Path.is_file, this does not raise for a name that no file can have.
         if not os.path.isfile(run):  # noqa: PTH113
             file = Path(run)
             message = say("there is no file {path}", path=shown(file))
@@ -101,9 +103,9 @@ def check_needs(
     tree: Branch,
     problems: Problems,
 ) -> None:
-    """Check that what nodes need exists, must run, and does not need them in turn.
+    """Check that the nodes needed by others exist, are not optional, and form no cycles.
 
-    `needs`: of the nodes that run; `everybody`: all names in the file.
+    `needs`: those of the nodes that run; `everybody`: all node names in the file.
     """
     for name, needed in needs.items():
         for index, other in enumerate(needed):
@@ -122,7 +124,7 @@ def check_needs(
 
 
 def _cycles(needs: Mapping[str, tuple[str, ...]]) -> list[list[str]]:
-    """Return cycles, each once and from its first node in the file; not every one of a knot."""
+    """Return cycles, each once, from its first node in the file; not all of an entangled group."""
     order = {name: position for position, name in enumerate(needs)}
     done: set[str] = set()
     cycles: list[list[str]] = []

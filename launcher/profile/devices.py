@@ -1,10 +1,10 @@
-"""Devices: settings that differ from robot to robot, kept in one place of a profile.
+"""Devices: settings that differ from robot to robot, in one place of a profile.
 
-Nodes refer to them as `${devices.pico.port}` in `params`, `exec` and `env`; a variable
-`DECK_PICO_PORT` in the environment overrides them without editing the file. What stands under
-`mock` or `real` replaces the rest, and the variable too, on that hardware alone: so nobody's mock
-robot drives a real one. `port: auto` is looked for by USB ids (`launcher.profile.serial_choice`)
-when the profile is about to be started.
+Nodes refer to them as `${devices.pico.port}` in `params`, `exec` and `env`; an environment variable
+`DECK_PICO_PORT` overrides a setting without editing the file. Settings under `mock` or `real`
+replace all others, the variable included, on that hardware only, so that a mock robot never drives
+a real one. `port: auto` is resolved by USB ids (`launcher.profile.serial_choice`) just before the
+profile is started.
 """
 
 from __future__ import annotations
@@ -13,30 +13,22 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from launcher.profile.device_variables import variable
+from launcher.profile.problems import Problems
+from launcher.profile.reading import read_value
 from launcher.profile.references import Filler, used_devices
 from launcher.profile.serial_choice import AUTO, KINDS, Unclear, WantedPort, choose
-from launcher.profile.tree import (
-    Branch,
-    Listing,
-    MappingEntry,
-    Problems,
-    Scalar,
-    find,
-    place_of,
-    plain,
-)
 from launcher.profile.when import HARDWARE
-from launcher.profile.yaml_tree import read_value
 from text.sentences import say
+from text.yaml_tree import Branch, Listing, MappingEntry, Scalar, find, place_of, plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from launcher.profile.tree import Tree
     from launcher.serial_ports import SerialPort
+    from text.yaml_tree import Tree
 
 LISTED = "usb"
-"""The one setting that may be a list."""
+"""The only setting that may be a list."""
 
 
 def with_devices(
@@ -47,15 +39,15 @@ def with_devices(
     problems: Problems,
     ports: Callable[[], Sequence[SerialPort]] | None = None,
 ) -> Branch:
-    """Return the profile with its devices as they are on this hardware, and put in where named.
+    """Return the profile with the devices of this hardware, and with references to them filled in.
 
     Args:
         tree: the profile
         hardware: `mock` or `real`
-        places: what else may be named, {"run_dir": "/run/user/1000/deck"}
-        environ: where DECK_* are read
-        problems: takes what is wrong
-        ports: tells the serial ports there are; None leaves `auto` as it stands
+        places: other names that may be referred to, {"run_dir": "/run/user/1000/deck"}
+        environ: where DECK_* variables are read from
+        problems: collects what is wrong
+        ports: lists the serial ports; None leaves `auto` as it is
     """
     devices = tree.entries.get("devices")
     settings: dict[str, Scalar] = {}
@@ -79,7 +71,7 @@ def with_devices(
 
 
 def wanted(devices: Mapping[str, Mapping[str, Any]]) -> dict[str, WantedPort]:
-    """Return what is known of the ports of devices, {"pico": {"port": "auto", "kind": "pico"}}."""
+    """Return what devices like {"pico": {"port": "auto", "kind": "pico"}} say about their ports."""
     found: dict[str, WantedPort] = {}
     for device, settings in devices.items():
         port = settings.get("port") if isinstance(settings, dict) else None
@@ -101,7 +93,7 @@ def _replaced(branch: Branch, key: str, value: Tree) -> Branch:
 def _overridden(
     devices: Branch, hardware: str, environ: Mapping[str, str], problems: Problems
 ) -> Branch:
-    """Return the devices with the environment's values and those of this hardware."""
+    """Return the devices with the values from the environment and for this hardware."""
     for device, entry in devices.entries.items():
         if isinstance(entry.value, Branch):
             settings = _settings(device, entry.value, hardware, environ, problems)
@@ -131,7 +123,7 @@ def _settings(
 
 
 def _single(value: Tree, where: tuple[str, ...], problems: Problems) -> bool:
-    """Whether a setting is one value, as all must be but the USB ids."""
+    """Whether a setting is a single value, as all but the USB ids must be."""
     if isinstance(value, Scalar) or (where[-1] == LISTED and isinstance(value, Listing)):
         return True
     problems.add(value.place, where, say("expected a single value"))
@@ -139,7 +131,7 @@ def _single(value: Tree, where: tuple[str, ...], problems: Problems) -> bool:
 
 
 def _from_environment(name: str, text: str, declared: Scalar, problems: Problems) -> Scalar:
-    """Read a variable as the type that the profile declares."""
+    """Read a variable as the type that the value in the profile has."""
     if isinstance(declared.value, str) or declared.value is None:
         return Scalar(text, text, declared.place)
     value = read_value(text, name, Problems())

@@ -1,7 +1,7 @@
-"""`extends:` - a profile that says only what is different about another one.
+"""`extends:` - a profile that only states its differences from another one.
 
-Mappings are joined key by key, down to single parameters; everything else replaces what the
-other profile says. A node set to nothing is taken out, and `run` replaces `exec` or the reverse.
+Mappings are merged key by key, down to single parameters; everything else replaces the value in the
+other profile. A node set to null is removed, and `run` replaces `exec` and vice versa.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any
 from launcher.profile.field_marks import Joined, marked
 from launcher.profile.files import with_own_files
 from launcher.profile.model import NodeDocument, ProfileDocument
+from launcher.profile.reading import read_yaml
 from launcher.profile.text import SHIPPED, read_text, shown
-from launcher.profile.tree import Branch, MappingEntry, empty, plain
-from launcher.profile.yaml_tree import read_yaml
 from text.sentences import say
 from text.suggestions import did_you_mean
+from text.yaml_tree import Branch, MappingEntry, empty, plain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from launcher.profile.tree import Problems
+    from launcher.profile.problems import Problems
 
 ALL: Any = {}
 ALL["*"] = ALL
@@ -29,14 +29,14 @@ JOINED: Any = {
     "nodes": {"*": dict.fromkeys(marked(NodeDocument, Joined), ALL)},
     **dict.fromkeys(marked(ProfileDocument, Joined), ALL),
 }
-"""Which mappings are joined, by their keys; `*` stands for any."""
+"""The mappings that are merged, by their keys; `*` stands for any key."""
 MAX_CHAIN = 32
-"""Profiles that extend one another; nobody keeps more of them in mind."""
+"""Longest chain of profiles that extend one another; nobody can follow a longer one."""
 RIVALS = {"run": "exec", "exec": "run"}
 
 
 def read_profile(path: Path, problems: Problems) -> Branch | None:
-    """Return the profile joined with those it extends; None and problems if one is unreadable."""
+    """Return the profile merged with those it extends; None and problems if one is unreadable."""
     return _read(path, problems, ())
 
 
@@ -69,7 +69,7 @@ def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | N
         return own
     if len(seen) == MAX_CHAIN:
         message = say("more than {most} profiles extend each other in a row", most=MAX_CHAIN)
-        hint = say("say here what they say together")
+        hint = say("merge some of them into one profile")
         problems.add(entry.value.place, ("extends",), message, hint)
         return own
     base = _read(base_path, problems, seen)
@@ -77,9 +77,9 @@ def _read(path: Path, problems: Problems, chain: tuple[Path, ...]) -> Branch | N
 
 
 def _base_path(wanted: str, path: Path) -> Path | None:
-    """Find the profile: a path beside this file, else a name beside it or in the course."""
+    """Find the profile: a path relative to this file, else a name next to it or in the course."""
     beside = path.parent / wanted
-    # Put together as text: `/` and `..` have no name that an ending could be added to.
+    # Joined as text: `/` and `..` have no name to which a suffix could be added.
     candidates = [beside, Path(f"{beside}.yaml"), SHIPPED / f"{wanted}.yaml"]
     try:
         return next((candidate for candidate in candidates if candidate.is_file()), None)

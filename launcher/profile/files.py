@@ -1,4 +1,4 @@
-"""A user's own nodes, `run: ./my_sonar.py`, and folders: relative to the profile that says so."""
+"""The user's own nodes, `run: ./my_sonar.py`, and folders: relative to the profile's file."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 from launcher.profile.field_marks import PathFromProfile, marked
 from launcher.profile.model import NodeDocument
-from launcher.profile.tree import Branch, MappingEntry, Scalar
+from text.yaml_tree import Branch, MappingEntry, Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from launcher.profile.tree import Tree
+    from text.yaml_tree import Tree
 
 
 PATHS = marked(NodeDocument, PathFromProfile)
 
 
 def with_own_files(profile: Branch, folder: Path) -> Branch:
-    """Return a profile, of this folder, with files and folders of its nodes by full paths."""
+    """Return a profile from this folder with the paths in its nodes made absolute."""
     nodes = profile.entries.get("nodes")
     if nodes is None or not isinstance(nodes.value, Branch):
         return profile
@@ -46,11 +46,11 @@ def _with_full_path(key: str, part: MappingEntry, folder: Path) -> MappingEntry:
     if key not in PATHS or not PATHS[key].is_meant(written.value):
         return part
     path = os.path.normpath(folder.absolute() / written.value)
-    return MappingEntry(part.key_place, Scalar(path, written.text, written.place, written.size))
+    return MappingEntry(part.key_place, Scalar(path, written.text, written.place))
 
 
 def files_beside(folder: Path) -> list[str]:
-    """Return the Python files of a folder, as `run` names them."""
+    """Return the Python files of a folder, in the form used by `run`."""
     try:
         return [f"./{path.name}" for path in sorted(folder.glob("*.py"))]
     except (OSError, ValueError):
@@ -58,7 +58,7 @@ def files_beside(folder: Path) -> list[str]:
 
 
 def file_of(module: str, folders: Sequence[Path], profile_folder: Path) -> str:
-    """Return the file that a module would be in one of these folders, as `run` names it."""
+    """Return the file of a module in one of these folders, in the form used by `run`."""
     for folder in folders:
         path = folder / f"{module.replace('.', '/')}.py"
         if path.is_file():

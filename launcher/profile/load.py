@@ -1,7 +1,7 @@
-"""A profile, ready to be started: read, joined, overridden, validated.
+"""Loading a profile: read, merge, override, validate; the result can be started.
 
-`load_profile` is the only way to one; whatever is wrong is told at once, each problem with its
-place in the file, and nothing is started by reading.
+`load_profile` is the only way to load one. It reports all problems at once, each with its position
+in the file, and starts nothing.
 """
 
 from __future__ import annotations
@@ -18,14 +18,15 @@ from launcher.profile.devices import with_devices
 from launcher.profile.extends import read_profile
 from launcher.profile.overrides import read_sets
 from launcher.profile.params import flatten
+from launcher.profile.problems import Problems
 from launcher.profile.references import used_devices
 from launcher.profile.spec import NodeSpec, Profile, Ready
 from launcher.profile.text import shown
-from launcher.profile.tree import Branch, FilePlace, Problems, Scalar, find, place_of
 from launcher.profile.validate import validate
 from launcher.profile.when import HARDWARE
-from launcher.rundir import run_path
+from text.run_path import run_path
 from text.sentences import say
+from text.yaml_tree import Branch, FilePlace, Scalar, find, place_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -45,20 +46,20 @@ def load_profile(
     environ: Mapping[str, str] | None = None,
     ports: Callable[[], Sequence[SerialPort]] | None = None,
 ) -> Profile:
-    """Read a profile and everything that it extends.
+    """Load a profile and everything that it extends.
 
     Args:
         path: its file
-        hardware: `mock` or `real`, what `when` asks for
-        overrides: `node.param=value`, the value read as YAML
-        domain: the ROS domain, over what the profile and the environment say
-        environ: where DECK_* and ROS_DOMAIN_ID are read; by default the process's own
-        ports: tells the serial ports that are there, for devices with `port: auto`; who starts
-            a profile gives `serial_ports`, who only reads it none
+        hardware: `mock` or `real`, for the conditions in `when`
+        overrides: `node.param=value`, the value being read as YAML
+        domain: the ROS domain, overriding the profile and the environment
+        environ: where DECK_* and ROS_DOMAIN_ID are read from; default: that of this process
+        ports: lists the serial ports, for devices with `port: auto`; pass `serial_ports` to start
+            the profile, nothing to only read it
 
     Raises:
-        ProfileError: with all that is wrong.
-        DomainError: if the domain that counts is none.
+        ProfileError: with all problems.
+        DomainError: if the chosen domain is invalid.
     """
     path = Path(path)
     env = os.environ if environ is None else environ
@@ -83,27 +84,27 @@ def load_profile(
 
 
 def _early_domain(tree: Branch, asked: int | None, environ: Mapping[str, str]) -> str:
-    """Return the domain for names in `${domain}`, before anything is validated."""
+    """Return the value of `${domain}`, before anything is validated."""
     written = find(tree, ("domain",))
     value = written.value if isinstance(written, Scalar) else None
     try:
         return str(choose_domain(asked, value if type(value) is int else None, environ))
     except DomainError:
-        return ""  # Told once all else is known to be right.
+        return ""  # Reported later, once everything else is valid.
 
 
 @dataclass
 class _SpecBuilder:
-    """Turns validated documents into what is started."""
+    """Turns validated documents into specs that can be started."""
 
     path: Path
     tree: Branch
     problems: Problems
     used: set[str]
-    """Devices that nodes name."""
+    """The devices that nodes refer to."""
 
     def nodes(self, valid: Mapping[str, NodeDocument], hardware: str) -> dict[str, NodeSpec]:
-        """Return the nodes that run, those with problems too."""
+        """Return the nodes that run on this hardware, including those with problems."""
         tree, problems = self.tree, self.problems
         every = find(tree, ("nodes",))
         everybody = list(every.entries) if isinstance(every, Branch) else []
@@ -131,7 +132,7 @@ class _SpecBuilder:
         where = ("nodes", name, "params")
         params = find(self.tree, where)
         cwd = None if node.cwd is None else Path(node.cwd)
-        # Unlike Path.is_dir, this takes a name that no directory can have for what it is.
+        # Unlike Path.is_dir, this does not raise for a name that no directory can have.
         if cwd is not None and not os.path.isdir(cwd):  # noqa: PTH112
             here = ("nodes", name, "cwd")
             message = say("there is no directory {path}", path=shown(cwd))
@@ -176,7 +177,7 @@ class _SpecBuilder:
 
 
 def _ready(name: str, node: NodeDocument) -> Ready | None:
-    """Return the condition as written, else for `run` that the node is in the graph."""
+    """Return the condition as written; by default a `run` node must be in the graph."""
     if node.ready is None:
         return None if node.run is None else Ready("node", name)
     ready = node.ready

@@ -1,7 +1,7 @@
-"""What a profile may say: the pydantic model that validates it and that its JSON schema comes from.
+"""The format of a profile: the pydantic model for validation, and the source of the JSON schema.
 
-Descriptions here are what an editor shows beside a key. The model knows values and types only;
-`launcher.profile.check` knows what they mean together.
+Editors show the descriptions here beside a key. The model covers single values and types only;
+checks across fields are in `launcher.profile.check`.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 def is_file(run: str) -> bool:
-    """Whether a file is meant, and not a module."""
+    """Whether `run` means a file, not a module."""
     return run.startswith(("./", "../", "/"))
 
 
 def refuse(words: Words) -> PydanticCustomError:
-    """Return the error by which a validator here refuses a value."""
+    """Return the error with which a validator of this model rejects a value."""
     return PydanticCustomError("deck", "{words}", {"words": words})
 
 
@@ -48,8 +48,8 @@ def _module(value: object) -> object:
     if isinstance(value, str) and not is_file(value) and not MODULE.fullmatch(value):
         raise refuse(
             say(
-                "{value!r} is not a Python module; write it as nodes.hello, and a file of your "
-                "own as ./my_node.py",
+                "{value!r} is not a Python module; write a module as nodes.hello, a file "
+                "of your own as ./my_node.py",
                 value=value,
             )
         )
@@ -90,7 +90,10 @@ def _variables(value: object) -> object:
 def _command(value: object) -> object:
     if isinstance(value, str):
         raise refuse(
-            say("expected a list, found one text; write [{words}]", words=", ".join(value.split()))
+            say(
+                "expected a list, found a single text; write [{words}]",
+                words=", ".join(value.split()),
+            )
         )
     if value == []:
         raise refuse(say("an empty command; write for example [ros2, run, package, program]"))
@@ -158,47 +161,47 @@ _DEVICE: dict[str, Any] = {
     "properties": {
         "kind": {
             "enum": [*KINDS, "camera", "sound"],
-            "description": "What it is, for `port: auto` and for `deck check --preflight`.",
+            "description": "The kind of device, for `port: auto` and `deck check --preflight`.",
         },
         "port": {
             "type": "string",
-            "description": "A path, best one of /dev/serial/by-id; auto: found by its USB ids.",
+            "description": "A path, preferably in /dev/serial/by-id; auto: found by USB ids.",
         },
         "usb": {
             "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
             "description": "USB ids for `port: auto`, vendor:product: 2e8a:0005.",
         },
-        "baud": {"type": "integer", "description": "Speed of the port."},
-        "mock": {"type": "object", "description": "What replaces settings on mock hardware."},
-        "real": {"type": "object", "description": "What replaces settings on real hardware."},
+        "baud": {"type": "integer", "description": "Baud rate of the port."},
+        "mock": {"type": "object", "description": "Settings that apply on mock hardware."},
+        "real": {"type": "object", "description": "Settings that apply on real hardware."},
     },
 }
 
 
 class Document(BaseModel):
-    """Common to all parts of a profile: nothing unknown, nothing converted silently."""
+    """Base of all parts of a profile: no unknown keys, no silent conversions."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
 
 class ReadyDocument(Document):
-    """When a node counts as ready: one of topic, service and node."""
+    """When a node counts as ready: exactly one of topic, service and node."""
 
     topic: RosName | None = Field(None, description="Ready when somebody publishes this topic.")
     type: TypeName | None = Field(
         None,
-        description="Of the topic: only publishers of this type count, `std_msgs/msg/Float32`.",
+        description="With topic: only publishers of this type count, `std_msgs/msg/Float32`.",
     )
     rate: float | None = Field(
         None,
         gt=0,
         le=1000,
-        description="Of the topic: messages must come so many times a second; nine tenths of it"
-        " will do.",
+        description="With topic: messages must arrive this many times a second; nine tenths of it"
+        " are enough.",
     )
     service: RosName | None = Field(None, description="Ready when this service is offered.")
     node: RosName | None = Field(None, description="Ready when this node is in the ROS graph.")
-    within: float = Field(READY_WITHIN_S, gt=0, le=3600, description="Seconds that this may take.")
+    within: float = Field(READY_WITHIN_S, gt=0, le=3600, description="Seconds it may take.")
 
 
 class NodeDocument(Document):
@@ -206,8 +209,8 @@ class NodeDocument(Document):
 
     run: Annotated[ModuleOrFile | None, PathFromProfile(is_file)] = Field(
         None,
-        description="Python module to run as a ROS node, named as its key: `nodes.hello`; or a file"
-        " of your own, relative to the profile: `./my_sonar.py`.",
+        description="Python module to run as a ROS node, named like its key: `nodes.hello`; or a"
+        " file of your own, relative to the profile: `./my_sonar.py`.",
     )
     exec: Annotated[Command | None, AsText()] = Field(
         None, strict=False, description="Any command instead: `[ros2, run, package, program]`."
@@ -216,7 +219,7 @@ class NodeDocument(Document):
         {}, description="ROS parameters, nested as you like."
     )
     remap: Annotated[dict[str, RosName], BeforeValidator(_ros_names), AsText(), Joined()] = Field(
-        {}, description="Names of topics and services: `{/drive: /drive_safe}`."
+        {}, description="Topic and service names to remap: `{/drive: /drive_safe}`."
     )
     env: Annotated[
         dict[str, str],
@@ -228,24 +231,24 @@ class NodeDocument(Document):
     needs: tuple[str, ...] = Field(
         (),
         strict=False,
-        description="Nodes that must be ready before this one is started. One that `when` leaves"
-        " out is not waited for.",
+        description="Nodes that must be ready before this one is started. Nodes excluded by `when`"
+        " are not waited for.",
     )
     ready: ReadyDocument | None = Field(
         None, description="Default: `run` nodes are ready when seen in the ROS graph."
     )
     restart: Restart = Field(
-        "never", description="Whether to start it again when it ends: backoff doubles up to 30 s."
+        "never", description="Whether to restart it when it ends; the delay doubles, up to 30 s."
     )
     when: str | None = Field(
-        None, description='Only if this is true: `hardware == "mock"`, `hardware in ["real"]`.'
+        None, description='Run it only if true: `hardware == "mock"`, `hardware in ["real"]`.'
     )
     optional: bool = Field(
         False,
-        description="The lesson does without it: if its program is not installed, or ends, that is"
-        " told and is no failure.",
+        description="The lesson can do without it: that its program is not installed, or ends, is"
+        " reported but is not a failure.",
     )
-    warm: bool = Field(True, description="Fork it from a process that has imported rclpy already.")
+    warm: bool = Field(True, description="Fork it from a process that has already imported rclpy.")
     cwd: Annotated[str | None, PathFromProfile()] = Field(
         None, description="Working directory, relative to the profile's file."
     )
@@ -255,7 +258,7 @@ class ProfileDocument(Document):
     """A profile of Deck: nodes started, supervised and shown together."""
 
     extends: str | None = Field(
-        None, description="Another profile, by name or path; what stands here overrides it."
+        None, description="Another profile, by name or path; this file overrides it."
     )
     title: Annotated[Texts, AsText()] = Field(
         {}, description="A line for the picker, by language: `{en: ..., ru: ...}`."
@@ -270,13 +273,13 @@ class ProfileDocument(Document):
         None,
         ge=0,
         le=LAST_DOMAIN,
-        description="ROS_DOMAIN_ID, best 1 to 101; by default one of your own.",
+        description="ROS_DOMAIN_ID, preferably 1 to 101; by default one derived from the user.",
     )
     discovery: Discovery = Field(
-        "localhost", description="Who may hear the robot: localhost, subnet, or [static peers]."
+        "localhost", description="Who can reach the robot: localhost, subnet, or [static peers]."
     )
     nodes: dict[str, NodeDocument | None] = Field(
-        {}, description="Nodes by name; null takes out one of the profile that is extended."
+        {}, description="Nodes by name; null removes a node of the extended profile."
     )
     devices: Annotated[dict[str, Annotated[dict[str, Any], WithJsonSchema(_DEVICE)]], Joined()] = (
         Field(
@@ -286,7 +289,7 @@ class ProfileDocument(Document):
         )
     )
     panels: tuple[Panel, ...] = Field(
-        (), strict=False, description="What the deck shows beside nodes and logs."
+        (), strict=False, description="Panels that the deck shows beside nodes and logs."
     )
     steps: tuple[dict[str, Any], ...] = Field(
         (), strict=False, description="The lesson's own exercises."

@@ -1,4 +1,4 @@
-"""`--set node.param=value`: parameters given on the command line, over those of the profile."""
+"""`--set node.param=value`: parameters from the command line, overriding the profile."""
 
 from __future__ import annotations
 
@@ -6,24 +6,24 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from launcher.profile.params import flatten
-from launcher.profile.tree import Branch, FilePlace, MappingEntry
-from launcher.profile.yaml_tree import read_value
+from launcher.profile.reading import read_value
 from text.sentences import say
 from text.suggestions import did_you_mean
+from text.yaml_tree import Branch, FilePlace, MappingEntry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from launcher.profile.problems import Problems
     from launcher.profile.spec import NodeSpec
-    from launcher.profile.tree import Problems
 
 
 def read_sets(
     overrides: Iterable[str], nodes: dict[str, NodeSpec], left_out: set[str], problems: Problems
 ) -> dict[str, NodeSpec]:
-    """Return the nodes with the overrides in their parameters; problems for those that fit none.
+    """Return the nodes with their parameters overridden; overrides without a node are problems.
 
-    `left_out`: nodes of the file that do not run on this hardware.
+    `left_out`: nodes in the file that do not run on this hardware.
     """
     result = dict(nodes)
     for text in overrides:

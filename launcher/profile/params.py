@@ -1,8 +1,8 @@
-"""A node's parameters: from YAML to `-p name:=value` with the types that ROS has.
+"""A node's parameters: from YAML to `-p name:=value`, with the types of ROS.
 
-ROS knows bool, 64-bit integer, double, string, and lists of one of these. rcl reads the value of
-`-p` as YAML, so text is always written quoted: `"1"` stays text. A list that mixes whole numbers
-with others becomes a list of doubles, which rcl would refuse otherwise.
+ROS has bool, 64-bit integer, double, string, and lists of one of these. rcl reads the value of `-p`
+as YAML, so text is always written in quotes: `"1"` stays text. A list that mixes integers and other
+numbers becomes a list of doubles; rcl would refuse the mixture.
 """
 
 from __future__ import annotations
@@ -11,27 +11,28 @@ import re
 import sys
 from typing import TYPE_CHECKING, TypeAlias
 
-from launcher.profile.tree import Branch, Listing, Scalar
 from text.sentences import say
+from text.yaml_tree import Branch, Listing, Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from launcher.profile.tree import Problems, Tree, Where
+    from launcher.profile.problems import Problems
+    from text.yaml_tree import Tree, Where
 
 Single: TypeAlias = bool | int | float | str
 Param: TypeAlias = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_/][A-Za-z0-9_/]*)*")
-"""What rcl takes for a name in `-p name:=value`: `a`, `a.b`, `qos_overrides./scan.depth`."""
+"""The names that rcl accepts in `-p name:=value`: `a`, `a.b`, `qos_overrides./scan.depth`."""
 LONGEST_TEXT = 32_768
-"""Linux refuses an argument of 128 KiB; escapes may make four bytes of one."""
+"""Linux refuses an argument of 128 KiB; escaping may turn one byte into four."""
 INT64 = 2**63
 ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 
 def flatten(params: Tree, where: Where, problems: Problems) -> dict[str, Param]:
-    """Return {name: value} with nested names joined by dots; problems for what ROS cannot hold."""
+    """Return {name: value}, nested names joined by dots; values ROS cannot hold are problems."""
     flat: dict[str, Param] = {}
     if isinstance(params, Branch):
         _flatten(params, "", where, flat, problems)
@@ -39,12 +40,12 @@ def flatten(params: Tree, where: Where, problems: Problems) -> dict[str, Param]:
 
 
 def as_arguments(params: Mapping[str, Param]) -> list[str]:
-    """Return the arguments that go after `--ros-args`."""
+    """Return the arguments that follow `--ros-args`."""
     return [part for name, value in params.items() for part in ("-p", f"{name}:={written(value)}")]
 
 
 def written(value: Param) -> str:
-    """Write one value so that rcl and any YAML parser read back the same value and type."""
+    """Write a value so that rcl and any YAML parser read back the same value and type."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):
@@ -62,7 +63,7 @@ def _float(value: float) -> str:
     if value in (float("inf"), float("-inf")):
         return ".inf" if value > 0 else "-.inf"
     digits, exponent, power = repr(value).partition("e")
-    # YAML 1.1 takes 1e+16 for text: a float there has a dot.
+    # YAML 1.1 reads 1e+16 as text: its floats need a dot.
     return (digits if "." in digits else digits + ".0") + exponent + power
 
 

@@ -1,28 +1,29 @@
-"""`${devices.pico.port}`, `${run_dir}`, `${domain}`: values put in where a profile names them."""
+"""`${devices.pico.port}`, `${run_dir}`, `${domain}`: filling in the values of these references."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
 
-from launcher.profile.tree import Branch, Listing, MappingEntry, Scalar
 from launcher.profile.when import WhenError, holds
 from text.sentences import say
 from text.suggestions import did_you_mean
+from text.yaml_tree import Branch, Listing, MappingEntry, Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from launcher.profile.tree import Problems, Tree, Where
+    from launcher.profile.problems import Problems
+    from text.yaml_tree import Tree, Where
 
 DEVICE = re.compile(r"\$\{devices\.([^}]*)\}")
 PLACE = re.compile(r"\$\{(\w+)\}")
 REFERRING = ("params", "exec", "env")
-"""The parts of a node in which names are put in."""
+"""The parts of a node in which references are filled in."""
 
 
 class Filler:
-    """Puts values in; an unknown name in `${}` is left as it is."""
+    """Fills in values; an unknown name in `${}` is left as it is."""
 
     def __init__(
         self, settings: Mapping[str, Scalar], places: Mapping[str, str], problems: Problems
@@ -31,7 +32,7 @@ class Filler:
         self._settings, self._places, self._problems = settings, places, problems
 
     def nodes(self, nodes: Branch) -> Branch:
-        """Return all nodes with everything put in."""
+        """Return all nodes with everything filled in."""
         filled = {
             name: MappingEntry(entry.key_place, self._node(name, entry.value))
             for name, entry in nodes.entries.items()
@@ -39,7 +40,7 @@ class Filler:
         return Branch(filled, nodes.place)
 
     def branch(self, branch: Branch, where: Where) -> Branch:
-        """Return a branch with everything put in."""
+        """Return a branch with everything filled in."""
         filled = {
             key: MappingEntry(entry.key_place, self._tree(entry.value, (*where, key)))
             for key, entry in branch.entries.items()
@@ -90,7 +91,7 @@ class Filler:
 
 
 def used_devices(tree: Branch, hardware: str) -> set[str]:
-    """Return the devices that nodes name which run on this hardware."""
+    """Return the devices that are referred to by nodes which run on this hardware."""
     nodes = tree.entries.get("nodes")
     if nodes is None or not isinstance(nodes.value, Branch):
         return set()
@@ -112,7 +113,7 @@ def _runs(node: Branch, hardware: str) -> bool:
     try:
         return holds(when.value.value, {"hardware": hardware})
     except WhenError:
-        return True  # What is wrong with it is told elsewhere.
+        return True  # Its fault is reported elsewhere.
 
 
 def _texts(tree: Tree) -> Iterator[str]:

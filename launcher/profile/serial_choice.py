@@ -1,7 +1,7 @@
-"""`port: auto`: which of the ports that are there belongs to which device, by their USB ids.
+"""`port: auto`: assigning the existing serial ports to devices, by their USB ids.
 
-Never a guess: a device that could have two ports, or a port that could be two devices', is told
-with all that was found, and a person chooses.
+This never guesses: if several ports fit a device, or several devices a port, everything found is
+reported and the user chooses.
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "tfmini_s": tuple(BRIDGES),
     "lsc16": tuple(BRIDGES),
 }
-"""Kind of device to the USB ids that it is known to come with."""
+"""Kind of device to the USB ids that it is known to have."""
 
 
 @dataclass(frozen=True)
 class WantedPort:
-    """What is known of a device's port."""
+    """The settings of a device that concern its port."""
 
     port: str = AUTO
-    """`auto`, or a path that somebody has chosen."""
+    """`auto`, or a path chosen by the user."""
     usb: tuple[str, ...] = ()
-    """Ids to look for; empty: whatever is a USB device."""
+    """USB ids to look for; empty: any USB device."""
 
 
 @dataclass(frozen=True)
 class Unclear:
-    """Why a device has no port."""
+    """Why no port could be chosen for a device."""
 
     message: str
     hint: str
@@ -49,9 +49,9 @@ class Unclear:
 def choose(
     wanted: Mapping[str, WantedPort], ports: Sequence[SerialPort]
 ) -> dict[str, SerialPort | Unclear]:
-    """Return for each device with `auto` its port, or why there is none.
+    """Return the port of each device with `auto`, or why there is none.
 
-    A port that another device names is nobody else's.
+    A port that is set explicitly for one device is not given to another.
     """
     taken = {each.port for each in wanted.values() if each.port != AUTO}
     free = [port for port in ports if not taken & {port.device, port.name}]
@@ -64,10 +64,10 @@ def choose(
 
 
 def how_to_choose(device: str) -> str:
-    """Say where a person writes the port of a device."""
+    """Say where the user can set the port of a device."""
     return say(
-        "choose with {variable}=/dev/serial/by-id/..., or devices.{device}.port in a profile of"
-        " yours",
+        "choose with {variable}=/dev/serial/by-id/..., or devices.{device}.port in your "
+        "own profile",
         variable=variable(device, "port"),
         device=device,
     )

@@ -1,4 +1,4 @@
-"""Reading the file of a profile: a small regular file of UTF-8, whatever the path leads to."""
+"""Reading the file of a profile: only a small regular UTF-8 file is accepted."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from launcher.profile.tree import FilePlace
 from text.os_words import os_reason
 from text.sentences import say
+from text.yaml_tree import FilePlace
 
 if TYPE_CHECKING:
-    from launcher.profile.tree import Problems
+    from launcher.profile.problems import Problems
 
 SHIPPED = Path(__file__).resolve().parents[2] / "profiles"
 """The profiles of the course."""
@@ -20,7 +20,7 @@ MAX_BYTES = 256 * 1024
 
 
 def shown(path: Path) -> str:
-    """Return the path as messages name it: relative where that is shorter and goes down."""
+    """Return the path for messages: relative if it is below the current folder."""
     absolute = path.absolute()
     try:
         return str(absolute.relative_to(Path.cwd()))
@@ -29,10 +29,10 @@ def shown(path: Path) -> str:
 
 
 def read_text(path: Path, problems: Problems) -> str | None:
-    """Return the text of a profile, or None and a problem that says why not."""
+    """Return the text of a profile, or None and a problem that says why."""
     place = FilePlace(shown(path))
     try:
-        # A pipe or a terminal would keep us waiting: ask what it is before it is opened.
+        # Opening a pipe or a terminal could block: check the type of file first.
         mode = path.stat().st_mode
         if not stat.S_ISREG(mode):
             kind = say("a directory") if stat.S_ISDIR(mode) else say("not a regular file")
@@ -55,16 +55,16 @@ def read_text(path: Path, problems: Problems) -> str | None:
 
 
 def _inside(path: Path) -> str:
-    """Hint at the profiles inside, if the path is a directory of some."""
+    """Return a hint that lists the profiles in the directory, if it has any."""
     if not path.is_dir() or not os.access(path, os.R_OK | os.X_OK):
         return ""
     names = sorted(child.name for child in path.glob("*.yaml"))[:5]
-    return say("in it there are: {names}", names=", ".join(names)) if names else ""
+    return say("it contains: {names}", names=", ".join(names)) if names else ""
 
 
 def _unreadable(error: OSError) -> tuple[str, str]:
     if isinstance(error, FileNotFoundError):
-        return say("no such file"), say("`deck list` shows the profiles there are")
+        return say("no such file"), say("`deck list` shows all profiles")
     if isinstance(error, PermissionError):
         return say("no permission to read it"), say("chmod u+r it, or ask its owner")
     return say("cannot be read: {reason}", reason=os_reason(error)), ""

@@ -1,4 +1,4 @@
-"""From a tree to validated documents; pydantic's findings become problems in plain words."""
+"""From a tree to validated documents; pydantic's errors become problems in plain words."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from pydantic import ValidationError
 
 from launcher.profile.field_marks import AsText, marked
 from launcher.profile.model import Document, NodeDocument, ProfileDocument, ReadyDocument
-from launcher.profile.tree import Branch, Listing, empty, find, place_of, plain
 from text.sentences import say
 from text.suggestions import did_you_mean
+from text.yaml_tree import Branch, Listing, empty, find, place_of, plain
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-    from launcher.profile.tree import Problems, Tree, Where
+    from launcher.profile.problems import Problems
+    from text.yaml_tree import Tree, Where
 
 D = TypeVar("D", bound=Document)
 
@@ -41,9 +42,9 @@ LIMITS = {
 def validate(
     tree: Branch, problems: Problems
 ) -> tuple[ProfileDocument | None, dict[str, NodeDocument]]:
-    """Return the profile without its nodes, and the nodes; problems for all that does not fit.
+    """Return the profile without its nodes, and the nodes; everything invalid becomes a problem.
 
-    Each node is validated by itself, so that a fault in one hides no fault of another.
+    Each node is validated separately, so that a fault in one does not hide faults in another.
     """
     data = _data(tree)
     nodes = data.get("nodes")
@@ -59,9 +60,9 @@ def validate(
 
 
 def _data(tree: Branch) -> dict[str, Any]:
-    """Return plain data: keys without a value left out, and text wherever only text makes sense.
+    """Return plain data, omitting keys without a value, with text wherever only text makes sense.
 
-    `exec: [--x, 0.10]` means the text 0.10 that stands there, and `lesson: 9` the text 9.
+    In `exec: [--x, 0.10]` the value is the text 0.10 as written, and in `lesson: 9` the text 9.
     """
     data: dict[str, Any] = {
         key: plain(entry.value) for key, entry in tree.entries.items() if not empty(entry.value)
@@ -97,9 +98,9 @@ def _as_text(tree: Tree | None) -> Any:  # noqa: ANN401 - whatever stands there
 def _validated(
     model: type[D], data: object, where: Where, tree: Branch, problems: Problems
 ) -> D | None:
-    """Return the document; where there are problems, what is left of it without the keys at fault.
+    """Return the document; if there are problems, without the keys that cause them.
 
-    With that, the checks that come after find in the same go what else is wrong.
+    So later checks can report other problems in the same run.
     """
     try:
         return model.model_validate(data)
@@ -165,7 +166,7 @@ def _mend(kind: str, found: object) -> str:
 
 
 def _choices(expected: str) -> list[str]:
-    """Take pydantic's "'a', 'b' or 'c'" apart."""
+    """Split pydantic's "'a', 'b' or 'c'" into its choices."""
     return [word.strip("' ") for word in expected.replace(" or ", ", ").split(",")]
 
 
@@ -177,7 +178,7 @@ def _keys(where: Where) -> list[str]:
 
 
 def described(value: object) -> str:
-    """Name a value as found in a file: `the text 'fast'`, `a list`, `12`."""
+    """Describe a value found in a file: `the text 'fast'`, `a list`, `12`."""
     if value is None:
         return say("nothing")
     if isinstance(value, bool):

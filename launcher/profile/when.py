@@ -1,7 +1,7 @@
-"""`when:` expressions: which nodes belong to mocks and which to real hardware.
+"""`when:` expressions: which nodes run on mock and which on real hardware.
 
-A tiny subset of Python's expressions, read by `ast` and never executed:
-`hardware == "mock"`, `hardware in ["real"]`, `and`, `or`, `not`, brackets.
+A tiny subset of Python expressions, parsed by `ast` and never executed: `hardware == "mock"`,
+`hardware in ["real"]`, `and`, `or`, `not`, parentheses.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 HARDWARE = ("mock", "real")
 NAMES: Mapping[str, tuple[str, ...]] = {"hardware": HARDWARE}
-"""What an expression may ask about, and what the answers are."""
+"""The names that an expression may use, and their possible values."""
 MAX_LENGTH = 200
 EXAMPLE = 'hardware == "mock"'
 
 
 class WhenError(ValueError):
-    """An expression that cannot be understood."""
+    """An invalid expression."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -32,10 +32,10 @@ class WhenError(ValueError):
 
 
 def holds(expression: str, facts: Mapping[str, str]) -> bool:
-    """Say whether an expression is true of `facts`, {"hardware": "mock"}.
+    """Return whether an expression is true for `facts`, such as {"hardware": "mock"}.
 
     Raises:
-        WhenError: if it is none.
+        WhenError: if it is not a valid expression.
     """
     if len(expression) > MAX_LENGTH:
         raise WhenError(say("is longer than {limit} characters", limit=MAX_LENGTH))
@@ -84,7 +84,7 @@ def _name(node: ast.expr) -> str:
         if node.id in NAMES:
             return node.id
         raise WhenError(say("{name!r} is not known", name=node.id), did_you_mean(node.id, NAMES))
-    raise WhenError(say("{text!r} is not a name that can be asked about", text=ast.unparse(node)))
+    raise WhenError(say("{text!r} is not a name that a condition can use", text=ast.unparse(node)))
 
 
 def _word(node: ast.expr, name: str) -> str:

@@ -1,9 +1,9 @@
-"""Sessions as the table of processes shows them: their supervisors, wherever their folders are.
+"""Finding sessions by the process table: their supervisors, wherever their folders are.
 
-A supervisor carries a mark in its environment, as nodes do: the id of its run, and the descriptor
-under which it holds the folder of its run open. Through /proc that leads to the record and to the
-socket, be the folder moved or in a run directory that nobody here knows of. The kernel lets only
-the same user follow it.
+A supervisor has a mark in its environment, as nodes do: the id of its run, and the descriptor under
+which it holds the folder of its run open. Through /proc this leads to the record and the socket,
+even if the folder was moved or is in a run directory that is not known here. The kernel allows only
+the same user to follow it.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from launcher.processes.table import SUPERVISOR_MARK, process_numbers, read_marks
 from launcher.run_id import supervisor_of, supervisor_runs
-from launcher.rundir import OWN_RUN_DIR
 from launcher.runs.record import read_record
+from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,24 +26,24 @@ if TYPE_CHECKING:
     from launcher.runs.record import RunRecord
 
 MADE_AGAIN_WITHIN_S = 10.0
-"""A supervisor whose folder has gone makes it again meanwhile."""
+"""Within this time a supervisor whose folder is gone creates it again."""
 _LOOK_AGAIN_S = 0.05
 
 
 @dataclass(frozen=True)
 class FoundSupervisor:
-    """A supervisor that runs."""
+    """A running supervisor."""
 
     run_id: str
     folder: Path
-    """The folder of its run, by way of /proc."""
+    """The folder of its run, as a path through /proc."""
     domain: int
     purpose: str
-    """Its `DECK_RUN_DIR`, by which somebody keeps runs apart; empty for most."""
+    """Its `DECK_RUN_DIR`, with which some users keep runs separate; usually empty."""
 
     @property
     def place(self) -> str:
-        """Where the folder is, in words for people."""
+        """Where the folder is, for display."""
         try:
             return str(self.folder.readlink()).removesuffix(" (deleted)")
         except OSError:
@@ -51,11 +51,11 @@ class FoundSupervisor:
 
     @property
     def holds(self) -> bool:
-        """Whether it holds its folder still; one that is about to end has let go of it."""
+        """Whether it still holds its folder open; one that is about to end has released it."""
         return os.path.lexists(self.folder)
 
     def record(self) -> RunRecord | None:
-        """Return its record, waited for if it is just being made again; None if there is none."""
+        """Return its record, waiting if it is just being created again; None if there is none."""
         deadline = time.monotonic() + MADE_AGAIN_WITHIN_S
         while True:
             record = read_record(self.folder)
@@ -67,11 +67,11 @@ class FoundSupervisor:
 
 
 def supervisors() -> Iterator[FoundSupervisor]:
-    """Yield this user's supervisors that run a session."""
+    """Yield the supervisors of this user that run a session."""
     us = os.getuid()
     for pid in process_numbers():
         with suppress(OSError, ValueError):
-            # The superuser could read those of others.
+            # The superuser could read those of other users.
             if Path(f"/proc/{pid}").stat().st_uid != us:
                 continue
             found = _supervisor(pid)
@@ -82,7 +82,7 @@ def supervisors() -> Iterator[FoundSupervisor]:
 def _supervisor(pid: int) -> FoundSupervisor | None:
     marks = read_marks(pid) or {}
     run_id, *numbers = marks.get(SUPERVISOR_MARK, "").split("/")
-    # What a supervisor starts may have copies of its environment.
+    # Processes that a supervisor starts may have copies of its environment.
     if supervisor_of(run_id) != pid or not supervisor_runs(run_id):
         return None
     domain, descriptor = map(int, numbers)

@@ -1,8 +1,9 @@
-"""The folder of a run, kept where it belongs for as long as the run lasts.
+"""The folder of a run, kept in its place for as long as the run lasts.
 
-It goes with the login where it is in /run/user, and people move and tidy up. The supervisor looks
-again and again, makes it anew, in a place of last resort if need be, and holds it open under one
-descriptor: by that it is found through /proc wherever it is (`launcher.runs.found`).
+In /run/user it is removed when the user logs out, and people move or clean up files. So the
+supervisor checks it regularly, creates it again, in a place of last resort if necessary, and holds
+it open under a fixed descriptor, through which it can be found in /proc wherever it is
+(`launcher.runs.found`).
 """
 
 from __future__ import annotations
@@ -33,34 +34,34 @@ LOOK_EVERY_S = 1.0
 
 
 class RunFolder:
-    """Where clients find a run: its record, and the socket to connect to."""
+    """The place where clients find a run: its record and its socket."""
 
     def __init__(self, record: RunRecord) -> None:
-        """`record` says where it belongs."""
+        """`record` says where the folder belongs."""
         self.record = record
-        """As it is now, with the folder that it is in."""
+        """The current record, with the folder that it is in."""
         self._proper = record.folder
         self._descriptor = -1
         self._socket: os.stat_result | None = None
 
     @property
     def run_dir(self) -> Path:
-        """Where the folders of runs belong."""
+        """The run directory, in which the folders of runs belong."""
         return self._proper.parent
 
     def settle(self) -> None:
-        """Make the folder and write the record; whoever looks at processes finds it, too."""
+        """Create the folder and write the record, also findable through the process table."""
         self.record.write()
         self._hold()
 
     def listen(self) -> socket.socket:
-        """Return the socket that clients connect to."""
+        """Return a listening socket for clients."""
         server = listen(self.record.folder)
         self._socket = os.stat(SOCKET_NAME, dir_fd=self._descriptor)
         return server
 
     def note(self, processes: Mapping[str, tuple[int, int]]) -> None:
-        """Note which processes there are, for whoever comes after a sudden end."""
+        """Record the processes of the nodes, for cleaning up after a sudden end."""
         self.record = replace(self.record, processes=dict(processes))
         if self._is_in_place():
             self.record.write()
@@ -68,7 +69,7 @@ class RunFolder:
     async def keep(
         self, serve: Callable[[socket.socket], Awaitable[None]], tell: Callable[[Words], None]
     ) -> None:
-        """Make it again whenever it goes; `serve` is given each new socket, `tell` the story."""
+        """Create it again whenever it disappears; `serve` gets each new socket, `tell` messages."""
         complained = False
         while True:
             await asyncio.sleep(LOOK_EVERY_S)
@@ -81,7 +82,7 @@ class RunFolder:
                 if not complained:
                     tell(
                         say(
-                            "{path} has gone and cannot be made again: {problem}",
+                            "{path} is gone and cannot be created again: {problem}",
                             path=before,
                             problem=problem,
                         )
@@ -89,18 +90,18 @@ class RunFolder:
                 complained = True
             else:
                 now = self.record.folder
-                tell(say("{path} has gone; the session is now in {now}", path=before, now=now))
+                tell(say("{path} is gone; the session is now in {now}", path=before, now=now))
                 complained = False
 
     def remove(self) -> None:
-        """Take the folder away, and let nobody look for it any more."""
+        """Remove the folder, and stop advertising it through the process table."""
         self.record.remove()
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1
 
     def _is_in_place(self) -> bool:
-        """Whether what is held open is still the folder at this path."""
+        """Whether the folder held open is still the one at this path."""
         with suppress(OSError):
             return os.path.samestat(os.fstat(self._descriptor), self.record.folder.stat())
         return False
@@ -113,7 +114,7 @@ class RunFolder:
         return False
 
     def _made_again(self) -> socket.socket:
-        """Make folder, record and socket; leave nothing behind that looks like a session."""
+        """Create folder, record and socket; on failure leave nothing that looks like a session."""
         before, held = self.record.folder, os.dup(self._descriptor)
         try:
             self._settle_where_possible()
@@ -137,7 +138,7 @@ class RunFolder:
             self.settle()
 
     def _hold(self) -> None:
-        """Keep the folder open, under the same number as the one before."""
+        """Hold the folder open, under the same descriptor number as the one before."""
         descriptor = os.open(self.record.folder, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
         if self._descriptor < 0:
             self._descriptor = descriptor

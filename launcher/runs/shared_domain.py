@@ -1,4 +1,4 @@
-"""Which other sessions of this user are in a ROS domain, whatever their run directory."""
+"""Finding other sessions of this user in a ROS domain, whatever their run directory."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from launcher.errors import DomainTakenError
 from launcher.processes.owner import who_words
 from launcher.profile.driving import drives
 from launcher.run_id import supervisor_of
-from launcher.rundir import OWN_RUN_DIR
 from launcher.runs.found import supervisors
 from launcher.runs.record import RunRecord
 from launcher.status import SessionInfo
+from text.run_path import OWN_RUN_DIR
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -31,13 +31,13 @@ class Neighbour:
 
     record: RunRecord
     run_dir: str
-    """Where its folder is."""
+    """The place of its folder, for display."""
     purpose: str
     """Its `DECK_RUN_DIR`."""
 
     @property
     def words(self) -> Words:
-        """Name it, and who has started it."""
+        """Name it and the user who started it."""
         session = self.record.session
         return say(
             "{name}: {who}, supervisor {pid}",
@@ -48,7 +48,7 @@ class Neighbour:
 
     @property
     def down(self) -> str:
-        """What is typed to stop it, in a shell with another `DECK_RUN_DIR`."""
+        """The command that stops it from a shell with another `DECK_RUN_DIR`."""
         if not self.purpose:
             return f"env -u {OWN_RUN_DIR} deck down"
         return f"{OWN_RUN_DIR}={shlex.quote(self.purpose)} deck down"
@@ -69,7 +69,7 @@ def neighbours(everyone: Iterable[FoundSupervisor], domain: int) -> list[Neighbo
 
 
 def _unknown(supervisor: FoundSupervisor) -> RunRecord:
-    """Stand in for the record of one that runs and cannot write any."""
+    """Return a substitute for the record of a running supervisor that cannot write one."""
     session = SessionInfo(
         run_id=supervisor.run_id,
         profile="",
@@ -81,7 +81,7 @@ def _unknown(supervisor: FoundSupervisor) -> RunRecord:
 
 
 def refuse_shared_domain(profile: Profile) -> None:
-    """Make sure that a profile would have its domain to itself.
+    """Make sure that a profile would be alone in its domain.
 
     Raises:
         DomainTakenError: if another session of this user is in it.
@@ -100,7 +100,7 @@ def refuse_shared_domain(profile: Profile) -> None:
 
 
 def rival(everyone: Iterable[FoundSupervisor], record: RunRecord) -> Neighbour | None:
-    """Return one that cannot be in the same domain as this run: a robot is driven once."""
+    """Return a session that must not share a domain with this run: a robot has one driver."""
     for other in neighbours(everyone, record.session.domain):
         if other.record.collides(set(record.nodes), record.drives):
             return other
@@ -108,7 +108,7 @@ def rival(everyone: Iterable[FoundSupervisor], record: RunRecord) -> Neighbour |
 
 
 def free_domain(everyone: Iterable[FoundSupervisor], domain: int) -> int:
-    """Return the next domain after this one in which none of these sessions runs."""
+    """Return the next domain after this one in which none of these sessions is running."""
     taken = {domain, *(one.domain for one in everyone)}
     for step in range(1, LAST_SAFE_DOMAIN + 1):
         candidate = (domain - 1 + step) % LAST_SAFE_DOMAIN + 1

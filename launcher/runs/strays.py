@@ -1,7 +1,7 @@
 """Processes that an earlier run left behind: their supervisor is gone, but they still run.
 
-It takes a supervisor and its spawn server killed together to leave any. They are told of, and
-ended only if somebody asks for it.
+This only happens when a supervisor and its spawn server are killed together. Such processes are
+reported, and ended only on request.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from launcher.processes.table import (
     read_process,
 )
 from launcher.run_id import supervisor_runs
-from launcher.rundir import OWN_RUN_DIR
 from launcher.runs.record import read_records
 from launcher.status import Stray
+from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -35,13 +35,13 @@ if TYPE_CHECKING:
     from launcher.processes.table import Process
 
 _SAME_START_S = 1.5
-"""The kernel's boot time is told to the second, and moves a little with the clock."""
+"""Tolerance: the kernel gives its boot time to the second, and it drifts with the clock."""
 INTERRUPT_S = 2.0
-"""From SIGINT to SIGKILL, and the most that SIGKILL is waited for."""
+"""From SIGINT to SIGKILL, and the longest wait after SIGKILL."""
 
 
 def find_strays(run_dir: Path) -> tuple[Stray, ...]:
-    """Return what is left of runs whose supervisor is gone."""
+    """Return the processes left over from runs whose supervisor is gone."""
     recorded = {
         key: (record.session.run_id, node)
         for record in read_records(run_dir)
@@ -67,18 +67,18 @@ def _marked(process: Process) -> tuple[str, str]:
     marks = read_marks(process.pid)
     if not marks or RUN_MARK not in marks:
         return "", ""
-    # Whoever keeps runs apart does not want to be told of the others.
+    # A user who keeps runs separate does not want to see the others.
     if marks.get(OWN_RUN_DIR, "") != os.environ.get(OWN_RUN_DIR, ""):
         return "", ""
     run_id, node = marks[RUN_MARK], marks.get(NODE_MARK, "")
-    # A spawn server that has outlived its supervisor is there to tidy up, and ends by itself.
+    # A spawn server that outlives its supervisor is cleaning up, and ends by itself.
     if node.startswith("-") or supervisor_runs(run_id):
         return "", ""
     return run_id, node
 
 
 def still_there(stray: Stray) -> bool:
-    """Whether this very process is alive, and not another with its number."""
+    """Whether exactly this process is alive, not another with the same number."""
     return _found(stray) is not None
 
 
@@ -93,7 +93,7 @@ def _found(stray: Stray) -> Process | None:
 
 
 async def end_strays(strays: Iterable[Stray]) -> None:
-    """End these processes, with SIGKILL those that do not end by SIGINT."""
+    """End these processes: by SIGINT, and by SIGKILL those that remain."""
     left = [stray for stray in strays if still_there(stray)]
     for number in (signal.SIGINT, signal.SIGKILL):
         _signal(left, number)
@@ -111,10 +111,10 @@ def _signal(strays: Iterable[Stray], number: signal.Signals) -> None:
 
 
 def forget_ended_runs(run_dir: Path, strays: Iterable[Stray]) -> None:
-    """Take away the records of runs of which nothing is left."""
+    """Remove the records of runs of which nothing is left."""
     kept = {stray.run_id for stray in strays}
     for record in read_records(run_dir):
         run_id = record.session.run_id
-        # A copy of a record that a person keeps has another name.
+        # A copy of a record kept by a user has another name.
         if record.folder.name == run_id and run_id not in kept and not record.runs:
             record.remove()

@@ -1,4 +1,4 @@
-"""The supervisor's way to processes: asks the spawn server for them, and replaces a dead one."""
+"""How the supervisor starts processes: by asking the spawn server, which is replaced if it dies."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
 MAX_ATTEMPTS = 4
-"""So many spawn servers may die over one request."""
+"""Attempts for one request, each with a new spawn server if the last one died."""
 MAX_HANGS = 2
-"""So many may leave it without an answer."""
+"""How many of them may fail to answer."""
 MAX_QUICK_DEATHS = 3
-"""After so many spawn servers that answered nothing, the next one is cold: it imports nothing."""
+"""After this many spawn servers without a single answer, the next one is cold (no imports)."""
 ANSWER_WITHIN_S = 30.0
-"""What it has to import may take a slow machine a good part of that."""
+"""On a slow machine the imports may take a large part of this."""
 
 
 class SpawnError(Exception):
-    """A process could not be started; its argument says why."""
+    """A process could not be started; the argument says why."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +42,12 @@ class SpawnRequest:
     argv: tuple[str, ...]
     cwd: str
     env: Mapping[str, str | None] = field(default_factory=dict)
-    """What differs from the supervisor's environment; None unsets."""
+    """Changes to the supervisor's environment; None unsets."""
 
 
 @dataclass(frozen=True)
 class Born:
-    """A process that has been started: the leader of its own session and group, and our child."""
+    """A started process: the leader of its own session and group, and our child."""
 
     pid: int
     started_ticks: int
@@ -63,7 +63,7 @@ class Spawner:
         tell: Callable[[Words], None],
         answer_within_s: float = ANSWER_WITHIN_S,
     ) -> None:
-        """`tell` hears of every server that died or did not answer, and was replaced."""
+        """`tell` is called for every server that died or did not answer and was replaced."""
         self._run_id = run_id
         self._tell = tell
         self._answer_within_s = answer_within_s
@@ -78,20 +78,20 @@ class Spawner:
 
     @property
     def server_pid(self) -> int | None:
-        """The process number of the present server."""
+        """The process number of the current server."""
         return None if self._link is None else self._link.handle.pid
 
     async def spawn(self, request: SpawnRequest, fds: Sequence[int]) -> Born:
-        """Start a process on these descriptors, which stay the caller's to close.
+        """Start a process with these descriptors, which the caller still has to close.
 
-        Whoever no longer waits for it need not care: a process that comes then is ended.
+        If the caller stops waiting (is cancelled), a process that is then started is ended again.
 
         Args:
             request: what to start.
             fds: its stdout and stderr, or its stdin, stdout and stderr.
 
         Raises:
-            SpawnError: if there is no such process now.
+            SpawnError: if the process was not started.
         """
         hangs = 0
         for _attempt in range(MAX_ATTEMPTS):
@@ -99,19 +99,19 @@ class Spawner:
             born = await self._ask(link, request, fds)
             if born is not None:
                 self._groups.add(born.pid)
-                self._mention("adopt", [born.pid])  # A new server is told which groups there are.
+                self._mention("adopt", [born.pid])  # A new server is told all existing groups.
                 return born
             hangs += link.hung
             if hangs == MAX_HANGS:
                 raise SpawnError(say("the spawn server does not answer"))
-        raise SpawnError(say("the spawn server ends again and again"))
+        raise SpawnError(say("the spawn server keeps ending"))
 
     async def _ask(
         self, link: SpawnServerLink, request: SpawnRequest, fds: Sequence[int]
     ) -> Born | None:
-        """Return the new process, None if the server has died over it.
+        """Return the new process, None if the server died before answering.
 
-        What it had forked has answered before: the end of the socket comes after all answers.
+        Anything it forked has been answered before: the end of the socket comes after all answers.
         """
         request_id, self._next_id = self._next_id, self._next_id + 1
         future: asyncio.Future[Born | None] = asyncio.get_running_loop().create_future()
@@ -135,18 +135,18 @@ class Spawner:
         return future.result()
 
     def forget(self, pid: int) -> None:
-        """Say that a started process and its group are no more."""
+        """Note that a started process and its group no longer exist."""
         if pid in self._groups:
             self._groups.discard(pid)
             self._mention("forget", [pid])
 
     def preload(self, packages: Iterable[str]) -> None:
-        """Have these packages' shared modules imported ahead, before the first node of theirs."""
+        """Have the shared modules of these packages imported before their first node starts."""
         self._packages = sorted(packages)
         self._mention_packages()
 
     def go_cold(self) -> None:
-        """Replace the server by one that imports nothing: no node of this run needs it warm."""
+        """Replace the server with one that imports nothing: no node of this run needs them."""
         self._warm = False
         if self._link is not None:
             self._link.kill()
@@ -154,10 +154,10 @@ class Spawner:
         self._replace()
 
     def close(self) -> None:
-        """Let go of the server; nothing of the run is left that it would have to end."""
+        """Release the server; nothing of the run is left that it would have to end."""
         self._closed = True
         if self._link is not None:
-            # It may be in the midst of its imports, or not hear at all.
+            # It may be in the middle of its imports, or not respond at all.
             self._link.kill()
             self._link.drop()
             self._link = None
@@ -166,7 +166,7 @@ class Spawner:
                 future.set_exception(SpawnError(_ending()))
 
     def _present(self) -> SpawnServerLink:
-        """Return the server, a new one if there is none."""
+        """Return the current server, or a new one if there is none."""
         if self._closed:
             raise SpawnError(_ending())
         if self._link is None:
@@ -224,7 +224,7 @@ class Spawner:
 
 
 def _end(born: Born | None) -> None:
-    """End a process that nobody waits for any more."""
+    """End a started process that is no longer wanted."""
     if born is not None:
         send(born, signal.SIGKILL)
 
@@ -237,9 +237,9 @@ def _obituary(link: SpawnServerLink, within_s: float) -> Words:
     pid = link.handle.pid
     if link.hung:
         return say(
-            "the spawn server (pid {pid}) gave no answer for {seconds:g} s and was killed; the"
-            " next starts use a new one",
+            "the spawn server (pid {pid}) did not answer within {seconds:g} s and was "
+            "killed; a new one takes over",
             pid=pid,
             seconds=within_s,
         )
-    return say("the spawn server (pid {pid}) ended; the next starts use a new one", pid=pid)
+    return say("the spawn server (pid {pid}) ended; a new one takes over", pid=pid)

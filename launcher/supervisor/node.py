@@ -1,6 +1,6 @@
-"""One node's life: waiting, starting, ready or running, stopping, and what comes after.
+"""The life of one node: waiting, starting, ready or running, stopping, restarting or not.
 
-All of it happens in one task, so that nothing can start it twice.
+It all happens in one task, so that nothing can start the node twice.
 """
 
 from __future__ import annotations
@@ -39,18 +39,18 @@ if TYPE_CHECKING:
     from launcher.supervisor.readiness import Seen
 
 LATE_S = 60.0
-"""For so long after its time was up a node may still become ready."""
+"""How long after its time limit a node may still become ready."""
 USAGE = 2
-"""Exit code of a program that does not take its arguments; Deck's nodes have it for parameters."""
+"""Exit code of a program that rejects its arguments; Deck's nodes use it for parameters."""
 USAGE_WITHIN_S = 10.0
-"""What is refused is refused at once."""
+"""A program that rejects its arguments does so within this time."""
 ASKED_TWICE_S = 0.3
-"""Two requests to stop that are closer together are one."""
+"""Two stop requests closer together than this count as one."""
 
 
 @dataclass
 class _Now:
-    """What there is only while a process runs."""
+    """State that exists only while a process runs."""
 
     process: RunningProcess
     started: float
@@ -61,12 +61,12 @@ class SupervisedNode:
     """One node of the session."""
 
     def __init__(self, plan: NodePlan, around: NodeContext) -> None:
-        """`around`: the session it lives in."""
+        """`around`: the session that the node belongs to."""
         self.plan = plan
         self.state = NodeState.WAITING
         self.detail = ""
         self.serves = False
-        """Whether those that need it may start."""
+        """Whether the nodes that need it may start."""
         self.usage: Usage | None = None
         self._around = around
         self._policy = RestartPolicy(plan.restart)
@@ -83,11 +83,11 @@ class SupervisedNode:
 
     @property
     def at_work(self) -> bool:
-        """Whether anything of it is under way: it runs, waits, or is to be started again."""
+        """Whether it is active: it runs, waits, or is to be started again."""
         return self._task is not None and not self._task.done()
 
     def status(self) -> NodeStatus:
-        """Return its status as of now."""
+        """Return its current status."""
         now, last, usage = self._now, self._last, self.usage
         return NodeStatus(
             name=self.plan.name,
@@ -105,7 +105,7 @@ class SupervisedNode:
         )
 
     def start(self) -> None:
-        """Start it; a node that waits for others or for its next try starts at once."""
+        """Start it; a node that is waiting for others or for its next attempt starts at once."""
         if not self.at_work:
             self._down = self._again = self._forced = self._hurried = False
             self._policy.reset()
@@ -118,9 +118,9 @@ class SupervisedNode:
             self._nudge.set()
 
     async def stop(self, *, now: bool = False) -> None:
-        """Stop it and return when nothing of it is left.
+        """Stop it; return when none of its processes is left.
 
-        `now`, or asking a second time, skips the waiting between the signals.
+        `now`, or a second call, skips the waits between the signals.
         """
         self._again = False
         if self.at_work and self._task is not None:
@@ -130,7 +130,7 @@ class SupervisedNode:
             self._become(NodeState.EXITED, say("stopped"))
 
     def restart(self) -> None:
-        """Stop and start it; one that is to be started again already is not started twice."""
+        """Restart it; a node that is already waiting for a restart is not started twice."""
         if self.at_work:
             self._again = True
             self._go_down(now=False)
@@ -138,7 +138,7 @@ class SupervisedNode:
             self.start()
 
     def needs_changed(self) -> None:
-        """Look again whether all that it needs is there."""
+        """Check again whether everything it needs is there."""
         if self.state is NodeState.WAITING:
             self._nudge.set()
 
@@ -146,7 +146,7 @@ class SupervisedNode:
         return self._down and self._around.clock.now() - self._asked_at > ASKED_TWICE_S
 
     def _tell_fault(self, task: asyncio.Task[None]) -> None:
-        """Nothing of ours should raise here; if it does, the node must not seem to be well."""
+        """Report an exception in Deck itself, so that the node does not seem to be healthy."""
         if not task.cancelled() and task.exception() is not None:
             self._become(
                 NodeState.FAILED, say("an error in Deck itself: {error!r}", error=task.exception())
@@ -195,7 +195,7 @@ class SupervisedNode:
         self._forced = False
 
     async def _one_process(self) -> bool:
-        """Start a process and see it to its end; return whether to start another."""
+        """Start a process and follow it until it ends; return whether to start another."""
         self._become(NodeState.STARTING)
         try:
             process = await self._launched()
@@ -214,7 +214,7 @@ class SupervisedNode:
         return await self._after(end, lasted, why)
 
     async def _launched(self) -> RunningProcess | None:
-        """Start a process; None if it is to go down before there is one."""
+        """Start a process; None if the node is to stop before there is one."""
         launching = asyncio.ensure_future(self._around.launch(self.plan))
         launching.add_done_callback(lambda _launched: self._nudge.set())
         while not launching.done() and not self._down:
@@ -247,7 +247,7 @@ class SupervisedNode:
         return end, lasted
 
     async def _end_all_of_it(self, now: _Now) -> None:
-        """Stop what is left: all of it if it is to go down, else what its end has left behind."""
+        """Stop what is left: everything if the node is to stop, else what its process left."""
         now.stop = StagedStop(
             now.process, self._around.clock, self._held_up, QUICK if self._hurried else PATIENT
         )
@@ -296,12 +296,14 @@ class SupervisedNode:
             ready.result()
             self._become(NodeState.READY, serves=True)
         except UnwatchableError:
-            self._become(NodeState.RUNNING, say("whether it is ready cannot be seen"), serves=True)
+            self._become(
+                NodeState.RUNNING, say("whether it is ready cannot be determined"), serves=True
+            )
         finally:
             ready.cancel()
 
     async def _after(self, end: Exit, lasted: float, why: str) -> bool:
-        """Do what the restart policy says; return whether to start it again."""
+        """Apply the restart policy; return whether to start it again."""
         clock = self._around.clock
         verdict = (
             GivenUp(1)
@@ -326,7 +328,7 @@ class SupervisedNode:
             self._around.say(self.plan.name, Severity.ERROR, why)
         elif verdict.crashes > 1:
             why = say(
-                "given up: it ended {count} times in {seconds:.0f} s: {why}",
+                "given up after {count} exits in {seconds:.0f} s: {why}",
                 count=verdict.crashes,
                 seconds=verdict.within_s,
                 why=why,
@@ -336,7 +338,7 @@ class SupervisedNode:
         return False
 
     def _is_hopeless(self, end: Exit, lasted: float) -> bool:
-        """Whether another try would end in the same way."""
+        """Whether another attempt would end in the same way."""
         if self.plan.module:
             return end.code == USAGE and lasted < USAGE_WITHIN_S
         return end.code in (NOT_EXECUTABLE, NOT_FOUND)

@@ -23,7 +23,6 @@ from launcher.processes.members import Members
 from launcher.processes.owner import who_runs, who_words
 from launcher.processes.shared_memory import sweep_abandoned
 from launcher.processes.stop import end_all
-from launcher.rundir import OWN_RUN_DIR
 from launcher.runs.found import supervisors
 from launcher.runs.record import RunRecord, exclusively
 from launcher.runs.run_folder import RunFolder
@@ -37,6 +36,7 @@ from launcher.supervisor.process import ProcessLauncher, ProcessScan
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
 from text.os_words import os_reason
+from text.run_path import OWN_RUN_DIR
 from text.sentences import Words, say
 
 if TYPE_CHECKING:
@@ -48,19 +48,19 @@ if TYPE_CHECKING:
     from launcher.status import LogLine, NodeStatus
 
 LAST_WORDS = "supervisor"
-"""Name of the log of what the supervisor prints, its tracebacks above all."""
+"""Name of the log with the supervisor's own output, above all its tracebacks."""
 HURRIED_S = 5.0
-"""What outlives SIGKILL for so long is stuck in the kernel, and is waited for no longer."""
+"""A process that outlives SIGKILL by this time is stuck in the kernel; we stop waiting for it."""
 STRAYS_AGAIN_S = 3.0
-"""What is left of a run that ended a moment ago may just be ending."""
+"""Processes of a run that ended a moment ago may still be ending."""
 
 
 async def run(run_id: str, spawn_server: SpawnServerHandle, client: int) -> None:
-    """Read the plan, carry it out, and clean up; `client` is the process that has started this."""
+    """Read the plan, carry it out, and clean up; `client` is the process that started this one."""
     stdin = await _open_stdin()
     line = await stdin.readline()
     if not line.endswith(b"\n"):
-        return  # The profile was no good, or the client has gone: there is nothing to do.
+        return  # The profile was invalid, or the client is gone: there is nothing to do.
     plan = Plan.from_json(line)
     run_folder = RunFolder(_record(plan, run_id, client))
     try:
@@ -100,7 +100,7 @@ def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
 
 
 def _claim(run_folder: RunFolder, plan: Plan) -> bool:
-    """Make room for this run, unless another has these nodes in this domain."""
+    """Claim the domain for this run, unless another one has these nodes in it."""
     folder = run_folder.run_dir
     try:
         with exclusively(folder, plan.domain):
@@ -134,7 +134,7 @@ def _no_room(folder: Path, problem: OSError) -> Words:
 
 
 def _answer(message: Mapping[str, object]) -> None:
-    """Say the one line on stdout, and let go of it: nobody reads there any more."""
+    """Write the one line to stdout, then close it: nobody reads it any more."""
     with contextlib.suppress(BrokenPipeError):
         os.write(1, encode(message))
     nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -143,14 +143,14 @@ def _answer(message: Mapping[str, object]) -> None:
 
 
 def _keep_last_words(folder: Path) -> None:
-    """Send stderr to a file: the client that started this process may be gone long before."""
+    """Redirect stderr to a file: the client may be gone long before this process."""
     words = open_file(folder / f"{LAST_WORDS}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     os.dup2(words, 2)
     os.close(words)
 
 
 class Supervisor:
-    """Implements `Controlled`: handles the clients' requests."""
+    """One run, from start to end; implements `Controlled` for the requests of clients."""
 
     def __init__(self, plan: Plan, run_folder: RunFolder, spawn_server: SpawnServerHandle) -> None:
         self.info = run_folder.record.session
@@ -208,15 +208,15 @@ class Supervisor:
         for helper in helpers:
             helper.cancel()
         self._spawner.close()
-        # Whoever hears that it is over finds the logs complete, and nothing in the way.
+        # When clients learn that it is over, the logs must be complete and the domain free.
         self._files.close()
         self._run_folder.remove()
         await self.control.close(self._reason)
 
-    # What clients ask.
+    # Requests of clients.
 
     def statuses(self) -> Mapping[str, NodeStatus]:
-        """Return every node as of now."""
+        """Return the current status of every node."""
         return {name: node.status() for name, node in self._session.nodes.items()}
 
     def rings(self) -> Mapping[str, LogRing]:
@@ -242,19 +242,19 @@ class Supervisor:
             self._session.restart(names)
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
-        """End what an earlier run has left."""
+        """End these processes that an earlier run left behind."""
         await end_strays(strays)
         self._find_strays()
 
     def shut_down(self, asked_by: int, *, now: bool) -> None:
-        """Begin to stop everything, and then the supervisor, because this process asks for it."""
+        """Begin to stop all nodes and then the supervisor, on behalf of process `asked_by`."""
         if asked_by == self.info.started_by.pid:
             reason = say("stopped")
         else:
             reason = say("ended from elsewhere: {who}", who=who_words(who_runs(asked_by)))
         self._finish(reason, now=now or self._end.is_set())
 
-    # What happens.
+    # Events.
 
     def _finish(self, reason: Words, *, now: bool) -> None:
         if not self._end.is_set():
@@ -264,7 +264,7 @@ class Supervisor:
             self._hurry.set()
 
     async def _stop_all(self) -> None:
-        """Stop every node and what they have left; in a hurry, whatever hangs, within bounds."""
+        """Stop all nodes and what they left behind; kill what hangs, within a time limit."""
         stopping = [asyncio.create_task(self._session.stop(now=self._hurry.is_set()))]
         hurry = asyncio.create_task(self._hurry.wait())
         await asyncio.wait([*stopping, hurry], return_when=asyncio.FIRST_COMPLETED)
@@ -272,7 +272,7 @@ class Supervisor:
             stopping.append(asyncio.create_task(self._session.stop(now=True)))
             await asyncio.wait(stopping, timeout=HURRIED_S)
         hurry.cancel()
-        # What has left its node behind so well that it could not be told whose it was.
+        # Processes that can no longer be attributed to their node.
         orphans = Orphans(self.info.run_id, self._spawner)
         left = await end_all(orphans, self._session.clock, HURRIED_S)
         if left:
@@ -297,8 +297,8 @@ class Supervisor:
         self._loop.remove_reader(held)
         os.close(held)
         words = say(
-            "the guardian (pid {pid}) ended: if the supervisor is killed now, what nodes have sent"
-            " into the background may go on",
+            "the guardian (pid {pid}) ended: if the supervisor is killed now, background "
+            "processes of nodes may keep running",
             pid=guardian,
         )
         self._warn(words)
@@ -307,7 +307,7 @@ class Supervisor:
         self._finish(say("{signal} received", signal=number.name), now=self._end.is_set())
 
     async def _watch_owner(self, stdin: asyncio.StreamReader) -> None:
-        """In the foreground, the session ends with the client that started it."""
+        """End a foreground session with the client that started it."""
         while await stdin.read(65536):
             pass
         if self.info.foreground:
@@ -321,7 +321,7 @@ class Supervisor:
         self.control.status_changed(name)
 
     def _write_record(self) -> None:
-        """Note which processes there are, for whoever comes after a sudden end."""
+        """Record the processes of the nodes, for cleaning up after a sudden end."""
         try:
             self._run_folder.note(self._session.processes)
         except OSError as problem:
@@ -337,7 +337,7 @@ class Supervisor:
         self._log.say(DECK, Severity.WARN, words)
 
     def _tell_of_other_users(self) -> None:
-        """Say who could hear and drive this robot from elsewhere on the machine."""
+        """Log which other users of this machine could see and drive this robot."""
         users = other_users(self.info.domain)
         if users:
             words = say(

@@ -1,4 +1,4 @@
-"""Sentences about how a node ended, and what a node waits for."""
+"""Sentences about how a node ended, and what it is waiting for."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 NOT_EXECUTABLE, NOT_FOUND = 126, 127
 NOT_FOUND_WORDS = "deck: command not found"
-"""How a process that was to become a command says that there is none."""
+"""The beginning of a forked process's message that its command does not exist."""
 
 
 def stopped_words(last: Exit | None) -> str:
-    """How a node ended that was asked to; `last` is None where no process was."""
+    """How a node ended that was told to stop; `last` is None if it had no process."""
     if last is not None and last.signal is not None:
         return say("stopped by {signal}", signal=last.signal)
     if last is not None and last.code:
@@ -29,26 +29,28 @@ def stopped_words(last: Exit | None) -> str:
 
 
 def end_words(end: Exit, plan: NodePlan, last: str, *, asked: bool) -> str:
-    """How a process ended, with `last`, what it said last, unless it was `asked` to end."""
+    """How a process ended, with its `last` line of output unless it was `asked` to end."""
     if end.clean:
         return say("ended")
     if end.code == NOT_FOUND and last.startswith(NOT_FOUND_WORDS) and not plan.module:
         program = plan.argv[0]
         if plan.optional:
-            return say("{program} is not installed; it goes on without", program=program)
+            return say(
+                "{program} is not installed; the lesson continues without it", program=program
+            )
         return say("{program} is not installed", program=program)
     how = (
         say("killed by {signal}", signal=end.signal)
         if end.signal is not None
         else say("exit code {code}", code=end.code)
     )
-    # Who is killed cannot say why: what it said last is about something else.
+    # A killed process cannot say why: its last line is about something else.
     told = last and not asked and end.signal != "SIGKILL"
     return say("{how}: {last}", how=how, last=_short(last)) if told else how
 
 
 def what(condition: ReadyCondition) -> str:
-    """What is waited for."""
+    """Describe the condition that is waited for."""
     if condition.kind == "topic":
         if condition.type:
             return say("publisher of {name} ({type})", name=condition.name, type=condition.type)
@@ -59,7 +61,7 @@ def what(condition: ReadyCondition) -> str:
 
 
 def instead(condition: ReadyCondition, seen: Seen) -> str:
-    """What there is in place of what is waited for: another type, or too few messages."""
+    """Describe why the condition does not hold: another type, or too few messages."""
     if condition.type and condition.type not in seen.types:
         return say(
             "{name} is published as {types}, expected {type}",
@@ -69,12 +71,12 @@ def instead(condition: ReadyCondition, seen: Seen) -> str:
         )
     if seen.rate_hz is None:
         return say(
-            "how often {name} comes cannot be measured: {types} is not installed",
+            "the rate of {name} cannot be measured: {types} is not installed",
             name=condition.name,
             types=", ".join(seen.types),
         )
     return say(
-        "{name} comes at {rate:.2g} Hz, expected {wanted:g} Hz",
+        "{name} arrives at {rate:.2g} Hz, expected {wanted:g} Hz",
         name=condition.name,
         rate=seen.rate_hz,
         wanted=condition.rate_hz,
@@ -82,13 +84,13 @@ def instead(condition: ReadyCondition, seen: Seen) -> str:
 
 
 def late(condition: ReadyCondition, seen: Seen | None, within_s: float) -> str:
-    """That the time to become ready is up, and why."""
+    """Say that a node is not ready in time, and why."""
     why = lack(condition) if seen is None else instead(condition, seen)
     return say("not ready within {seconds:g} s: {why}", seconds=within_s, why=why)
 
 
 def lack(condition: ReadyCondition) -> str:
-    """What is missing, where it was waited for in vain."""
+    """Say what is missing after the wait has timed out."""
     if condition.kind == "topic":
         return say("nobody publishes {name}", name=condition.name)
     if condition.kind == "service":
@@ -97,16 +99,16 @@ def lack(condition: ReadyCondition) -> str:
 
 
 def left_undone(condition: ReadyCondition) -> str:
-    """What goes undone when a node ends, however well; empty if it need only have been there."""
+    """Say what is missing when a node ends, even cleanly; empty if it only had to appear."""
     if condition.kind == "topic":
-        return say("ended by itself; it was to publish {name}", name=condition.name)
+        return say("ended by itself, but should still publish {name}", name=condition.name)
     if condition.kind == "service":
-        return say("ended by itself; it was to serve {name}", name=condition.name)
+        return say("ended by itself, but should still serve {name}", name=condition.name)
     return ""
 
 
 def who(left: Sequence[Process], most: int = 3) -> str:
-    """Processes by number and name, no more than `most` of them."""
+    """List processes by number and name, at most `most` of them."""
     names = ", ".join(f"{process.pid} ({process.name})" for process in left[:most])
     return names if len(left) <= most else f"{names} …"
 

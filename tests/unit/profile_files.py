@@ -6,6 +6,8 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
+import pytest
+
 from launcher.errors import ProfileError, ProfileProblem
 from launcher.profile.load import Profile, load_profile
 
@@ -35,3 +37,10 @@ def told(folder: Path, text: str, **options: Any) -> list[str]:
     """Return the problems as `line:column: field: message (hint)`."""
     path = f"{folder / 'lesson.yaml'}:"
     return [str(problem).removeprefix(path) for problem in problems(folder, text, **options)]
+
+
+def refused(path: Path) -> str:
+    """Why this file is no profile."""
+    with pytest.raises(ProfileError) as caught:
+        load_profile(path)
+    return str(caught.value)

@@ -67,7 +67,7 @@ def test_many_calls_of_a_busy_service_get_each_their_own_answer(
 def test_a_service_that_nobody_serves_is_named(watcher: Watcher) -> None:
     result = call(watcher, "/nobody", {"a": 1, "b": 2}, timeout_s=0.3)
     assert (result.ok, result.response) == (False, None)
-    assert result.error == "/nobody: nobody serves it within 0.3 s"
+    assert result.error == "/nobody: no server appeared within 0.3 s"
     assert result.elapsed_s >= 0.3
 
 

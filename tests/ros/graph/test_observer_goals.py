@@ -132,7 +132,7 @@ def test_several_goals_at_once_are_each_their_own(watcher: Watcher, server: Peer
 def test_a_rejected_goal_is_told(watcher: Watcher, server: Peer) -> None:
     server.serve_action("/strict", reject=True)
     told = wait_for(watcher, send(watcher, "/strict"), GoalStatus.REJECTED)
-    assert (told.error, told.ended) == ("the server rejects it", True)
+    assert (told.error, told.ended) == ("the server rejected it", True)
 
 
 def test_an_aborted_goal_gives_its_reason_and_its_result(watcher: Watcher, server: Peer) -> None:
@@ -240,7 +240,7 @@ def test_an_action_that_nobody_serves_is_named(
 ) -> None:
     monkeypatch.setattr(goals_life, "ANSWER_WITHIN_S", 0.5)
     told = wait_for(watcher, send(watcher, "/nobody"), GoalStatus.FAILED)
-    assert told.error == "nobody serves it within 0.5 s"
+    assert told.error == "no server appeared within 0.5 s"
 
 
 def test_a_goal_that_is_cancelled_before_it_is_sent_never_is(watcher: Watcher) -> None:

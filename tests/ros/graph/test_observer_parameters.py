@@ -172,7 +172,7 @@ def test_a_node_without_parameter_services_gets_its_own_words(
     mute = Process("mute", module_domain)
     wait_until(lambda: watcher.node("/mute"), "the node")
     result = watcher.observer.parameters("/mute").result(40)
-    assert result.error.startswith("/mute shows no services for its parameters")
+    assert result.error.startswith("/mute has no parameter services")
     refused = watcher.observer.set_parameters("/mute", {"a": 1}).result(40)
     assert refused.error == result.error
     mute.close()

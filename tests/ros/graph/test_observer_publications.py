@@ -128,7 +128,7 @@ def test_a_latched_listener_that_comes_later_hears_it_too(watcher: Watcher, peer
 
 @pytest.mark.parametrize("hz", [0.0, 0.05, 100.5, -1.0, float("nan"), float("inf"), True])
 def test_a_rate_that_is_none_is_refused(watcher: Watcher, hz: float) -> None:
-    with pytest.raises(PublishError, match=r"a rate is between 0\.1 and 100 Hz, not "):
+    with pytest.raises(PublishError, match=r"the rate must be between 0\.1 and 100 Hz, not "):
         start(watcher, "/out", hz)
 
 

@@ -234,7 +234,7 @@ def test_only_the_chosen_topics_are_recorded_and_absent_ones_are_named(
 
 
 def test_a_folder_that_is_there_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(BagError, match=r"is there already.*choose another"):
+    with pytest.raises(BagError, match=r"already exists.*choose another"):
         Recorder(1, "localhost", tmp_path).start()
 
 

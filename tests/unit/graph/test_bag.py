@@ -157,7 +157,7 @@ def test_a_bag_cut_anywhere_is_read_as_far_as_it_goes(
         assert 0 < len(found) == bag.messages_count <= 100_003
         assert stamps == sorted(stamps)
         assert "was cut short" in str(bag.cut)
-        assert f"{len(found)} messages are whole" in str(bag.cut)
+        assert f"{len(found)} messages are intact" in str(bag.cut)
 
 
 def test_a_bag_cut_in_its_first_breath_is_empty_but_opens(tmp_path: Path) -> None:

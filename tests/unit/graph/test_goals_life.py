@@ -164,7 +164,7 @@ def test_an_end_whose_result_never_comes_is_told(life: GoalLife, clock: Clock) -
     go(life, accepted={1: True}, status={ID: SUCCEEDED})
     clock.now_s += ANSWER_WITHIN_S
     assert go(life) == GoalStatus.FAILED
-    assert life.told.error == "it has ended, and its result does not come"
+    assert life.told.error == "it has ended, but its result has not arrived"
 
 
 def test_a_server_that_ignores_the_cancelling_is_told_and_can_be_asked_again(

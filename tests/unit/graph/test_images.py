@@ -66,7 +66,7 @@ def test_depth_without_a_valid_reading_is_black_there() -> None:
 @pytest.mark.parametrize(
     ("broken", "word"),
     [
-        ({"encoding": "nv21"}, "encoding 'nv21' is not shown; known: rgb8"),
+        ({"encoding": "nv21"}, "encoding 'nv21' is not supported; supported: rgb8"),
         ({"step": 5}, "step 5 is too small: 2 pixels of 3 bytes take 6"),
         ({"height": 3}, "3 rows of 6 bytes take 18, there are 12"),
         ({"height": 0}, "the picture is empty: 2 x 0"),

@@ -12,6 +12,8 @@ from graph.observer.node import ObserverNode
 from graph.observer.observer import Observer
 from graph.observer.requests import ObserverError
 from graph.publishing.dead_man_switch import Holding
+from text.i18n import said
+from text.sentences import say
 
 BOOL, STOP = "std_msgs/msg/Bool", {"data": True}
 
@@ -103,3 +105,15 @@ def test_what_cannot_be_done_any_more_says_so() -> None:
     for future in (before, observer.publish("/stop", BOOL, STOP, latched=True)):
         with pytest.raises(ObserverError, match="over"):
             future.result(0)
+
+
+def test_why_ros_cannot_be_used_is_told_so_that_it_can_be_translated() -> None:
+    observer = Observer(1)
+    observer._requests.refuse(ObserverError(say("ROS cannot be used: {error}", error="no rclpy")))
+    reasons = (
+        observer.parameters("/node").result(0).error,
+        observer.set_parameters("/node", {}).result(0).error,
+        observer.call("/service", "std_srvs/srv/Empty", {}).result(0).error,
+    )
+    for reason in reasons:
+        assert said(reason, "ru") == "ROS не работает: no rclpy"

@@ -136,12 +136,13 @@ arm:
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("", 1, "empty"),
+        ("", 1, "the file is empty"),
+        ("# nothing\n", 1, "the file is empty"),
         ("/robot:\n  ros__parameters:\n    a: 1\n    a: 2\n", 4, "second time"),
         ("/robot:\n  ros__parameters:\n    a.b: 1\n    a: {b: 2}\n", 4, "'a.b' appears a sec"),
         ("/robot:\n  speed: 1\n", 2, "expected `ros__parameters:` under the name of a node"),
         ("ros__parameters:\n  a: 1\n", 1, "is not under any node"),
-        ("/robot:\n  ros__parameters:\n    - a\n", 3, "expected parameters as `name: value`"),
+        ("/robot:\n  ros__parameters:\n    - a\n", 3, "expected `name: value`, found a list"),
         ("/robot:\n  ros__parameters:\n    a:\n", 3, "'a' has no value"),
         ("/robot:\n  ros__parameters:\n    a: [1, [2]]\n", 3, "expected a single value"),
         ("/robot:\n  ros__parameters:\n    a:\n      - 1\n      - x: 2\n", 5, "a single value"),

@@ -122,5 +122,5 @@ def test_logs_that_cannot_be_written_are_told(
 ) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("DECK_LOG_DIR", str(tmp_path / "file" / "logs"))
-    with pytest.raises(RunDirError, match="cannot be made: Not a directory"):
+    with pytest.raises(RunDirError, match="cannot be created: Not a directory"):
         log_dir()

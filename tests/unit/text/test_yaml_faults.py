@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 from graph.calls.parameters_values import WrongValueError, carried
-from graph.messages.yaml_text import from_yaml
-from launcher.profile.tree import Problems, plain
-from launcher.profile.yaml_tree import read_yaml
+from graph.messages.yaml_reading import read_message
+from launcher.profile.problems import Problems
+from launcher.profile.reading import read_yaml
 from text.yaml_faults import YamlError
+from text.yaml_tree import plain
 
 WORDS: list[tuple[str, object]] = [
     ("inf", math.inf),
@@ -28,12 +29,17 @@ WORDS: list[tuple[str, object]] = [
     ("'on'", "on"),
     ("~", None),
 ]
+KINDS: dict[type, str] = {bool: "bool", int: "integer", float: "double"}
 WRONG = [
     ("[1, 2", "this list is not closed: a ',' or a ']' is missing"),
     ("[1, ", "a value is missing here, or a ']' or '}'"),
     ("[1, 'x]", "the text in quotes is not closed"),
     ("[@a]", "nothing can begin with this character: put the text in quotes"),
     ("[\a]", "the character U+0007 is not allowed: remove it"),
+    ("[{b: 1, b: 2}]", "'b' appears a second time, first on line 1: join them or rename one"),
+    ("[!env x]", "the tag !env is refused: only plain values are read"),
+    ("[{[b]: 1}]", "expected a name before the ':', found a list or a mapping"),
+    ("[x]\n---", "a second document begins here, and only one is read"),
     ('["\\q"]', "YAML does not know this \\ in double quotes: use single quotes"),
 ]
 
@@ -41,20 +47,26 @@ WRONG = [
 def in_profile(text: str) -> Any:
     problems = Problems()
     tree = read_yaml(f"a: {text}", "a.yaml", problems)
-    if tree is None:
-        (problem,) = problems.found
+    for problem in problems.found:
         raise YamlError(problem.line, problem.column, problem.message)
+    assert tree is not None
     return plain(tree)["a"]
 
 
 def in_form(text: str) -> Any:
-    return from_yaml(f"a: {text}")["a"]
+    return plain(read_message(f"a: {text}"))["a"]
 
 
 @pytest.mark.parametrize(("text", "meant"), WORDS)
 def test_a_word_stands_for_the_same_everywhere(text: str, meant: object) -> None:
     for found in (in_profile(text), in_form(text)):
         assert (type(found), found) == (type(meant), meant)
+
+
+@pytest.mark.parametrize(("text", "meant"), [each for each in WORDS if type(each[1]) in KINDS])
+def test_a_parameter_is_given_what_the_word_stands_for(text: str, meant: object) -> None:
+    kind = KINDS[type(meant)]
+    assert carried(kind, text)[f"{kind}_value"] == meant
 
 
 @pytest.mark.parametrize("text", ["[inf, 0o17, 1e3]", "[.inf, 15, 1000.0]"])
@@ -65,9 +77,9 @@ def test_the_value_of_a_parameter_is_read_so_too(text: str) -> None:
 @pytest.mark.parametrize(("text", "words"), WRONG)
 def test_what_is_wrong_is_told_in_the_same_words_at_the_same_place(text: str, words: str) -> None:
     places = set()
-    for read in (in_profile, in_form):
+    for reading in (in_profile, in_form):
         with pytest.raises(YamlError) as caught:
-            read(text)
+            reading(text)
         assert caught.value.message == words
         places.add((caught.value.line, caught.value.column))
     assert len(places) == 1

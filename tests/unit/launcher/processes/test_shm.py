@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING
 
 from launcher.processes.shared_memory import port_numbers, sweep, sweep_abandoned
-from tests.half_made import make_old
+from tests.unfinished_shared_memory import make_old
 
 if TYPE_CHECKING:
     from pathlib import Path

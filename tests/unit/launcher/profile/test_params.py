@@ -13,10 +13,11 @@ from hypothesis import strategies as st
 
 from launcher import node_program
 from launcher.profile.params import NAME, flatten, written
-from launcher.profile.tree import Branch, FilePlace, MappingEntry, Problems, Scalar
-from launcher.profile.yaml_tree import read_value
+from launcher.profile.problems import Problems
+from launcher.profile.reading import read_value, read_yaml
 from tests.unit.profile_files import loaded
 from text.yaml_scalars import meaning
+from text.yaml_tree import Branch, FilePlace, MappingEntry, Scalar
 
 TEXTS = st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=40)
 TRICKY = st.sampled_from(
@@ -107,8 +108,6 @@ def test_any_text_after_set_is_a_value_or_a_problem_and_never_a_crash(text: str)
 
 @given(st.text(max_size=200))
 def test_any_text_in_a_file_is_a_profile_or_problems_and_never_a_crash(text: str) -> None:
-    from launcher.profile.yaml_tree import read_yaml
-
     problems = Problems()
     tree = read_yaml(text, "test", problems)
     assert tree is not None or problems.found
@@ -171,7 +170,7 @@ def test_names_that_ros_knows(name: str) -> None:
         ("x" * 40_000, "the text is longer than 32768 characters"),
     ],
 )
-def test_what_ros_cannot_carry_is_refused(value: object, told: str) -> None:
+def test_what_ros_cannot_carry_is_refused(value: str | float, told: str) -> None:
     problems = Problems()
     place = FilePlace("test", 1, 4)
     tree = Branch({"p": MappingEntry(place, Scalar(value, str(value), place))}, place)

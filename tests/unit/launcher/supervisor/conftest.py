@@ -1,0 +1,13 @@
+"""What every test of a node asks for."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.unit.launcher.supervisor.fake_session import FakeSession
+
+
+@pytest.fixture
+async def session() -> FakeSession:
+    """A session that obeys."""
+    return FakeSession()

@@ -1,0 +1,111 @@
+"""What surrounds a node, as a test would have it: a clock that it moves, processes that obey it."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from typing import TYPE_CHECKING
+
+from launcher.processes.exit import Exit
+from launcher.processes.table import Process
+from launcher.spawn_server.spawner import SpawnError
+from launcher.status import NodeState, Severity
+from launcher.supervisor.node import SupervisedNode
+from launcher.supervisor.plan import NodePlan
+from launcher.supervisor.readiness import ReadyCondition, Seen, UnwatchableError
+from tests.unit.manual_clock import ManualClock, settle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+PLAN = NodePlan(name="sonar", command="nodes.sonar", argv=("sonar",), restart="on-failure")
+
+
+class FakeProcess:
+    """A process, perhaps with a grandchild, and the signals that each of them ends by."""
+
+    def __init__(self, pid: int, ends_by: set[int], grandchild_ends_by: set[int] | None) -> None:
+        self.pid = pid
+        self.ended: asyncio.Future[Exit] = asyncio.get_running_loop().create_future()
+        self.heard: list[tuple[int, int]] = []
+        self.closed = False
+        self._living = {pid: ends_by}
+        if grandchild_ends_by is not None:
+            self._living[pid + 1] = grandchild_ends_by
+
+    def left(self) -> list[Process]:
+        return [Process(pid, "fake", "S", 1, self.pid, self.pid, pid, 0) for pid in self._living]
+
+    def signal(self, process: Process, number: signal.Signals) -> None:
+        self.heard.append((process.pid, number))
+        if number in self._living[process.pid] or number == signal.SIGKILL:
+            self.end(process.pid, Exit(None, number.name))
+
+    def end(self, pid: int, how: Exit) -> None:
+        del self._living[pid]
+        if pid == self.pid:
+            self.ended.set_result(how)
+
+    async def close(self) -> None:
+        assert not self._living, "let go of while something of it was alive"
+        self.closed = True
+
+
+class FakeSession:
+    """Fits `launcher.supervisor.node.Surroundings`."""
+
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.started: list[FakeProcess] = []
+        self.ends_by: set[int] = {signal.SIGINT}
+        self.grandchild_ends_by: set[int] | None = None
+        self.refuses = ""
+        self.is_ready = asyncio.Event()
+        self.watchable = True
+        self.absent = ""
+        self.states: list[NodeState] = []
+        self.lines: list[str] = []
+        self.gravest = Severity.DEBUG
+        self.said_last = "no such port"
+
+    @property
+    def process(self) -> FakeProcess:
+        return self.started[-1]
+
+    async def launch(self, _plan: NodePlan) -> FakeProcess:
+        if self.refuses:
+            raise SpawnError(self.refuses)
+        number = 100 + 10 * len(self.started)
+        self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
+        return self.process
+
+    async def ready(self, _condition: ReadyCondition, tell: Callable[[Seen], None]) -> None:
+        self.tell = tell
+        if not self.watchable:
+            raise UnwatchableError
+        await self.is_ready.wait()
+
+    def missing(self, _plan: NodePlan) -> str:
+        return self.absent
+
+    def last_words(self, _name: str) -> str:
+        return self.said_last
+
+    def say(self, _name: str, severity: Severity, words: str) -> None:
+        self.lines.append(words)
+        self.gravest = max(self.gravest, severity, key=lambda each: each.rank)
+
+    def changed(self, _name: str, state: NodeState) -> None:
+        self.states.append(state)
+
+
+async def crash(session: FakeSession) -> None:
+    session.process.end(session.process.pid, Exit(1))
+    await settle()
+
+
+async def started(session: FakeSession, plan: NodePlan = PLAN) -> SupervisedNode:
+    node = SupervisedNode(plan, session)
+    node.start()
+    await settle()
+    return node

@@ -1,0 +1,28 @@
+"""The run directory, with control sockets and simulated devices, for the launcher and the nodes."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+OWN_RUN_DIR = "DECK_RUN_DIR"
+"""Environment variable that keeps some runs separate from all others."""
+
+
+def run_path(environ: Mapping[str, str]) -> Path:
+    """Return the run directory that these variables give, whether or not it exists.
+
+    `DECK_RUN_DIR`, else `$XDG_RUNTIME_DIR/deck`, else `/tmp/deck-<uid>`.
+    """
+    chosen = environ.get(OWN_RUN_DIR)
+    if chosen:
+        return Path(chosen)
+    # Not from platformdirs: without a login session its fallback is not /tmp/deck-<uid>.
+    runtime = Path(environ.get("XDG_RUNTIME_DIR") or "/nonexistent")
+    if runtime.is_dir() and runtime.stat().st_uid == os.getuid():
+        return runtime / "deck"
+    return Path(f"/tmp/deck-{os.getuid()}")
