@@ -1,5 +1,5 @@
-# Everything lands in .venv; nothing is installed outside this folder. The built message types are
-# kept in ~/.cache/deck besides, see scripts/wheel_cache.py.
+# Everything is installed in .venv, nothing outside this folder. Only the built message types are also
+# kept in ~/.cache/deck, see scripts/wheel_cache.py.
 
 PROFILE ?=
 ARGS ?=
@@ -13,7 +13,7 @@ ifneq ($(AMENT_PREFIX_PATH)$(_ROS_WHEELS_BOOTSTRAP_COMPLETE),)
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH
 endif
 
-# What was compiled once is kept: nodes are started by the hundred.
+# Keep compiled modules: the tests start nodes by the hundred.
 unexport PYTHONDONTWRITEBYTECODE
 
 ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
@@ -39,7 +39,7 @@ setup: catalogues
 .venv/.ready: pyproject.toml $(shell find interfaces locked)
 	@python=$$(sh scripts/find-python.sh) && exec "$$python" scripts/environment.py .venv
 
-# Those whose sources were changed since, as by a `git pull`.
+# Compile those whose sources have changed, for example by a `git pull`.
 .PHONY: catalogues
 catalogues: .venv/.ready
 	@for source in text/locale/*/LC_MESSAGES/deck.po; do \
@@ -65,7 +65,7 @@ lock: .venv/.ready
 architecture: .venv/.ready
 	@.venv/bin/python scripts/architecture.py --write
 
-# What carries no mark of scripts/environment.py is somebody's own.
+# A folder without the mark of scripts/environment.py belongs to the user.
 clean:
 	@if [ ! -e .venv ] || [ -e .venv/.ready ] || [ -e .venv/.unfinished ]; then rm -rf .venv; \
 	else echo '.venv is not of this make'"'"'s making: it stays'; fi

@@ -1,9 +1,9 @@
-"""An hour of simulated driving among boxes: who runs into what, with the gate and without.
+"""An hour of simulated driving among boxes: collisions with and without the gate.
 
-`python -m bench.hour` prints a table. A driver changes its mind at random; commands are noisy and
-now and then no numbers, sonars fall silent for up to a second and drop readings, motors stall. A
-collision counts as avoidable if the obstacle stood in the beam of the sonar on that side. Where the
-robot is boxed in it is carried to another place.
+`python -m bench.hour` prints a table. The driver changes direction at random; commands are noisy
+and occasionally NaN or infinite, sonars fall silent for up to a second and drop readings, motors
+stall. A collision counts as avoidable if the obstacle was in the beam of the sonar on that side. If
+the robot is boxed in, it is moved to another place.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ GATES = {
 
 
 def main() -> None:
-    """Drive an hour with each."""
+    """Drive an hour with each gate."""
     print("| | driven m | collisions | of these avoidable by a stop | took s |")
     print("| --- | --- | --- | --- | --- |")
     for name, zone in GATES.items():
@@ -32,7 +32,7 @@ def main() -> None:
         began_s = time.monotonic()
         driver.drive_for(HOUR_S)
         took_s, world = time.monotonic() - began_s, driver.world
-        figures = f"{world.travelled_m:.0f} | {world.collisions} | {driver.avoidable}"
+        figures = f"{driver.driven_m:.0f} | {world.collisions} | {driver.avoidable}"
         print(f"| {name} | {figures} | {took_s:.0f} |", flush=True)
 
 

@@ -1,8 +1,8 @@
-"""What the screen of topics costs in a terminal, without any ROS: `python -m bench.topics_screen`.
+"""The cost of the Topics screen in a terminal, without ROS: `python -m bench.topics_screen`.
 
-Eleven rows whose rates sway as measured ones do come at the screen's own 4 Hz, and one topic is
-shown: a number, a JointState of 40 joints, or a 640x480 picture in which everything moves. Told
-are the share of a core and the bytes to the terminal, for the whole program.
+Eleven rows with fluctuating rates arrive at the screen's 4 Hz, and one topic is shown: a number, a
+JointState of 40 joints, or a 640x480 picture in which everything moves. The results are the share
+of a core and the bytes to the terminal, for the whole program.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 from bench.processes import cpu_s
 from graph.data import GraphUpdate
 from tests.e2e.terminal import Terminal
-from tests.tui.recorded import RecordedGraph, RecordedPad, sample, topic
+from tests.tui.recorded import RecordedGraph, RecordedOpener, sample, topic
 from tui.app import DeckApp
 from tui.session.requests import OpenRequest
 from tui.terminal.driver import DeckDriver
@@ -40,14 +40,14 @@ HEADER = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""}
 
 
 def rows() -> tuple[TopicRow, ...]:
-    """Ten numbers at 50 Hz and a picture at 30 Hz, a little off each time."""
+    """Return ten numbers at 50 Hz and a picture at 30 Hz, with slightly varying rates."""
     off = [random.uniform(0.995, 1.005) for _ in range(11)]
     numbers = [topic(f"/load/number_{n}", FLOAT, 50 * off[n], 8, age_s=0.01) for n in range(10)]
     return (topic("/load/image", IMAGE, 30 * off[10], 921_664, age_s=0.02), *numbers)
 
 
 def message(scene: str, count: int) -> tuple[str, str, Mapping[str, Any]]:
-    """Topic, type and value of the message that is shown."""
+    """Return topic, type and value of the message that is shown."""
     if scene == "number":
         return "/load/number_3", FLOAT, {"data": random.random()}
     if scene == "joints":
@@ -62,16 +62,16 @@ def message(scene: str, count: int) -> tuple[str, str, Mapping[str, Any]]:
 
 
 class FedApp(DeckApp):
-    """The program on the terminal it was started in."""
+    """The program, on the terminal it was started in."""
 
     terminal_fd = 1
 
 
 def child(scene: str) -> None:
-    """Be the program, fed from a thread."""
+    """Run the program, with data from a thread."""
     graph = RecordedGraph(update=None)
     order = OpenRequest(Path("profiles/09-brain.yaml"))
-    app = FedApp(RecordedPad(graph=graph), order, "topics", driver_class=DeckDriver)
+    app = FedApp(RecordedOpener(graph=graph), order, "topics", driver_class=DeckDriver)
 
     def feed() -> None:
         for count in range(1_000_000):
@@ -83,8 +83,10 @@ def child(scene: str) -> None:
                 )
             newest = {name: (sample(name, type_name, value, 8),)} if name in graph.watched else {}
             graph.show(GraphUpdate(time.time(), topics=table, samples=newest))
-            if name not in graph.watched:
-                app.call_from_thread(app.screen.query_one(TopicsTable).choose, name)
+            # The screen that opens the session has no table yet.
+            tables = app.screen.query(TopicsTable)
+            if name not in graph.watched and tables:
+                app.call_from_thread(tables.first().choose, name)
             time.sleep(PERIOD_S)
 
     app.call_later(lambda: threading.Thread(target=feed, daemon=True).start())

@@ -1,7 +1,7 @@
-"""What can be typed after `deck`: its commands, their options, and help in both languages.
+"""The arguments of `deck`: its commands, their options, and help in both languages.
 
-`deck PROFILE` needs no command word, so the word is looked for first and each command has a
-parser of its own.
+`deck PROFILE` needs no command word, so the word is looked for first, and each command has its own
+parser.
 """
 
 from __future__ import annotations
@@ -17,40 +17,42 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 OPEN = "open"
-"""What `deck` does without a command word: the screen."""
+"""The command that stands for no command word: the screen."""
 COMMANDS = {
     "run": N_("start a profile without a screen: prefixed logs, then a summary"),
-    "list": N_("profiles with their titles"),
-    "check": N_("say what is wrong in a profile: file:line:column"),
+    "list": N_("list the profiles with their titles"),
+    "check": N_("report errors in a profile: file:line:column"),
     "up": N_("start a profile in the background"),
-    "ps": N_("what runs in the background"),
-    "logs": N_("the log of a node that runs in the background"),
-    "attach": N_("the screen of what runs in the background"),
-    "down": N_("stop what runs in the background"),
-    "watch": N_("the screen of what others have started in a ROS domain"),
-    "record": N_("record topics of what runs into a folder that `ros2 bag` reads"),
-    "replay": N_("the screen on a recording, with no robot at all"),
-    "doctor": N_("what is installed, which ROS, which ports, and how to mend what is missing"),
+    "ps": N_("show what is running in the background"),
+    "logs": N_("show the log of a node running in the background"),
+    "attach": N_("open the screen of a profile running in the background"),
+    "down": N_("stop a profile running in the background"),
+    "watch": N_("open the screen on nodes that others have started in a ROS domain"),
+    "record": N_("record topics of running nodes into a folder that `ros2 bag` can read"),
+    "replay": N_("open the screen on a recording, without a robot"),
+    "doctor": N_(
+        "check what is installed, which ROS, which ports, and say how to fix what is missing"
+    ),
 }
 HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
 WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
-"""Options that may stand before the command word."""
+"""Options that may come before the command word."""
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that speaks the language of the screen and names the help."""
+    """A parser that uses the language of the screen and refers to the help."""
 
     def _print_message(self, message: str, file: IO[str] | None = None) -> None:  # type: ignore[override]
-        """Repeat nothing as it was typed: it may have been pasted."""
+        """Never echo arguments unescaped: they may have been pasted."""
         super()._print_message(harmless(message), file)
 
     def error(self, message: str) -> NoReturn:
-        """End with 2: what is wrong, and where the help is."""
+        """Exit with 2 after saying what is wrong and where the help is."""
         self.exit(
             2,
             f"{self.prog}: {message}\n"
-            + _("{prog} --help tells more").format(prog=self.prog)
+            + _("for help: {prog} --help").format(prog=self.prog)
             + "\n",
         )
 
@@ -70,17 +72,17 @@ ARGPARSE = (
     N_("ambiguous option: %(option)s could match %(matches)s"),
     N_("ignored explicit argument %r"),
 )
-"""What argparse says of itself, in the words of Python 3.10 to 3.13, marked for the catalogue."""
+"""The messages of argparse in Python 3.10 to 3.13, marked for the catalogue."""
 
 
 def speak() -> None:
-    """Have argparse look its own sentences up in the catalogue of the screen."""
+    """Make argparse look up its messages in our catalogue."""
     argparse._ = _  # type: ignore[attr-defined]
     argparse.ngettext = ngettext  # type: ignore[attr-defined]
 
 
 def split(arguments: Sequence[str]) -> tuple[str, list[str]]:
-    """Return the command word and the rest; `open` where there is none."""
+    """Return the command word, `open` if there is none, and the remaining arguments."""
     skip = False
     for index, word in enumerate(arguments):
         if skip:
@@ -98,7 +100,7 @@ def split(arguments: Sequence[str]) -> tuple[str, list[str]]:
 
 
 def wanted_language(arguments: Sequence[str]) -> str | None:
-    """Return what `--lang` says, before anything is parsed: errors speak it too."""
+    """Return the value of `--lang` before parsing, because errors must use that language too."""
     for word, following in zip(arguments, [*arguments[1:], ""], strict=False):
         if word == "--lang":
             return following
@@ -125,7 +127,7 @@ def _open_parser() -> Parser:
         description=_(
             "One screen for the lessons of ROS 2. Without a profile it lets you pick one."
         ),
-        epilog=_("commands (deck COMMAND --help tells more):") + "\n" + "\n".join(lines),
+        epilog=_("commands (for help: deck COMMAND --help):") + "\n" + "\n".join(lines),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
@@ -162,16 +164,16 @@ def _add_list(parser: Parser) -> None:
 
 def _add_check(parser: Parser) -> None:
     parser.add_argument(
-        "profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; without it all of them")
+        "profile", nargs="?", metavar=_("PROFILE"), help=_("name or file; all of them by default")
     )
     parser.add_argument(
         "--preflight",
         action="store_true",
-        help=_("ask the devices too, with --hardware real: found, permitted, free, answering"),
+        help=_("check the devices too, with --hardware real: found, permitted, free, answering"),
     )
     _add_json(parser)
     _add_profile_options(parser)
-    parser.epilog = _("Exit code: 0 if all is well, 2 if not. It moves nothing.")
+    parser.epilog = _("Exit code: 0 if everything is all right, else 2. Nothing is moved.")
 
 
 def _add_up(parser: Parser) -> None:
@@ -185,23 +187,23 @@ def _add_ps(parser: Parser) -> None:
 
 def _add_logs(parser: Parser) -> None:
     parser.add_argument(
-        "node", nargs="?", metavar=_("NODE"), help=_("name of the node; without it all of them")
+        "node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default")
     )
-    parser.add_argument("-f", "--follow", action="store_true", help=_("go on with what comes"))
+    parser.add_argument("-f", "--follow", action="store_true", help=_("keep showing new lines"))
     parser.add_argument(
         "-n",
         dest="lines",
         metavar="N",
         type=count,
         default=100,
-        help=_("how many lines of the past, 100 by default"),
+        help=_("how many past lines, 100 by default"),
     )
-    parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several run"))
+    parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several are running"))
 
 
 def _add_running(parser: Parser) -> None:
     parser.add_argument(
-        "name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several run")
+        "name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several are running")
     )
 
 
@@ -221,15 +223,15 @@ def _add_watch(parser: Parser) -> None:
         "--discovery",
         choices=("localhost", "subnet"),
         default="localhost",
-        help=_("look on this machine only, the default, or on the network too"),
+        help=_("look on this machine only (the default) or on the network too"),
     )
     _add_bandwidth(parser)
-    parser.epilog = _("Deck starts nothing here, and leaves running what runs.")
+    parser.epilog = _("Deck starts and stops nothing here.")
 
 
 def _add_record(parser: Parser) -> None:
     parser.add_argument(
-        "topics", nargs="*", metavar=_("TOPIC"), help=_("what to record; without it all topics")
+        "topics", nargs="*", metavar=_("TOPIC"), help=_("what to record; all topics by default")
     )
     parser.add_argument(
         "--hidden", action="store_true", help=_("hidden topics too: feedback and status of actions")
@@ -243,8 +245,8 @@ def _add_record(parser: Parser) -> None:
         metavar=_("FOLDER"),
         type=folder,
         help=_(
-            "where to, a new folder; by default in DECK_RECORDINGS_DIR, else ~/deck-recordings,"
-            " named by lesson and time"
+            "a new folder to record into; by default in DECK_RECORDINGS_DIR, else "
+            "~/deck-recordings, named after lesson and time"
         ),
     )
     parser.add_argument(
@@ -254,12 +256,12 @@ def _add_record(parser: Parser) -> None:
         "--domain",
         metavar="N",
         type=domain,
-        help=_("ROS domain; by default that of the robot which runs"),
+        help=_("ROS domain; by default that of the running robot"),
     )
     _add_json(parser)
     parser.epilog = _(
-        "Exit code: 0 if the recording is whole, 1 if it broke off or nothing came, 2 if nothing"
-        " could be started."
+        "Exit code: 0 if the recording is complete, 1 if it broke off or no messages "
+        "arrived, 2 if it could not start."
     )
 
 
@@ -268,10 +270,10 @@ def _add_replay(parser: Parser) -> None:
         "bag",
         nargs="?",
         metavar=_("BAG"),
-        help=_("name, folder with metadata.yaml, or .mcap file; without it: which ones there are"),
+        help=_("name, folder with metadata.yaml, or .mcap file; without it, list the recordings"),
     )
     parser.add_argument(
-        "--rate", metavar="R", type=rate, default=1.0, help=_("how fast, 0.1 to 10 times")
+        "--rate", metavar="R", type=rate, default=1.0, help=_("speed factor, 0.1 to 10")
     )
     parser.add_argument("--loop", action="store_true", help=_("start again at the end"))
     parser.add_argument(
@@ -279,12 +281,14 @@ def _add_replay(parser: Parser) -> None:
         metavar="S",
         type=seconds,
         default=0.0,
-        help=_("begin S seconds after the first message"),
+        help=_("start S seconds after the first message"),
     )
     parser.add_argument(
         "--publish",
         action="store_true",
-        help=_("onto the ROS graph instead of on a screen, but nothing that moves a robot"),
+        help=_(
+            "publish to the ROS graph instead of opening a screen, but nothing that moves a robot"
+        ),
     )
     parser.add_argument(
         "--motion", action="store_true", help=_("with --publish: also what moves a robot")
@@ -293,14 +297,14 @@ def _add_replay(parser: Parser) -> None:
         "--domain",
         metavar="N",
         type=domain,
-        help=_("with --publish: ROS domain; by default that of the robot which runs"),
+        help=_("with --publish: ROS domain; by default that of the running robot"),
     )
     _add_bandwidth(parser)
 
 
 def _add_doctor(parser: Parser) -> None:
     _add_json(parser)
-    parser.epilog = _("Exit code: 0, or 1 if something is missing that Deck cannot do without.")
+    parser.epilog = _("Exit code: 0, or 1 if something essential is missing.")
 
 
 _ADD = {
@@ -330,7 +334,7 @@ def _add_profile_options(parser: Parser) -> None:
         "--hardware",
         choices=("mock", "real"),
         default="mock",
-        help=_("which nodes to start: mocks, the default, or those of the real robot"),
+        help=_("which nodes to start: mocks (the default) or those of the real robot"),
     )
     parser.add_argument(
         "--set",
@@ -341,7 +345,7 @@ def _add_profile_options(parser: Parser) -> None:
         help=_("a parameter of a node, the value as in YAML; may be repeated"),
     )
     parser.add_argument(
-        "--domain", metavar="N", type=domain, help=_("ROS domain, 0 to 232, best 1 to 101")
+        "--domain", metavar="N", type=domain, help=_("ROS domain, 0 to 232, preferably 1 to 101")
     )
 
 
@@ -350,12 +354,14 @@ def _add_bandwidth(parser: Parser) -> None:
         "--bandwidth",
         metavar="KB",
         type=bandwidth,
-        help=_("for pictures, kB/s to the terminal, or off; by default 40 over SSH, else off"),
+        help=_(
+            "limit for pictures in the terminal, kB/s, or off; by default 40 over SSH, else off"
+        ),
     )
 
 
 def _add_json(parser: Parser) -> None:
-    parser.add_argument("--json", action="store_true", help=_("for programs: JSON"))
+    parser.add_argument("--json", action="store_true", help=_("print JSON, for programs"))
 
 
 def _add_language(parser: Parser) -> None:

@@ -34,34 +34,34 @@ if TYPE_CHECKING:
     from launcher.status import NodeState, NodeStatus, SessionInfo
 
 UP_WITHIN_S = 60.0
-"""When `up` stops waiting, whatever the profile's own limits are."""
+"""When `up` stops waiting, whatever limits the profile has."""
 LOOK_S = 0.05
 STEADY_S = 0.5
-"""For so long nothing may change once all is up: what fails does so in its first moment."""
+"""How long all must stay up: a node that fails does so right after its start."""
 
 
 def up_command(options: Namespace) -> int:
-    """Start a profile in the background, wait until it is up, show its nodes."""
+    """Start a profile in the background, wait until it is up, and show its nodes."""
     return asyncio.run(_up(options))
 
 
 def ps_command(options: Namespace) -> int:
-    """Show what runs."""
+    """Show the running sessions."""
     return asyncio.run(_ps(options))
 
 
 def logs_command(options: Namespace) -> int:
-    """Show the log of a node, or of all."""
+    """Show the log of one node or of all."""
     return asyncio.run(_logs(options))
 
 
 def down_command(options: Namespace) -> int:
-    """Stop what runs."""
+    """Stop a running session."""
     return asyncio.run(_down(options))
 
 
 async def _up(options: Namespace) -> int:
-    # Validation takes pydantic along, which the other commands do without.
+    # Validation imports pydantic, which the other commands do not need.
     from launcher.profile.load import load_profile
     from launcher.serial_ports import serial_ports
 
@@ -79,7 +79,7 @@ async def _up(options: Namespace) -> int:
         )
     except AlreadyRunningError as error:
         say_error(said(error.args[0]))
-        # Nothing was wrong with what was asked for if that is up.
+        # Not a usage error: this very profile is running.
         return 1 if error.session.profile == str(profile.path) else error.exit_code
     try:
         try:
@@ -98,12 +98,17 @@ async def _up(options: Namespace) -> int:
     if healthy:
         write(_("`deck attach` shows it, `deck down` stops it"))
     else:
-        say_error(_("something is wrong; `deck logs NODE` tells more, `deck down` stops it"))
+        say_error(
+            _(
+                "some nodes are not healthy; `deck logs NODE` shows why, `deck down` stops the "
+                "profile"
+            )
+        )
     return 0 if healthy else 1
 
 
 async def _settle(link: client.SupervisorClient) -> None:
-    """Wait until every node is up, or has failed to come up, and stays so."""
+    """Wait until every node is up, or has failed to start, and this no longer changes."""
     listening = asyncio.ensure_future(_listen(link))
     try:
         while not settled(link.nodes) or _states(link) != await _states_later(link):
@@ -115,7 +120,7 @@ async def _settle(link: client.SupervisorClient) -> None:
 
 
 async def _listen(link: client.SupervisorClient) -> None:
-    """Take what is said, so that what is known of the nodes is kept current."""
+    """Consume the events, which keeps the statuses of the nodes up to date."""
     async for _event in link.events():
         pass
 
@@ -135,7 +140,7 @@ async def _ps(options: Namespace) -> int:
         try:
             link = await client.attach(session.run_id)
         except SessionError:
-            continue  # It has ended just now.
+            continue  # It has just ended.
         found.append((link.session, tuple(link.nodes.values())))
         await link.aclose()
     if options.json:
@@ -151,7 +156,7 @@ async def _ps(options: Namespace) -> int:
         if stop_is_kept(session.domain):
             write(Paint(sys.stdout)(stop_words(session.domain), RED))
         if names.count(session.name) > 1:
-            write(_("to name this one: {run_id}").format(run_id=session.run_id))
+            write(_("name of this run: {run_id}").format(run_id=session.run_id))
     return 0
 
 

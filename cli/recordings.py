@@ -1,4 +1,4 @@
-"""The recordings that `deck record` and F6 have made: listed, and found by their names."""
+"""Listing the recordings made by `deck record` and F6, and finding them by name."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def list_recordings() -> int:
-    """Show the recordings of the default folder, the newest first."""
+    """Show the recordings in the default folder, newest first."""
     folder = recordings_path()
     bags = bags_in(folder)
     if not bags:
@@ -37,12 +37,16 @@ def list_recordings() -> int:
         write(row)
         if bag.trouble:
             write(paint(f"  {said(bag.trouble)}", YELLOW))
-    write(_("in {folder}; to see one: deck replay NAME").format(folder=plain(str(folder))))
+    write(
+        _("recordings are in {folder}; to open one: deck replay NAME").format(
+            folder=plain(str(folder))
+        )
+    )
     return 0
 
 
 def find_recording(named: str) -> Path:
-    """Return the path of a recording: a path as it was typed, or a name in the default folder.
+    """Return the path of a recording, given by its path or by its name in the default folder.
 
     Raises:
         UsageError: if it is neither.

@@ -1,4 +1,4 @@
-"""`deck replay`: the screen on a recording, with no robot and no ROS; or which ones there are."""
+"""`deck replay`: show a recording on the screen, without robot or ROS, or list recordings."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 def replay_command(options: Namespace) -> int:
-    """Show the screen on a bag until it is left, or publish it; 2 for what is no bag."""
+    """Show a bag on the screen until the user quits, or publish it; return 2 if it is not a bag."""
     if (options.motion or options.domain is not None) and not options.publish:
-        raise UsageError(say("--motion and --domain are for --publish alone"))
+        raise UsageError(say("--motion and --domain only work with --publish"))
     if options.bag is None:
         return list_recordings()
     bag = find_recording(options.bag)
@@ -39,9 +39,9 @@ def replay_command(options: Namespace) -> int:
 
 
 def _check(bag: Path, *, whole: bool) -> None:
-    """Say what is wrong with the bag, before anything else is said or shown.
+    """Report a fault of the bag before anything else is printed or shown.
 
-    `whole`: look inside too, which the screen does by itself: it may take a while.
+    `whole`: check its contents too, which may take a while; the screen does this itself.
     """
     from graph.bag.errors import BagError
     from graph.bag.reading import files_of, open_bag

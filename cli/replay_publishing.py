@@ -1,7 +1,7 @@
-"""`deck replay --publish`: a recording into the ROS graph, without a screen.
+"""`deck replay --publish`: publish a recording to the ROS graph, without a screen.
 
-What moves a robot is left out unless it is asked for, and so is every topic that somebody else
-publishes: by a recorded distance beside a measured one a robot drives into what it does not see.
+Topics that move a robot are left out unless requested, and so is every topic that another node
+publishes: with a recorded distance beside a measured one a robot would drive into obstacles.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def publish_bag(path: Path, options: Namespace) -> int:
-    """Publish until the end or until it is stopped; 1 if nothing could be published."""
+    """Publish until the end or until stopped; return 1 if nothing could be published."""
     from graph.bag.reading import open_bag
 
     _name, domain, discovery = running_domain(options.domain)
@@ -82,7 +82,7 @@ def _publish(
 
         publisher.play(stop, tell, rate=options.rate, start_s=options.start, loop=options.loop)
         _tell_left_out(publisher.progress, told)
-        # Only who has read it all knows.
+        # The end is known only after reading everything.
         _tell(bag.damage)
         write(_("published: {words}").format(words=_words(publisher.progress, bag)))
         return 0
@@ -92,10 +92,10 @@ def _publish(
 
 def _refusal(topic: TopicInBag, *, motion: bool) -> str | None:
     if topic.name == EMERGENCY_STOP:
-        # Its false would release a stop that somebody has given.
-        return say("an emergency stop is given and released by people alone")
+        # A recorded `false` would release a stop that somebody has engaged.
+        return say("only people engage and release an emergency stop")
     if not motion and moves(topic.name, topic.kind.name):
-        return say("it moves the robot; --motion publishes it too")
+        return say("moves the robot; --motion publishes it too")
     return None
 
 
@@ -113,7 +113,7 @@ def _tell(sentence: str | None) -> None:
 
 
 def _tell_left_out(progress: PublishingProgress, told: set[str]) -> set[str]:
-    """Say of each topic that is newly left out why; return the names of all that are."""
+    """Say why topics are newly left out; return the names of all topics left out."""
     for name, reason in sorted(progress.left_out.items()):
         if name not in told:
             words = _("not published: {topic}: {reason}")

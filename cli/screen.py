@@ -1,4 +1,4 @@
-"""`deck` and `deck attach`: the screen, if there is a terminal to show it on."""
+"""`deck` and `deck attach`: the screen, if there is a terminal to draw it on."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def open_command(options: Namespace) -> int:
-    """Show the screen; without a terminal do as `deck run` does."""
+    """Show the screen; without a terminal, behave like `deck run`."""
     if options.version:
         from importlib import metadata
 
@@ -43,10 +43,10 @@ def open_command(options: Namespace) -> int:
 
 
 def profile_or_command(name: str) -> Path:
-    """Return the file of the profile; what is none may be a mistyped command word.
+    """Return the file of the profile; any other word may be a mistyped command.
 
     Raises:
-        UsageError: if there is no such profile; it names the command that was probably meant.
+        UsageError: if there is no such profile; it suggests a similar command.
     """
     try:
         return find_profile(name)
@@ -63,13 +63,13 @@ def profile_or_command(name: str) -> Path:
 
 
 def attach_command(options: Namespace) -> int:
-    """Show the screen of a profile that runs in the background."""
+    """Show the screen of a profile that is running in the background."""
     if not has_terminal():
         say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
         return 2
     from launcher.client.running import find_running
 
-    # What is wrong with the name is told before there is a screen.
+    # A wrong name is reported before the screen is opened.
     session = find_running(options.name).session
     from tui.live import run_screen
 
@@ -91,9 +91,7 @@ def has_terminal() -> bool:
 
 def _without_screen(options: Namespace) -> int:
     if options.profile is None:
-        say_error(
-            _("there is no terminal to draw on; name a profile: deck run 09-brain (deck list)")
-        )
+        say_error(_("no terminal for the screen; name a profile: deck run 09-brain (deck list)"))
         return 2
     from launcher.client.start import StartingSupervisor
 

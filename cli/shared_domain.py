@@ -1,4 +1,4 @@
-"""Says on the command line that a profile is about to share its domain."""
+"""Warning, on the command line, that a profile is about to share its domain."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 def warn_of_shared_domain(profile: Profile) -> None:
-    """Name other sessions in the domain; those it cannot be shared with the supervisor refuses."""
+    """Name other sessions in the domain; the supervisor refuses those that exclude each other."""
     try:
         refuse_shared_domain(profile)
     except DomainTakenError as taken:
         if taken.can_share:
             say_error(said(taken.args[0]))
-            say_error(_("their nodes will see and hear each other"))
+            say_error(_("their nodes will see each other"))

@@ -1,4 +1,4 @@
-"""The values of options: words are parsed into values, or refused with a reason."""
+"""Parsing the values of options, or refusing them with a reason."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def domain(text: str) -> int:
 
 
 def seconds(text: str) -> float:
-    """Return seconds, none below 0."""
+    """Return seconds, at least 0."""
     try:
         seconds = float(text)
     except ValueError:
@@ -31,7 +31,7 @@ def seconds(text: str) -> float:
 
 
 def rate(text: str) -> float:
-    """Return how many times as fast as it was, 0.1 to 10."""
+    """Return the speed of a replay, relative to the original, 0.1 to 10."""
     try:
         rate = float(text)
     except ValueError:
@@ -44,7 +44,7 @@ def rate(text: str) -> float:
 
 
 def bandwidth(text: str) -> int:
-    """Return bytes a second, 0 for any number: `40` and `40k` are 40 kB/s, `off` is as `0`."""
+    """Return bytes per second, 0 for no limit: `40` and `40k` are 40 kB/s, `off` is like `0`."""
     number = text.lower().removesuffix("k")
     if number in ("off", "0"):
         return 0
@@ -53,7 +53,7 @@ def bandwidth(text: str) -> int:
     except ValueError:
         kilobytes = math.nan
     if not 1 <= kilobytes < math.inf:
-        words = _("{text!r} is not a bandwidth; expected kB/s from 1 on, as 40, or off")
+        words = _("{text!r} is not a bandwidth; expected kB/s from 1 up, such as 40, or off")
         raise argparse.ArgumentTypeError(words.format(text=text))
     return round(1000 * kilobytes)
 

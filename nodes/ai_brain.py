@@ -1,9 +1,9 @@
-"""The brain of lesson 9: hears a voice, looks at the distance, and has the robot act.
+"""The brain of lesson 9: hears a voice, checks the distance, and makes the robot act.
 
 The reasoning that an LLM would do is a few rules in `robot.commands.brain`: with an obstacle within
-`stop_distance`, or without a fresh and valid distance, the robot is told to stop; else the head
-turns, the robot drives forward, and the loudspeaker says so. A word that drives ("стоп", "left")
-is obeyed as it is, as long as it does not lead into the unknown.
+`stop_distance`, or without a fresh and valid distance, the robot is told to stop; otherwise the
+head turns, the robot drives forward, and the loudspeaker announces it. A drive command ("стоп",
+"left") is obeyed directly, unless it leads into the unknown.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from text.i18n import N_
 
 LOOK_PAN_DEG, LOOK_TILT_DEG = 45, 0
 FORWARD, STOP_WORD = WORDS["ru"][0], WORDS["ru"][4]
-"""The course's own nodes know Russian words only."""
+"""The course's own nodes know only Russian words."""
 
 _STARTED = N_("The brain is awake and waits for a voice")
 _HEARD = N_('Heard: "{words}"')
@@ -65,7 +65,7 @@ _HEAD_TROUBLE = N_("The head does not turn: {trouble}")
 
 
 class AiBrain(LessonNode):
-    """Turns each voice message into words, a look and an answer."""
+    """Turns each voice message into words, a decision and an answer."""
 
     NAME = "ai_brain"
     SETTINGS = (
@@ -73,13 +73,20 @@ class AiBrain(LessonNode):
         Number(
             "stale_after_s", 2.5, "An older distance is not believed", low=0.1, high=60.0, unit="s"
         ),
-        Number("head_timeout", 5.0, "For the head's answer", low=0.1, high=60.0, unit="s"),
+        Number(
+            "head_timeout",
+            5.0,
+            "How long to wait for the head's answer",
+            low=0.1,
+            high=60.0,
+            unit="s",
+        ),
     )
 
     def __init__(self) -> None:
         super().__init__()
         self._picture: bytes | None = None
-        """Serialized: nobody looks at it before there is a vision model."""
+        """Serialized: it is not decoded until there is a vision model."""
         self._front_m: float | None = None
         self._front_s = 0.0
         self._command = self.create_publisher(String, AI_COMMAND, DEPTH)
@@ -99,7 +106,7 @@ class AiBrain(LessonNode):
     def _hear(self, message: ByteMultiArray) -> None:
         sound = from_message(message)
         if text_in(sound) is None:
-            # A real microphone hears something all the time: that is no wish to drive.
+            # A real microphone hears something all the time: that is not a request to drive.
             self.say.info(_NO_WORDS, every_s=_SAY_EVERY_S)
             return
         words = spoken(sound)
@@ -151,7 +158,7 @@ def _ahead(metres: float | None) -> str:
 
 
 def _canonical(word: str) -> str:
-    """The Russian word that asks for the same motion."""
+    """Return the Russian word for the same motion."""
     asked = parse_word(word)
     return next((known for known in WORDS["ru"] if parse_word(known) == asked), STOP_WORD)
 

@@ -1,9 +1,9 @@
-"""A real microphone and a real loudspeaker, by PortAudio.
+"""A real microphone and a real loudspeaker, through PortAudio.
 
-Publishes what the microphone hears on /audio/mic_raw and plays what comes on /audio/speaker_raw:
-bytes that are 16-bit little-endian samples, one channel, `sample_rate` of them a second. How loud
-the microphone is goes to /audio/level ten times a second. A device that goes is opened again when
-it comes; how both are goes to /diagnostics once a second.
+Publishes the microphone's sound on /audio/mic_raw and plays the sound from /audio/speaker_raw:
+bytes of 16-bit little-endian samples, one channel, `sample_rate` of them per second. The level of
+the microphone goes to /audio/level ten times a second. A device that disappears is reopened when it
+returns; the state of both goes to /diagnostics once a second.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ from text.i18n import N_
 _STARTED = N_("Sound goes to {microphone} and comes from {speaker}")
 _SAY_EVERY_S = 5.0
 _FRESH_S = 0.5
-"""Without a block for longer than one takes and this, there is no level."""
+"""Without a block for this long beyond its length, there is no level."""
 
 
 @dataclass(frozen=True)
 class DeviceText(Text):
-    """A name of a device, or its number as a number."""
+    """A device name, or its number as an integer."""
 
     def accept(self, value: object) -> str:
-        """A str; 2 is taken for "2"."""
+        """Return a str; 2 becomes "2"."""
         is_number = isinstance(value, int) and not isinstance(value, bool)
         return super().accept(str(value) if is_number else value)
 
     def expected(self) -> str:
-        """What can be named."""
+        """Say what is accepted."""
         return N_("name, part of one, number, none; empty: the default")
 
 
@@ -68,7 +68,7 @@ class Audio(LessonNode):
         Number(
             "speaker_queue_s",
             60.0,
-            "Sound that may wait; of more the oldest is dropped",
+            "Sound that may wait; beyond that the oldest is dropped",
             fixed=True,
             low=0.5,
             high=600.0,
@@ -107,7 +107,7 @@ class Audio(LessonNode):
         self._speaker.start()
 
     def before_end(self) -> None:
-        """Give the devices back."""
+        """Release the devices."""
         self._microphone.close()
         self._speaker.close()
 

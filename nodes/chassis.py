@@ -1,13 +1,13 @@
-"""The chassis: /wheel_commands to the Pico on a serial port, and what the Pico tells back.
+"""The chassis: /wheel_commands to the Pico on a serial port, and the Pico's reports back.
 
-A drive line goes out `rate` times a second, whether there is a command or not: it is the heartbeat
-without which the Pico stops within 250 ms. A command that is older than `max_age_s`, is no number,
-is beyond robot/limits.py, or came before an emergency stop, a fault or a new connection was over,
-is a stop. /emergency_stop is latched here and in the Pico; a stop that the Pico has kept is one for
-this node, too.
+A drive line goes out `rate` times a second, with or without a command: it is the heartbeat without
+which the Pico stops within 250 ms. A command counts as a stop if it is older than `max_age_s`, is
+not a number, is beyond robot/limits.py, or came before the end of an emergency stop, a fault or a
+reconnection. /emergency_stop is latched here and in the Pico; a stop that the Pico has kept also
+stops this node.
 
-Published with every telemetry (50 Hz), to who listens: /joint_states, /odom, /tf; /battery and
-/diagnostics once a second. It connects again by itself. At its end it leaves a stop behind.
+Published with every telemetry (50 Hz), if anybody subscribes: /joint_states, /odom, /tf; /battery
+and /diagnostics once a second. The node reconnects by itself. It sends a stop before it ends.
 """
 
 from __future__ import annotations
@@ -55,20 +55,20 @@ if TYPE_CHECKING:
 
 _STILL = (0.0, 0.0, 0.0)
 _REARMS = frozenset("ELRUHA")
-"""Flags of the Pico after which only a new command counts."""
+"""Flags of the Pico after which only a new command is obeyed."""
 _BATTERY_EVERY_S = 1.0
 _SETTLES_S = 0.5
-"""So long after a release the Pico may still be telling of the stop before it."""
+"""For this long after a release the Pico may still report the previous stop."""
 _AWAY_S = 0.5
-"""Who was stopped for longer believes no command that has waited meanwhile."""
+"""A node that was suspended for longer ignores commands that have waited meanwhile."""
 
 
 class ChassisNode(LessonNode):
-    """Sends periodically and at each command, publishes from the reader's thread."""
+    """Sends periodically and on each command; publishes from the reader's thread."""
 
     NAME = "chassis"
     SETTINGS = (
-        Text("port", "/dev/ttyACM0", "Where it is; best a name of /dev/serial/by-id", fixed=True),
+        Text("port", "/dev/ttyACM0", "Device path; best one in /dev/serial/by-id", fixed=True),
         Whole("baud", 115_200, "Speed of the port", fixed=True, low=9600, high=921_600),
         Number("rate", 50.0, "Drive lines a second", low=20.0, high=100.0, unit="Hz"),
         Number("max_age_s", 1.0, "An older command is a stop", low=0.05, high=60.0, unit="s"),
@@ -111,7 +111,7 @@ class ChassisNode(LessonNode):
         self._transforms = self.quick_publisher(TFMessage, TF)
         self._battery = self.quick_publisher(BatteryState, BATTERY)
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
-        # Heard even if this node never saw the stop: the Pico may have kept it.
+        # Obeyed even if this node never saw the stop: the Pico may have kept it.
         self.create_subscription(Bool, EMERGENCY_STOP, self._hear_release, DEPTH)
         self.create_subscription(JointState, WHEEL_COMMANDS, self._obey, DEPTH)
         self._pace = PeriodicThread(1.0 / self.number("rate"), self._drive)
@@ -122,11 +122,11 @@ class ChassisNode(LessonNode):
         self._pace.start()
 
     def parameters_changed(self) -> None:
-        """Keep the new rate."""
+        """Apply the new rate."""
         self._pace.period_s = 1.0 / self.number("rate")
 
     def before_end(self) -> None:
-        """Leave the wheels standing, and give the port back."""
+        """Leave the wheels stopped, and release the port."""
         self._pace.close()
         self._pico.drive(*_STILL)
         self._pico.link.close()
@@ -141,12 +141,12 @@ class ChassisNode(LessonNode):
         with self._sending:
             self._commanded_s = time.monotonic()
             if command != self._command:
-                # The same again goes out at its pace.
+                # A repeated command goes out with the next periodic line.
                 self._command = command
                 self._send()
 
     def _granted(self, message: JointState) -> tuple[float, float, float]:
-        """What it asks for as far as these motors can, a stop if that is refused."""
+        """Return the command within what these motors can do, a stop if it is refused."""
         velocity = dict(zip(message.name, message.velocity, strict=False))
         position = dict(zip(message.name, message.position, strict=False))
         left, right = (velocity.get(joint, math.nan) for joint in DRIVE_JOINTS[:2])
@@ -163,7 +163,7 @@ class ChassisNode(LessonNode):
         return (left * part, right * part, steering)
 
     def _part_of(self, asked_rad_s: float) -> float:
-        """How much of that speed the motors can make, 0 to 1; less than all is told."""
+        """Return the share of that speed that the motors can reach, 0 to 1; logged if below 1."""
         most_rad_s = self.number("max_wheel_speed")
         if asked_rad_s <= most_rad_s:
             return 1.0
@@ -193,9 +193,9 @@ class ChassisNode(LessonNode):
             self._released_s = time.monotonic()
 
     def _take_over(self) -> None:
-        """Take the stop that the Pico keeps for one's own: it is from before, or somebody else's.
+        """Adopt the stop that the Pico keeps: an earlier one, or another program's.
 
-        Not one that it has only not let go of yet.
+        But not one whose release is still on its way.
         """
         telemetry = self._pico.telemetry
         kept = telemetry is not None and "E" in telemetry.flags
@@ -232,7 +232,7 @@ class ChassisNode(LessonNode):
         if telemetry is not None:
             if self._emergency.active and "E" not in flags:
                 self._pico.halt()
-            # Said until it is heard, for a line may be lost.
+            # Repeated until it arrives, as a line may be lost.
             if self._release_wanted and "E" in flags:
                 self._pico.release()
             elif time.monotonic() - self._released_s > _SETTLES_S:
@@ -240,7 +240,7 @@ class ChassisNode(LessonNode):
         self._pico.drive(*self._command)
 
     def _stand(self) -> None:
-        """Forget the command; the steering stays as it is."""
+        """Forget the command; the steering angle stays."""
         self._command = (0.0, 0.0, self._command[2])
 
     # ---------------------------------------------------------------- the reader's thread

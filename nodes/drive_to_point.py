@@ -1,16 +1,15 @@
 """The action of lesson 3: drives to a point in the odom frame, reports progress, can be cancelled.
 
-It reads /odom and publishes /drive `rate` times a second while it has a goal, and a stop when it
-has none any more. The way is found by `robot.motion.approach`: forward, in reverse for a point
-close behind, and backing away first from a point inside of the turning circle. A drive is aborted,
-with the reason in the result's message, at an emergency stop, without odometry or with one that is
-too old, when the robot stands though it should drive, and when it drives and does not arrive. A
-new goal takes the place of the old one. A goal that is no number or too far away is refused; so is
-any while the emergency stop is held.
+It reads /odom and publishes /drive `rate` times a second while it has a goal, and a stop at the
+end. `robot.motion.approach` finds the way: forward, in reverse for a point close behind, and
+backing away first from a point inside the turning circle. A drive is aborted, with the reason in
+the result's message, at an emergency stop, if odometry is missing or too old, if the robot stands
+although it should drive, and if it drives but does not arrive. A new goal replaces the old one. A
+goal that is not a number or too far away is refused; so is any goal during an emergency stop.
 
-/goal_pose tells where it drives to, latched; a pose without a frame says that it drives nowhere.
+/goal_pose is the current goal, latched; a pose without a frame means that there is none.
 
-With `simulate: auto` a simulated base tells /odom and /tf if nobody else does.
+With `simulate: auto` a simulated base publishes /odom and /tf if nobody else does.
 """
 
 from __future__ import annotations
@@ -54,9 +53,9 @@ _FINEST_M, _COARSEST_M = 0.02, 2.0
 _NO_ODOMETRY_S = WAIT_S + 1.0
 """How long a goal waits for a first pose."""
 _LAST_STOP = Duration(seconds=0.2)
-"""How long the last stop may take to reach everybody."""
+"""How long the last stop may take to reach all subscribers."""
 _LAST_WORD_S = 0.2
-"""How long the result may take on its way to those who asked for it."""
+"""How long the result may take to reach its clients."""
 
 
 class DriveToPointNode(LessonNode):
@@ -67,7 +66,7 @@ class DriveToPointNode(LessonNode):
         Choice(
             "simulate",
             AUTO,
-            "A simulated base tells /odom; auto: if nobody else does",
+            "A simulated base publishes /odom; auto: if nobody else does",
             fixed=True,
             choices=(AUTO, ALWAYS, NEVER),
         ),
@@ -86,7 +85,7 @@ class DriveToPointNode(LessonNode):
         Number(
             "tolerance",
             0.1,
-            "Near enough, for a goal that names none (0)",
+            "Tolerance for a goal that sets none (0)",
             low=_FINEST_M,
             high=_COARSEST_M,
             unit="m",
@@ -115,7 +114,7 @@ class DriveToPointNode(LessonNode):
         super().__init__()
         self._goal: DriveGoal | None = None
         self._waiting: dict[bytes, Future] = {}
-        """Results to come, of goals whose clients have not been told yet."""
+        """Goals whose results have not been sent to their clients yet."""
         self._publisher = self.create_publisher(AckermannDriveStamped, DRIVE, DEPTH)
         self._goal_pose = GoalPose(self)
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
@@ -129,7 +128,7 @@ class DriveToPointNode(LessonNode):
         )
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
         self._timer.cancel()
-        # A goal awaits its end: it must not keep the timer's callback group.
+        # A goal's callback waits for its end: it must not block the timer's callback group.
         self._server = ActionServer(
             self,
             DriveToPoint,
@@ -143,31 +142,31 @@ class DriveToPointNode(LessonNode):
         self.say.info(words.STARTED, action=DRIVE_TO_POINT)
 
     def parameters_changed(self) -> None:
-        """Keep the new rate; the limits hold from the next goal on."""
+        """Apply the new rate; new limits apply from the next goal on."""
         if self._goal is not None:
             change_period(self._timer, 1.0 / self.number("rate"))
 
     def before_end(self) -> None:
-        """Leave the robot standing, and tell who waits."""
+        """Leave the robot stopped, and answer waiting clients."""
         if self._goal is None:
             return
         self._finish(words.ENDING)
         self._publisher.wait_for_all_acked(_LAST_STOP)
         if self.executor is not None:
-            # The result is sent by a task of its own, behind all that is waiting already.
+            # The result is sent by a separate task, after everything already queued.
             until_s = time.monotonic() + _LAST_WORD_S
             while time.monotonic() < until_s:
                 self.executor.spin_once(timeout_sec=0.01)
 
     def destroy_node(self) -> None:
-        """Close the action before the node that it hangs on."""
+        """Destroy the action before the node that it belongs to."""
         self._server.destroy()
         super().destroy_node()  # type: ignore[no-untyped-call]
 
     # ---------------------------------------------------------------- goals
 
     def _judge(self, goal: DriveToPoint.Goal) -> GoalResponse:
-        """Refuse what cannot be driven to."""
+        """Refuse unreachable goals."""
         refusal = self._refusal(goal)
         if refusal is None:
             return GoalResponse.ACCEPT
@@ -208,7 +207,7 @@ class DriveToPointNode(LessonNode):
         change_period(self._timer, 1.0 / self.number("rate"))
 
     async def _execute(self, handle: ServerGoalHandle) -> DriveToPoint.Result:
-        """Wait for the end that the timer brings about; the result comes back."""
+        """Wait until the timer ends the goal; return the result."""
         return await self._waiting.pop(bytes(handle.goal_id.uuid))
 
     # ---------------------------------------------------------------- driving
@@ -240,7 +239,7 @@ class DriveToPointNode(LessonNode):
             goal.tell(pose)
 
     def _finish(self, phrase: str) -> None:
-        """Stop, and end the goal of the moment as the phrase says; nothing if there is none."""
+        """Stop, and end the current goal with this phrase; nothing if there is none."""
         goal, self._goal = self._goal, None
         if goal is None:
             return

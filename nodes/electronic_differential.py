@@ -1,13 +1,13 @@
 """The electronic differential: /drive to the speed of each rear wheel.
 
-The motors have no gears between them, so the inner wheel of a curve is made slower here. In a
-/wheel_commands message every array has three places, in the order of the names; nan stands where
+The wheels have no mechanical differential, so the inner wheel of a curve is slowed down here. In a
+/wheel_commands message every array has three elements, in the order of the names; nan means that
 a joint takes no such command (a wheel has no position, the steering no velocity).
 
-The command of the moment is repeated `rate` times a second, so that one who comes late sees it. It
-becomes a stop at an emergency stop (latched until released), as soon as no /drive came for
-`max_age_s` seconds, at a command that is refused, and when this node ends. Refused is what is no
-number or beyond robot/limits.py, and what is stamped too long ago or ahead.
+The current command is repeated `rate` times a second, so that late subscribers see it. It becomes a
+stop at an emergency stop (latched until released), if no /drive has come for `max_age_s` seconds,
+at a refused command, and when this node ends. A command is refused if it is not a number or beyond
+robot/limits.py, or if its stamp is too old or in the future.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from robot.words import STOP, DriveSetpoint
 from text.i18n import N_
 
 _LAST_STOP = Duration(seconds=0.2)
-"""How long the last stop may take to reach everybody."""
+"""How long the last stop may take to reach all subscribers."""
 
 _STARTED = N_("The electronic differential listens to {topic}")
 _STANDING = N_(
@@ -66,19 +66,21 @@ _TOO_MUCH = N_(
     "Asked for {speed:.2f} m/s and {steering:.2f} rad, limited to {fastest:g} m/s"
     " and {sharpest:g} rad"
 )
-_TOO_FAST = N_("The outer wheel would make {speed:.2f} m/s of {fastest:.2f}: both are slowed")
+_TOO_FAST = N_(
+    "The outer wheel would run at {speed:.2f} m/s, the limit is {fastest:.2f}: both are slowed"
+)
 _SILENT = N_("No command for {max_age:g} s: stop")
 _EMERGENCY = N_("EMERGENCY STOP: the wheels stand until it is released")
 _RELEASED = N_("The emergency stop is released; waiting for a new command")
 _NO_GATE = N_(
-    "Nobody publishes {topic}: the wheels stand. Deck's safety_stop does with gate: true, that of"
-    " the course does not; drive_topic: /drive in the profile drives without a gate"
+    "Nobody publishes {topic}: the wheels stand. Deck's safety_stop publishes it with gate: true,"
+    " the course's does not; drive_topic: /drive in the profile drives without a gate"
 )
 _GATE_WITHIN_S = 5.0
-"""Which is long for a gate that starts with the others."""
+"""A long time for a gate that starts together with the other nodes."""
 
 _TOLD_M_S, _TOLD_RAD = 0.05, 0.05
-"""Smaller changes of speed and steering are not told."""
+"""Smaller changes of speed and steering are not logged."""
 
 
 class ElectronicDifferential(LessonNode):
@@ -138,17 +140,17 @@ class ElectronicDifferential(LessonNode):
         self._await_next()
         self._gate_look = self.every(_GATE_WITHIN_S, self._miss_gate)
         if topic == DRIVE:
-            # Where no gate is meant to be, silence is a person who has not spoken yet.
+            # Without a gate, silence only means that no person has sent a command yet.
             self._gate_look.cancel()
         self.say.info(_STARTED, topic=topic)
 
     def parameters_changed(self) -> None:
-        """Keep the new rate, and the new chassis with the next command."""
+        """Apply the new rate, and the new chassis with the next command."""
         change_period(self._timer, 1.0 / self.number("rate"))
         self._await_next()
 
     def before_end(self) -> None:
-        """Leave the wheels standing."""
+        """Leave the wheels stopped."""
         self._command = STOP
         self._publish()
         self._publisher.wait_for_all_acked(_LAST_STOP)
@@ -163,11 +165,11 @@ class ElectronicDifferential(LessonNode):
         self._heard = True
         self._command = self._granted(message)
         self._publish()
-        # The next repetition counts from here.
+        # The next repetition is timed from here.
         self._timer.reset()
 
     def _granted(self, message: AckermannDriveStamped) -> DriveSetpoint:
-        """What it asks for as far as this chassis may, a stop if that is refused."""
+        """Return the command within this chassis's limits, a stop if it is refused."""
         asked, topic = from_message(message), self.text("drive_topic")
         refused = self._refusals.beyond(
             topic, (asked.speed_m_s, SPEED), (asked.steering_rad, STEERING)
@@ -190,7 +192,7 @@ class ElectronicDifferential(LessonNode):
         return DriveSetpoint(speeds.clamped(speed), angles.clamped(steering))
 
     def _wheels(self) -> WheelSpeeds:
-        """What the command asks of the wheels, the outer one within its limit."""
+        """Return the wheel speeds for the command, the outer one within its limit."""
         speed, steering = self._command.speed_m_s, self._command.steering_rad
         asked = wheel_speeds(speed, steering, self.number("wheelbase"), self.number("track"))
         fastest = min(RIM_M_S, self.number("max_wheel_speed") * self.number("wheel_radius"))
@@ -200,7 +202,7 @@ class ElectronicDifferential(LessonNode):
         return wheels
 
     def _await_next(self) -> None:
-        """Give the next command `max_age_s` from now."""
+        """Allow `max_age_s` from now for the next command."""
         max_age_s = self.number("max_age_s")
         if max_age_s > 0:
             change_period(self._deadline, max_age_s)
@@ -208,7 +210,7 @@ class ElectronicDifferential(LessonNode):
             self._deadline.cancel()
 
     def _held_up(self) -> bool:
-        """Whether to take nothing in now, for it may have waited for too long already."""
+        """Whether to ignore messages now, as they may have waited too long."""
         max_age_s = self.number("max_age_s") or math.inf
         return self._nap.lasted(max_age_s + 1.0 / self.number("rate"))
 
@@ -216,7 +218,7 @@ class ElectronicDifferential(LessonNode):
         self._held_up()
         left_ns = self._deadline.time_until_next_call()
         if left_ns is not None and left_ns <= 0:
-            # Who was stopped finds both timers due, in any order.
+            # A node that was suspended finds both timers due, in any order.
             self._too_late()
         self._publish()
 
@@ -273,7 +275,7 @@ class ElectronicDifferential(LessonNode):
 
 
 def _much_the_same(command: DriveSetpoint, told: DriveSetpoint | None) -> bool:
-    """Whether it need not be told: a gate slows down by a little with each reading of a sonar."""
+    """Whether to skip logging: a gate slows down a little with each reading of a sonar."""
     if told is None or (command.speed_m_s == 0.0) != (told.speed_m_s == 0.0):
         return False
     faster = abs(command.speed_m_s - told.speed_m_s)

@@ -14,12 +14,12 @@ _COUNT = N_("{seconds:g} s passed, all is well.")
 
 
 class HelloNode(LessonNode):
-    """Says how long it has been running."""
+    """Logs how long it has been running."""
 
     NAME = "hello_node"
     SETTINGS = (
         Number(
-            "period", 1.0, "Time between two words", low=0.01, high=3600.0, unit="s", fixed=True
+            "period", 1.0, "Time between two messages", low=0.01, high=3600.0, unit="s", fixed=True
         ),
     )
 

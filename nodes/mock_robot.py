@@ -1,11 +1,11 @@
 """A simulated robot: its serial devices, and the room that it drives in.
 
-In `folder` appear pico, tof_front, tof_rear and lsc16: pseudo-terminals that speak the bytes of
-the real devices. The drivers (chassis, tof_sonar, head_controller) take them for real ones. Behind
-them is a simulated room with walls and boxes. Trouble is made by parameters, at any time:
-`pico:=unplugged` pulls a cable, `pico:=fine` puts it back. /map is the room, to be drawn, and
-/mock/pose tells where the robot really is, /mock/motors what its wheels really do, which a real one
-could not.
+It creates pico, tof_front, tof_rear and lsc16 in `folder`: pseudo-terminals with the protocols of
+the real devices. The drivers (chassis, tof_sonar, head_controller) use them like real ones. Behind
+them is a simulated room with walls and boxes. Parameters cause faults at any time:
+`pico:=unplugged` pulls a cable, `pico:=fine` puts it back. /map is a map of the room, /mock/pose
+the true pose of the robot, and /mock/motors the true motion of its wheels, which a real robot could
+not report.
 """
 
 from __future__ import annotations
@@ -36,26 +36,17 @@ from robot.world.servos import SimulatedServos
 from robot.world.world import STEP_S, SimulatedSonar, World
 from text.i18n import N_
 from text.os_words import os_reason
+from text.run_path import run_path
 
 DEVICES = ("pico", "tof_front", "tof_rear", "lsc16")
 _BEHIND_S = 0.5
-"""A computer that slept for longer does not catch up."""
+"""After a longer pause the simulation does not catch up."""
 _POSE_EVERY = 5
 
 _STARTED = N_("The simulated robot is in {folder}: {devices}")
 _NO_FOLDER = N_("cannot make devices in {folder}: {problem}; set the parameter folder")
 _FAULT = N_("{device} is now: {fault}")
 _COLLISION = N_("The robot ran into something (number {count})")
-
-
-def default_folder() -> Path:
-    """`devices` in the folder where Deck keeps what belongs to a run."""
-    chosen, runtime = os.environ.get("DECK_RUN_DIR"), os.environ.get("XDG_RUNTIME_DIR")
-    if chosen:
-        return Path(chosen) / "devices"
-    if runtime and Path(runtime).is_dir():
-        return Path(runtime) / "deck" / "devices"
-    return Path(f"/tmp/deck-{os.getuid()}/devices")
 
 
 def _fault(device: str, about: str) -> Setting:
@@ -68,10 +59,10 @@ class MockRobot(LessonNode):
     NAME = "mock_robot"
     SETTINGS = (
         Text("folder", "", "Where the devices appear; empty: Deck's own", True, may_be_empty=True),
-        _fault("pico", N_("Trouble of the Pico")),
-        _fault("tof_front", N_("Trouble of the sonar in front")),
-        _fault("tof_rear", N_("Trouble of the sonar behind")),
-        _fault("lsc16", N_("Trouble of the servo controller")),
+        _fault("pico", N_("Fault of the Pico")),
+        _fault("tof_front", N_("Fault of the front sonar")),
+        _fault("tof_rear", N_("Fault of the rear sonar")),
+        _fault("lsc16", N_("Fault of the servo controller")),
         Choice(
             "stalled",
             "none",
@@ -99,7 +90,7 @@ class MockRobot(LessonNode):
             rear=SimulatedSonar(forward=False, noise_m=noise_m, dropout=dropout),
         )
         self._pico, self._servos = SimulatedPico(self._world), SimulatedServos()
-        folder = Path(self.text("folder") or default_folder()).expanduser()
+        folder = Path(self.text("folder") or run_path(os.environ) / "devices").expanduser()
         self._lines = self._make_lines(folder)
         self._told: dict[str, str] = dict.fromkeys(DEVICES, FINE)
         self._collisions = 0
@@ -114,7 +105,7 @@ class MockRobot(LessonNode):
         self.say.info(_STARTED, folder=folder, devices=", ".join(DEVICES))
 
     def parameters_changed(self) -> None:
-        """Make or mend the trouble."""
+        """Cause or repair the faults."""
         for device in DEVICES:
             fault = self.text(device)
             if fault != self._told[device]:
@@ -128,13 +119,13 @@ class MockRobot(LessonNode):
         self._pico.battery_v = self._servos.battery_v = self.number("battery")
 
     def before_end(self) -> None:
-        """Take the devices away."""
+        """Remove the devices."""
         for line in self._lines.values():
             line.close()
 
     def _make_lines(self, folder: Path) -> dict[str, FaultyLine]:
         try:
-            # The folder above is Deck's own, which keeps it from everybody else.
+            # The parent folder is Deck's own, which others cannot access.
             folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
             folder.mkdir(mode=0o700, exist_ok=True)
             return {
@@ -183,7 +174,7 @@ class MockRobot(LessonNode):
 
 
 def _tof_frame(metres: float) -> TofFrame:
-    """As a TF-Luna tells it."""
+    """Return the frame that a TF-Luna would send."""
     if metres == math.inf:
         return TofFrame(0, 50, 30.0)
     if math.isnan(metres):

@@ -1,20 +1,20 @@
-"""The reflex: watches the distance and, as a gate, lets no command through that is dangerous.
+"""The reflex: watches the distance and, as a gate, blocks dangerous commands.
 
-An obstacle nearer than `critical_distance`, a reading that is no distance (nan), and no reading
-for `stale_after_s` seconds, or none at all, are danger. With `gate: true` the node stands between
-those who ask for motion and /drive_safe: forward is blocked while the front is in danger, backward
+An obstacle nearer than `critical_distance`, an invalid reading (nan), and no reading for
+`stale_after_s` seconds, or none at all, count as danger. With `gate: true` the node stands between
+the sources of commands and /drive_safe: forward is blocked while the front is in danger, backward
 while the rear is (if a `rear_topic` is given; without one, backing off is always allowed). Between
-`slow_distance` and `critical_distance` the speed is slowed in proportion. A command that was cut
+`slow_distance` and `critical_distance` the speed is reduced in proportion. A command that was cut
 short is forgotten: when the way is free again the robot waits for a new one.
 
-`sources` are the topics with commands, the highest in rank first: a source counts while its newest
-command is younger than `max_age_s`, and what is said below it meanwhile is ignored. When nobody's
-command counts the robot stands. What is allowed at the moment is repeated `rate` times a second, so
-that who obeys /drive_safe can tell a dead gate. A gate that was just started stays shut for
-`settle_s`, and as long again after the first word of a source in its first seconds: it may not have
-heard yet of an emergency stop that is on.
+`sources` are the topics with commands, highest rank first: a source is active while its newest
+command is younger than `max_age_s`, and lower sources are ignored meanwhile. Without an active
+source the robot stands. The current allowed command is repeated `rate` times a second, so that
+receivers of /drive_safe notice a dead gate. A gate that has just started stays shut for `settle_s`,
+and as long again after the first message of a source in its first seconds: it may not know yet of
+an emergency stop that is in effect.
 
-/emergency_stop stops everything until it is released by an explicit false. /safety_state says
+/emergency_stop stops everything until it is released by an explicit false. /safety_state reports
 at every change, and once a second, what is blocked and why.
 """
 
@@ -76,7 +76,9 @@ class SafetyStop(LessonNode):
         Switch("gate", False, "Whether to relay commands to /drive_safe", fixed=True),
         Text("sources", " ".join(COMMAND_SOURCES), "Their topics, highest rank first", fixed=True),
         Number("max_age_s", 0.5, "An older command becomes a stop; 0: never", high=60.0, unit="s"),
-        Number("settle_s", 1.0, "After its start the gate stays shut so long", high=10.0, unit="s"),
+        Number(
+            "settle_s", 1.0, "How long the gate stays shut after its start", high=10.0, unit="s"
+        ),
         Number(
             "rate", 10.0, "Looks, and repetitions of /drive_safe", low=1.0, high=100.0, unit="Hz"
         ),
@@ -91,7 +93,7 @@ class SafetyStop(LessonNode):
         self._told: tuple[Verdict, GateSnapshot] | None = None
         self._told_s = 0.0
         self._state = self.create_publisher(DiagnosticArray, SAFETY_STATE, DEPTH)
-        # In this order, which is that of their callbacks: of all that waits a stop comes first.
+        # In this order, which is that of their callbacks: a waiting stop comes first.
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
         SensorListener(self, Float32, self.text("front_topic"), self._see_front)
         if self._eyes.rear is not None:
@@ -101,13 +103,13 @@ class SafetyStop(LessonNode):
         self.say.info(STARTED, metres=self.number("critical_distance"))
 
     def parameters_changed(self) -> None:
-        """Keep the new rate, and look again with the new distances, which are told at once."""
+        """Apply the new rate, and judge again by the new distances; publish them at once."""
         change_period(self._timer, 1.0 / self.number("rate"))
         self._judge()
         self._publish_state()
 
     def before_end(self) -> None:
-        """A gate that goes leaves the robot standing."""
+        """Stop the robot if this is the gate."""
         if self._gate is not None:
             self._gate.stop()
 
@@ -157,7 +159,7 @@ class SafetyStop(LessonNode):
         return self._gate is not None and self._gate.held_up()
 
     def _judge(self) -> None:
-        """Look anew, and have the gate obey what is seen."""
+        """Judge the sensors again, and have the gate apply the result."""
         self._views = self._eyes.views(self._zone)
         sights = tuple(view.sight for view in self._views)
         rear = sights[1] if len(sights) > 1 else None
@@ -171,7 +173,7 @@ class SafetyStop(LessonNode):
             self._publish_state()
 
     def _news(self) -> tuple[Verdict, GateSnapshot]:
-        """What is told at once when it changes, which an age does all the time."""
+        """Return what is published at once if it changes; ages change all the time."""
         snapshot = self._snapshot()
         return self._verdict, snapshot._replace(allowed=round(snapshot.allowed, 2), age_s=None)
 

@@ -1,9 +1,9 @@
 """A ToF sonar on a serial port: Benewake TF-Luna, TFmini-S or TFmini Plus.
 
 Publishes metres as Float32 on `topic` and as Range on `topic`/range, by REP-117: +inf nothing in
-range, -inf too close to measure, nan no valid reading. While the port is not there or is silent it
-publishes nan ten times a second, so that nobody believes in a distance of the past. It connects
-again by itself. How it is goes to /diagnostics once a second, its frames in words to `~/frames`.
+range, -inf too close to measure, nan no valid reading. While the port is missing or silent it
+publishes nan ten times a second, so that nobody relies on an old distance. It reconnects by itself.
+Its state goes to /diagnostics once a second, its frames in words to `~/frames`.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ _GARBLED = N_("Bytes from {port} make no sense: wrong port, wrong baud, or a bad
 
 
 class TofSonar(LessonNode):
-    """Reads frames on a thread of its own and publishes them from there."""
+    """Reads frames on its own thread and publishes them from there."""
 
     NAME = "tof_sonar_front"
     SETTINGS = (
-        Text("port", "/dev/ttyUSB0", "Where it is; best a name of /dev/serial/by-id", fixed=True),
+        Text("port", "/dev/ttyUSB0", "Device path; best one in /dev/serial/by-id", fixed=True),
         Whole("baud", BAUD, "Speed of the port", fixed=True, low=9600, high=921_600),
         Choice(
             "model",
@@ -55,7 +55,7 @@ class TofSonar(LessonNode):
         ),
         Text("topic", SONAR_FRONT, "Where the distance is published", fixed=True),
         Text("frame_id", "sonar_front_link", "Frame of the readings", fixed=True),
-        Whole("every", 2, "One of so many readings is published", low=1, high=1000),
+        Whole("every", 2, "Every n-th reading is published", low=1, high=1000),
         Number(
             "silent_after_s", 0.5, "Without a reading it is silent", low=0.1, high=10.0, unit="s"
         ),
@@ -85,7 +85,7 @@ class TofSonar(LessonNode):
         self._pace.start()
 
     def before_end(self) -> None:
-        """Give the port back."""
+        """Release the port."""
         self._pace.close()
         self._link.close()
 

@@ -1,4 +1,4 @@
-"""Sound as numbers: how loud it is, another sample rate, and whether bytes are sound at all.
+"""Sound as numbers: loudness, resampling, and whether bytes are sound at all.
 
 Sound is PCM: 16-bit little-endian samples, one channel.
 """
@@ -14,29 +14,29 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 RATE_HZ = 16_000
-"""What speech is taken at."""
+"""Sample rate for speech."""
 SAMPLE = 2
-"""Bytes of a sample."""
+"""Bytes per sample."""
 SILENCE_DBFS = -120.0
-"""Told where nothing sounds, for the logarithm of nothing is no number."""
+"""The level of silence, whose logarithm is not a number."""
 LEVEL_S = 0.1
-"""How much of the newest sound a level is of."""
+"""Length of the newest sound that a level covers."""
 TEXT_READ = 8_000
-"""Bytes that are looked at for a text."""
+"""Bytes that are examined for text."""
 _FULL = 32768.0
 _LETTERS_PER_S = 15.0
 _VOICE_DBFS, _ROOM_DBFS = -24.0, -58.0
 
 
 def samples_of(sound: bytes) -> NDArray[np.int16]:
-    """The samples in PCM bytes, shape (n,); half a sample at the end is left out."""
+    """Return the samples in PCM bytes, shape (n,); half a sample at the end is dropped."""
     return np.frombuffer(sound[: len(sound) // SAMPLE * SAMPLE], "<i2")
 
 
 def level_dbfs(sound: bytes) -> float:
-    """Loudness of PCM bytes: root mean square against full scale, `SILENCE_DBFS` .. 0 dB.
+    """Return the loudness of PCM bytes: RMS relative to full scale, `SILENCE_DBFS` .. 0 dB.
 
-    A sine of full scale has -3 dB.
+    A full-scale sine has -3 dB.
     """
     samples = samples_of(sound).astype(np.float64)
     power = float(np.mean(np.square(samples / _FULL))) if len(samples) else 0.0
@@ -51,43 +51,39 @@ class LevelMeter:
         self._sound = b""
 
     def feed(self, sound: bytes) -> None:
-        """Take the next PCM bytes, whole samples."""
+        """Add the next PCM bytes, whole samples."""
         self._sound = (self._sound + sound)[-self._most :]
-
-    def clear(self) -> None:
-        """The stream has ended."""
-        self._sound = b""
 
     @property
     def dbfs(self) -> float:
-        """Loudness, `SILENCE_DBFS` before the first sound."""
+        """Return the loudness, `SILENCE_DBFS` before the first sound."""
         return level_dbfs(self._sound)
 
 
 def mock_level_dbfs(words: str, since_s: float) -> float:
-    """The level of a voice that began to say words so long ago, and of the quiet room after it."""
+    """Return the level of a voice that began to speak this long ago, or of the quiet afterwards."""
     if since_s > len(words) / _LETTERS_PER_S:
         return _ROOM_DBFS
-    # Syllables, one in a quarter of a second.
+    # Syllables, one per quarter of a second.
     return _VOICE_DBFS + 8.0 * math.sin(8.0 * math.pi * since_s)
 
 
 class Resampler:
-    """From one sample rate to another, straight lines between samples, a block at a time.
+    """Converts one sample rate to another by linear interpolation, a block at a time.
 
-    Cutting a stream into other blocks changes nothing of what comes out. On the way down each
-    sample is first averaged with its neighbours, against the worst of the false tones.
+    The division into blocks does not affect the output. For a lower rate each sample is first
+    averaged with its neighbours, against the worst aliasing.
     """
 
     def __init__(self, from_hz: int, to_hz: int) -> None:
-        """Raise ValueError for rates that are none."""
+        """Raise ValueError for invalid rates."""
         if from_hz <= 0 or to_hz <= 0:
             raise ValueError(f"a sample rate is above 0 Hz, not {min(from_hz, to_hz)}")
         self._from_hz, self._to_hz = from_hz, to_hz
         self._wide = max(1, round(from_hz / to_hz))
         self._tail = np.zeros(self._wide - 1)
         self._last = 0.0
-        # In units of 1 / to_hz of an input sample: whole numbers, so that nothing drifts.
+        # In units of 1 / to_hz of an input sample: whole numbers, which do not drift.
         self._at = 0
 
     def feed(self, sound: bytes) -> bytes:
@@ -114,16 +110,16 @@ class Resampler:
 
 
 def text_in(data: bytes) -> str | None:
-    """The text that bytes are, None if they are none: broken UTF-8 or control characters.
+    """Return the bytes as text, None if they are not: invalid UTF-8 or control characters.
 
-    In the lessons words go where sound will go. Sound is hardly ever taken for text: the zeros of
-    silence are control characters, and noise is broken UTF-8.
+    In the lessons text is sent in place of sound. Sound is hardly ever mistaken for text: the zeros
+    of silence are control characters, and noise is invalid UTF-8.
     """
     cut = data[:TEXT_READ]
     try:
         text = cut.decode("utf-8")
     except UnicodeDecodeError as error:
-        # A letter that the cut went through is no fault of the text.
+        # A character cut in half at the end does not make the text invalid.
         if len(cut) == len(data) or error.start < len(cut) - 4:
             return None
         text = cut[: error.start].decode("utf-8")

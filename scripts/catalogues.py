@@ -1,7 +1,7 @@
-"""Compile the message catalogues that are older than their sources, or tell what is wrong in them.
+"""Compile the message catalogues that are older than their sources, or check them.
 
-Usage: catalogues.py compile|check. `compile` writes a deck.mo beside each deck.po, `check` names
-what the code says and a catalogue does not translate, and what the code no longer says.
+Usage: catalogues.py compile|check. `compile` writes a deck.mo beside each deck.po; `check` lists
+messages that a catalogue does not translate, and entries that the code no longer uses.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ DOMAIN = "deck"
 ROOMS = ("cli", "graph", "launcher", "nodes", "robot", "text", "tui")
 KEYWORDS = (
     *("_", "N_", "ngettext:1,2", "say"),
-    # What a parameter of a node is for.
+    # The descriptions of node parameters.
     *("Choice:3", "Number:3", "Switch:3", "Text:3", "Whole:3"),
 )
 
 
 def babel(*words: str | Path) -> None:
-    """Do what `pybabel` does with these words; raises what it raises."""
+    """Run `pybabel` with these arguments; raises its errors."""
     from babel.messages.frontend import CommandLineInterface
 
     CommandLineInterface().run(  # type: ignore[no-untyped-call]
@@ -36,18 +36,18 @@ def babel(*words: str | Path) -> None:
 
 
 def stale(locale: Path = LOCALE) -> list[Path]:
-    """Return the sources that were changed after they were compiled."""
+    """Return the sources that have changed since they were compiled."""
     sources = sorted(locale.glob(f"*/LC_MESSAGES/{DOMAIN}.po"))
     return [path for path in sources if changed(path) > changed(path.with_suffix(".mo"))]
 
 
 def changed(path: Path) -> int:
-    """Return when the file was written, 0 if there is none."""
+    """Return the modification time of a file, 0 if there is none."""
     return path.stat().st_mtime_ns if path.exists() else 0
 
 
 def compile_stale(locale: Path = LOCALE) -> None:
-    """Compile what is stale; who reads meanwhile finds the old catalogue or the new one, whole."""
+    """Compile stale sources; each catalogue is replaced atomically."""
     for source in stale(locale):
         with tempfile.TemporaryDirectory(dir=source.parent) as folder:
             made = Path(folder) / f"{DOMAIN}.mo"
@@ -57,7 +57,7 @@ def compile_stale(locale: Path = LOCALE) -> None:
 
 
 def said() -> Catalog:
-    """Return what the code marks to be translated."""
+    """Return the messages that the code marks for translation."""
     from babel.messages.pofile import read_po
 
     with tempfile.TemporaryDirectory() as folder:
@@ -70,7 +70,7 @@ def said() -> Catalog:
 
 
 def translated(language: str) -> Catalog:
-    """Return the catalogue that people edit; a broken one raises babel's PoFileError."""
+    """Return the catalogue that translators edit; a broken one raises babel's PoFileError."""
     from babel.messages.pofile import read_po
 
     with (LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.po").open("rb") as file:
@@ -78,7 +78,7 @@ def translated(language: str) -> Catalog:
 
 
 def wrong(language: str) -> list[str]:
-    """Return what the catalogue of a language lacks, and what it has for nothing."""
+    """Return the missing and the unused entries of a language's catalogue."""
     code, catalogue = said(), translated(language)
     found: list[str] = []
     for message in code:
@@ -89,19 +89,19 @@ def wrong(language: str) -> list[str]:
             found.append(f"not translated: {key(message)!r}")
     known = {key(message) for message in code}
     return found + [
-        f"said no more: {key(entry)!r}"
+        f"no longer used: {key(entry)!r}"
         for entry in catalogue
         if entry.id and key(entry) not in known
     ]
 
 
 def key(message: Message) -> str:
-    """Return the English of a message, of one that counts its singular."""
+    """Return the English text of a message; for a plural message, its singular."""
     return message.id if isinstance(message.id, str) else str(message.id[0])
 
 
 def main(words: list[str]) -> int:
-    """Do one of the two."""
+    """Run one of the two commands."""
     if words == ["compile"]:
         compile_stale()
     elif words == ["check"]:

@@ -1,7 +1,7 @@
-"""Make or bring up to date the virtual environment that `make` works in.
+"""Create or update the virtual environment that `make` uses.
 
-Usage: environment.py VENV, run by the Python that the environment is to be made of; it calls itself
-as environment.py --build-interfaces WHEELS FOLDER. What comes from a package index is in locked/.
+Usage: environment.py VENV, run by the Python that the environment is to use; it calls itself as
+environment.py --build-interfaces WHEELS FOLDER. Packages from an index are listed in locked/.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-# Run by its path, with no environment yet: what lies beside it is found by its bare name.
+# Run by its path, before there is an environment: modules beside it have bare names.
 from wheel_cache import WheelCache
 
 if TYPE_CHECKING:
@@ -33,13 +33,13 @@ TAIL = 25
 TICK_S = 1.0
 BUILD = "--build-interfaces"
 PLAIN = re.compile(r"[\w/.,:=@%+~ -]+")
-"""Paths that CMake and the shells it starts take as they are."""
+"""Paths that need no quoting in CMake and the shells it starts."""
 REQUIRE = ("install", "--require-hashes", "--requirement")
-"""What follows is installed at its locked version only, if it is the very file that was locked."""
+"""Packages after this are installed only at the locked version, and only from the locked file."""
 
 
 class StepError(Exception):
-    """A command of the set-up ended with an error."""
+    """A command of the set-up failed."""
 
     def __init__(self, what: str, log: Path) -> None:
         super().__init__(what)
@@ -47,15 +47,15 @@ class StepError(Exception):
 
 
 def say(text: str, end: str = "\n") -> None:
-    """Tell the person at the terminal, whose standard output belongs to `deck`."""
+    """Write to the terminal on standard error: standard output belongs to `deck`."""
     print(text, file=sys.stderr, flush=True, end=end)
 
 
 @contextlib.contextmanager
 def only_one() -> Iterator[None]:
-    """Let two `make` in one tree set up one after the other."""
+    """Make two `make` in one tree set up one after the other."""
     folder = os.open(ROOT, os.O_RDONLY)
-    # A pip that outlives this process still writes, so it keeps the lock.
+    # A pip that outlives this process is still writing, so it keeps the lock.
     os.set_inheritable(folder, True)
     try:
         try:
@@ -69,12 +69,12 @@ def only_one() -> Iterator[None]:
 
 
 class Step:
-    """One command of the set-up, under way, with a log of its own."""
+    """One running command of the set-up, with its own log."""
 
     ended = 0
-    """How many have been waited for, those that could be left out included."""
+    """How many steps are finished, including skipped ones."""
     total = 0
-    """How many there are in all."""
+    """How many steps there are in all."""
 
     def __init__(self, what: str, *command: str | Path, **environ: str) -> None:
         self.what = what
@@ -89,12 +89,12 @@ class Step:
                 stdout=log,
                 stderr=log,
                 close_fds=False,
-                # A group of its own, which can be ended with all that it has started.
+                # Its own process group, which can be ended with everything it has started.
                 start_new_session=True,
             )
 
     def finish(self) -> None:
-        """Wait for the command, show that time passes, and say how long it took."""
+        """Wait for the command, show progress, and report how long it took."""
         screen = sys.stderr.isatty()
         line = heading(self.what)
         if not screen:
@@ -117,24 +117,24 @@ class Step:
             raise StepError(self.what, self.log)
 
     def seconds(self) -> str:
-        """Return how long the command has taken so far."""
+        """Return how long the command has been running."""
         return f"{time.monotonic() - self.started:.0f} s"
 
     def abandon(self) -> None:
-        """Stop the command and what it has started, if it is still under way."""
+        """Stop the command and everything it has started, if it is still running."""
         if self.process.poll() is None:
             os.killpg(self.process.pid, signal.SIGKILL)
             self.process.wait()
 
 
 def heading(what: str) -> str:
-    """Return the beginning of the line of the next step."""
+    """Return the start of the next step's line."""
     Step.ended += 1
     return f"  {Step.ended} of {Step.total}: {what} ... "
 
 
 def wanted_interfaces() -> str:
-    """Return a digest of what the message types are built of."""
+    """Return a digest of the sources and tools of the message types."""
     return fingerprint(ROOT / "interfaces") + fingerprint(LOCKED)
 
 
@@ -149,7 +149,7 @@ def fingerprint(folder: Path) -> str:
 
 
 class Environment:
-    """A virtual environment and the marks that tell how far it got."""
+    """A virtual environment, with marks that record how far its set-up has got."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -159,28 +159,28 @@ class Environment:
         self.interfaces = folder / ".interfaces"
 
     def identity(self) -> bytes:
-        """Return what stops being true when the tree is moved or Python is replaced.
+        """Return a text that changes when the tree is moved or Python is replaced.
 
-        scripts/sound.sh puts the same words together and compares.
+        scripts/sound.sh builds the same text and compares it.
         """
         return os.fsencode(f"{self.folder.resolve()} {self.python.resolve()}\n")
 
     def is_sound(self) -> bool:
-        """Tell whether this was finished, here, with the Python that is asked for."""
+        """Return whether the set-up was finished, here, with the requested Python."""
         if os.environ.get("PYTHON") and self.python.resolve() != Path(sys.executable).resolve():
             return False
         return not self.unfinished.exists() and read(self.ready) == self.identity()
 
     def update(self) -> None:
-        """Bring the environment to what pyproject.toml and interfaces/ ask for."""
+        """Update the environment to match pyproject.toml and interfaces/."""
         sound = self.is_sound()
         changed = not sound or read(self.interfaces) != wanted_interfaces().encode()
         Step.ended, Step.total = 0, (not sound) + 2 + 2 * changed
         if not sound:
             self.begin()
             Step("Virtual environment", sys.executable, "-m", "venv", self.folder).finish()
-        # What pip left half done looks whole to the next pip. When pip itself gives
-        # up it undoes its work; when it is killed, this mark stays behind.
+        # A half-finished installation looks complete to the next pip. When pip fails it undoes its
+        # work; when it is killed, this mark stays behind.
         self.unfinished.touch()
         try:
             self.install()
@@ -191,13 +191,13 @@ class Environment:
         self.ready.write_bytes(self.identity())
 
     def begin(self) -> None:
-        """Make the folder, or empty it if it is one that was made here; else leave it alone."""
+        """Create the folder, or empty it if it was made by this script; else leave it alone."""
         self.folder.mkdir(exist_ok=True)
         if any(self.folder.iterdir()) and not (self.ready.exists() or self.unfinished.exists()):
             raise FileExistsError(
-                f"{self.folder} is there already, and was not made by `make`; move it away"
+                f"{self.folder} already exists and was not made by `make`; move it away"
             )
-        # The mark stays: whatever happens now, the folder is known as one that was made here.
+        # The mark stays: whatever happens now, the folder is known to be ours.
         self.unfinished.touch()
         for entry in self.folder.iterdir():
             if entry.is_dir() and not entry.is_symlink():
@@ -206,7 +206,7 @@ class Environment:
                 entry.unlink()
 
     def install(self) -> None:
-        """Install Deck with all it needs, and the message types if they have changed."""
+        """Install Deck and its requirements, and the message types if they have changed."""
         wanted = wanted_interfaces()
         if read(self.interfaces) == wanted.encode():
             self.install_deck()
@@ -227,7 +227,7 @@ class Environment:
         self.interfaces.write_text(wanted)
 
     def build(self, wheels: Path) -> None:
-        """Install Deck and build the message types, which need not wait for each other."""
+        """Install Deck and build the message types, in parallel."""
         with folder_for_cmake() as folder:
             build = Step(
                 "Message types, meanwhile", sys.executable, __file__, BUILD, wheels, folder
@@ -239,7 +239,7 @@ class Environment:
                 build.abandon()
 
     def install_deck(self) -> None:
-        """Install Deck itself, editable, after ROS 2, its libraries and the tools of the tests."""
+        """Install ROS 2, Deck's libraries and the test tools, then Deck itself, editable."""
         locked = LOCKED / "deck.txt"
         Step("Libraries of Deck and ROS 2", *pip(self.python, *REQUIRE, locked)).finish()
         bare = ("install", "--no-deps", "--no-build-isolation", "--editable", ".")
@@ -253,9 +253,9 @@ def pip(python: Path, *words: str | Path) -> tuple[str | Path, ...]:
 
 @contextlib.contextmanager
 def folder_for_cmake() -> Iterator[Path]:
-    """Yield a folder to build in: in this tree, or elsewhere if its path is not for shells.
+    """Yield a folder to build in: in this tree, or elsewhere if its path would need quoting.
 
-    The commands that rosidl writes into makefiles do not quote what stands in a path.
+    The commands that rosidl writes into makefiles do not quote paths.
     """
     inside = WORK / "build-environment"
     if PLAIN.fullmatch(str(inside)):
@@ -270,14 +270,14 @@ def folder_for_cmake() -> Iterator[Path]:
 
 
 def build_interfaces(wheels: Path, folder: Path) -> None:
-    """Build the wheel of the message types, in an environment of what is locked for it."""
+    """Build the wheel of the message types, in an environment with its locked requirements."""
     sources = folder / "interfaces"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(ROOT / "interfaces", sources)
     folder /= "environment"
     python = folder / "bin" / "python"
     environ = os.environ | {"PIP_NO_COMPILE": "1"}
-    # Pythons that a build starts must not load what is half there.
+    # Pythons started by a build must not import half-installed packages.
     environ["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     environ["PATH"] = f"{python.parent}{os.pathsep}{environ.get('PATH', os.defpath)}"
     made = ("wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, sources)
@@ -291,12 +291,12 @@ def build_interfaces(wheels: Path, folder: Path) -> None:
 
 
 def read(path: Path) -> bytes:
-    """Return the contents of a file, or nothing if it is not there."""
+    """Return the contents of a file, empty if it does not exist."""
     return path.read_bytes() if path.is_file() else b""
 
 
 def set_up(environment: Environment) -> None:
-    """Do what is to be done, unless another `make` did it while this one waited."""
+    """Update the environment, unless another `make` did it while this one waited."""
     asked = time.time()
     with only_one():
         if environment.is_sound() and environment.ready.stat().st_mtime > asked:
@@ -310,7 +310,7 @@ def set_up(environment: Environment) -> None:
 
 
 def main(folder: str) -> int:
-    """Set up, and on failure show what the failing command said last."""
+    """Set up; on failure show the last lines of the failing command."""
     try:
         set_up(Environment(Path(folder).absolute()))
     except StepError as failed:
@@ -319,7 +319,7 @@ def main(folder: str) -> int:
     except OSError as error:
         say(f"deck: cannot set up here: {error}")
     except KeyboardInterrupt:
-        say("\ndeck: set-up interrupted; the next `make` begins it anew")
+        say("\ndeck: set-up interrupted; the next `make` starts it again")
     else:
         return 0
     return 1

@@ -1,7 +1,7 @@
-"""Wheels of the message types, kept for the next clone: to build them takes longer than the rest.
+"""A cache of the message types' wheels for the next clone: building them takes longest.
 
-They lie in XDG_CACHE_HOME/deck/interfaces, a folder for each that could differ: by the sources, by
-what builds them, by the Python and by the machine.
+It is in XDG_CACHE_HOME/deck/interfaces, with a folder for every combination of sources, build
+tools, Python and machine.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ SUMS = "SHA256SUMS"
 
 
 class WheelCache:
-    """The wheels of one key, whole or not at all."""
+    """The wheels for one key, complete or not at all."""
 
     def __init__(self, *ingredients: str) -> None:
-        """Look for what `ingredients`, this Python and this machine make."""
+        """Make the key from `ingredients`, this Python and this machine."""
         python = (platform.python_version(), sysconfig.get_config_var("SOABI"))
         machine = (platform.system(), platform.machine(), *platform.libc_ver())
         key = digest_of("\0".join((*ingredients, *map(str, python + machine))).encode())
         self.folder = cache_home() / "deck" / "interfaces" / key
 
     def fetch(self, wheels: Path) -> bool:
-        """Put the kept wheels into a new folder; return False if none can be trusted.
+        """Copy the cached wheels into a new folder; return False if none can be trusted.
 
-        What is damaged, or could have been written by another user, is as if it were not there.
+        Damaged files, and files that another user could have written, are ignored.
         """
         try:
             if not all(map(is_ours_alone, (self.folder.parent, self.folder))):
@@ -51,7 +51,7 @@ class WheelCache:
         return True
 
     def keep(self, wheels: Path) -> None:
-        """Keep these wheels in place of what is there; without a word if that is impossible."""
+        """Cache these wheels, replacing older ones; do nothing if that is impossible."""
         with contextlib.suppress(OSError):
             self.folder.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
             new = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder.parent))
@@ -62,7 +62,7 @@ class WheelCache:
                     (new / wheel.name).write_bytes(content)
                     sums += f"{digest_of(content)}  {wheel.name}\n"
                 (new / SUMS).write_text(sums)
-                # Another clone may have been quicker, and its wheels are as good.
+                # Another clone may have been faster; its wheels are just as good.
                 shutil.rmtree(self.folder, ignore_errors=True)
                 new.rename(self.folder)
             finally:
@@ -72,18 +72,18 @@ class WheelCache:
         descriptor = os.open(self.folder / name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
         with os.fdopen(descriptor, "rb") as file:
             if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-                raise OSError(f"{name} is no file")
+                raise OSError(f"{name} is not a file")
             return file.read()
 
 
 def cache_home() -> Path:
-    """Return the user's folder for what can be made again (XDG Base Directory Specification)."""
+    """Return the user's cache folder (XDG Base Directory Specification)."""
     given = os.environ.get("XDG_CACHE_HOME", "")
     return Path(given) if given.startswith("/") else Path.home() / ".cache"
 
 
 def is_ours_alone(folder: Path) -> bool:
-    """Whether a folder is this user's, and no other may write into it."""
+    """Whether a folder belongs to this user, and nobody else may write to it."""
     found = folder.lstat()
     if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.geteuid():
         return False
@@ -91,5 +91,5 @@ def is_ours_alone(folder: Path) -> bool:
 
 
 def digest_of(content: bytes) -> str:
-    """Return the sum that is kept beside a wheel."""
+    """Return the checksum that is stored beside a wheel."""
     return hashlib.sha256(content).hexdigest()

@@ -11,8 +11,11 @@ from pathlib import Path
 
 from hatchling.builders.wheel import WheelBuilder
 
+from tests.rooms import ROOMS
+
 ROOT = Path(__file__).parents[1]
-ROOMS = ("cli", "graph", "launcher", "nodes", "robot", "text", "tui")
+INSIDE = tuple(room for room in ROOMS if room != "deck")
+"""The rooms in the package `deck`."""
 
 
 def build_wheel(folder: Path) -> Path:
@@ -52,7 +55,7 @@ class Installed:
         (self.site / "libraries.pth").write_text("\n".join(lines))
 
     def _add_foreign_packages(self) -> None:
-        for name in ROOMS:
+        for name in INSIDE:
             (self.site / name).mkdir()
             (self.site / name / "__init__.py").write_text(
                 f"WHOSE = 'somebody else'\nopen({str(self.imported)!r}, 'a').write(__name__)\n"

@@ -1,4 +1,4 @@
-"""Groups that a user of the real robot needs: for serial ports, cameras and sound."""
+"""The groups that a user of the real robot needs: for serial ports, cameras and sound."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ class GroupFacts:
     user: str = ""
     uid: int = 1000
     existing: tuple[str, ...] = NEEDED
-    """Those of NEEDED that this machine knows."""
+    """Those of NEEDED that exist on this machine."""
     mine: tuple[str, ...] = ()
-    """Groups of this process: one joined a moment ago counts only after logging in again."""
+    """Groups of this process: one joined recently only counts after logging in again."""
     written: tuple[str, ...] = ()
-    """Groups of the user as they will be at the next login."""
+    """The user's groups from the next login on."""
 
 
 def look(root: Path = ROOT) -> GroupFacts:
-    """Find out."""
+    """Gather the facts."""
     groups = grp.getgrall()
     try:
         user = pwd.getpwuid(os.getuid()).pw_name
@@ -56,13 +56,13 @@ def look(root: Path = ROOT) -> GroupFacts:
 
 
 def judge(facts: GroupFacts) -> list[Finding]:
-    """Say what is well and what is not; off the robot nobody needs these groups."""
+    """Report what is all right and what is not; only the robot needs these groups."""
     missing = [name for name in facts.existing if name not in facts.mine]
     if facts.uid == 0 or not facts.pi or not missing:
         return [] if not facts.pi else [ok("groups", _("you may use serial ports, camera, sound"))]
     text = _("you are not in: {groups}").format(groups=", ".join(missing))
     if set(missing) <= set(facts.written):
-        return [warn("groups", text, _("log out and in again: it is already set"))]
+        return [warn("groups", text, _("log out and in again: you have already been added"))]
     mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
     mend = mend.format(group=",".join(missing), user=facts.user or "$USER")
     return [warn("groups", text, mend)]

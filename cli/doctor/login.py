@@ -1,4 +1,4 @@
-"""What happens at logging out: logind may clear /dev/shm under nodes that go on running."""
+"""The effect of logging out: logind may clear /dev/shm while nodes are still running."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from cli.doctor.finding import Finding
 
 FIRST_HUMAN_UID = 1000
-"""logind spares the IPC objects of system users."""
+"""logind leaves the IPC objects of system users alone."""
 SETTING = re.compile(r"^\s*RemoveIPC\s*=\s*(\w+)", re.MULTILINE | re.IGNORECASE)
 FOLDERS = ("/usr/lib/systemd", "/run/systemd", "/etc/systemd")
 
@@ -27,16 +27,16 @@ class LoginFacts:
     """Facts about the login session."""
 
     logind: bool = False
-    """Whether systemd-logind runs this machine's logins."""
+    """Whether systemd-logind manages logins on this machine."""
     remove_ipc: bool = True
-    """What it is set to; yes is its default."""
+    """Its setting; the default is yes."""
     lingers: bool = False
-    """Whether this user's things go on after logging out."""
+    """Whether this user's processes and IPC objects survive logging out."""
     uid: int = 1000
 
 
 def look() -> LoginFacts:
-    """Find out."""
+    """Gather the facts."""
     user = os.environ.get("USER", "")
     return LoginFacts(
         logind=Path("/run/systemd/system").is_dir(),
@@ -47,31 +47,34 @@ def look() -> LoginFacts:
 
 
 def judge(facts: LoginFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     key = "login.remove_ipc"
     if not facts.logind:
         return []
     if not facts.remove_ipc or facts.lingers or facts.uid < FIRST_HUMAN_UID:
-        return [ok(key, _("logging out leaves running nodes alone"))]
+        return [ok(key, _("logging out does not affect running nodes"))]
     return [
         warn(
             key,
-            _("RemoveIPC: logging out clears /dev/shm, and `deck up` falls silent"),
+            _(
+                "RemoveIPC: logging out clears /dev/shm, and nodes started by `deck up` lose "
+                "each other"
+            ),
             _("run: loginctl enable-linger, or set RemoveIPC=no in /etc/systemd/logind.conf"),
         )
     ]
 
 
 def before_logout(facts: LoginFacts, environ: Mapping[str, str]) -> list[str]:
-    """Return what whoever leaves something running in this login should know, a line each."""
+    """Return warnings, a line each, for a user who leaves nodes running in this login."""
     if not environ.get("XDG_SESSION_ID"):
-        return []  # No login of logind's: nothing ends here.
+        return []  # Not a login session of logind: it cannot end.
     found = [finding for finding in judge(facts) if finding.level is Level.WARN]
     return [line for finding in found for line in (finding.text, finding.mend)]
 
 
 def setting(texts: Iterable[str]) -> bool:
-    """Return what RemoveIPC is set to by these files; the last one counts."""
+    """Return the value of RemoveIPC in these files; the last one counts."""
     value = "yes"
     for text in texts:
         for match in SETTING.finditer(text):
@@ -80,7 +83,7 @@ def setting(texts: Iterable[str]) -> bool:
 
 
 def _files() -> list[str]:
-    """Return the texts of logind's settings in the order in which they count."""
+    """Return the texts of logind's configuration files in order of precedence, lowest first."""
     paths = [Path(folder, "logind.conf") for folder in reversed(FOLDERS)]
     main = next((path for path in paths if path.is_file()), None)
     parts = {

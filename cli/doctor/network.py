@@ -1,4 +1,4 @@
-"""The ROS domain and who may hear it: what the environment says, and what follows from it."""
+"""The ROS domain and who can reach it, according to the environment."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ VARIABLES = (
 
 @dataclass(frozen=True)
 class NetworkFacts:
-    """The environment that decides who hears whom."""
+    """The environment variables that decide which nodes discover each other."""
 
     environ: Mapping[str, str] = field(default_factory=dict)
     """Those of VARIABLES that are set."""
 
 
 def look() -> NetworkFacts:
-    """Find out."""
+    """Gather the facts."""
     return NetworkFacts({name: os.environ[name] for name in VARIABLES if os.environ.get(name)})
 
 
 def judge(facts: NetworkFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     return [_domain(facts), *_oddities(facts)]
 
 
@@ -48,7 +48,9 @@ def _domain(facts: NetworkFacts) -> Finding:
     except DomainError as error:
         return fail("ros.domain", said(error.args[0]), _("run: unset ROS_DOMAIN_ID"))
     whose = "ROS_DOMAIN_ID" if "ROS_DOMAIN_ID" in facts.environ else _("your own")
-    text = _("domain {domain} ({whose}), heard on this machine only unless a profile says more")
+    text = _(
+        "domain {domain} ({whose}), visible on this machine only unless a profile says otherwise"
+    )
     text = text.format(domain=domain, whose=whose)
     if domain > LAST_SAFE_DOMAIN:
         mend = _("export ROS_DOMAIN_ID={domain}: ports of domains above {safe} may be taken")
@@ -62,17 +64,17 @@ def _oddities(facts: NetworkFacts) -> list[Finding]:
         found.append(
             warn(
                 "ros.localhost_only",
-                _("ROS_LOCALHOST_ONLY=1 is obsolete and goes before ROS_AUTOMATIC_DISCOVERY_RANGE"),
+                _("ROS_LOCALHOST_ONLY=1 is obsolete and overrides ROS_AUTOMATIC_DISCOVERY_RANGE"),
                 _("unset it; Deck does so for its own nodes"),
             )
         )
     for name in ("ROS_DISCOVERY_SERVER", "CYCLONEDDS_URI"):
         if name in facts.environ:
-            text = _("{name}={value} changes who hears whom").format(
+            text = _("{name}={value} changes which nodes see each other").format(
                 name=name, value=facts.environ[name]
             )
             found.append(warn("ros.discovery", text, _("unset it if topics stay empty")))
     open_because = why_open(facts.environ, "localhost")
     if open_because:
-        found.append(warn("ros.open", said(open_because), _("unset it, if you need no other")))
+        found.append(warn("ros.open", said(open_because), _("unset it if you do not need it")))
     return found

@@ -1,4 +1,4 @@
-"""Supply and speed of the computer: low voltage on a Raspberry Pi, and a CPU that saves power."""
+"""Power supply and CPU speed: low voltage on a Raspberry Pi, and power-saving governors."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 ROOT = Path("/")
 LOW, LOW_BEFORE = 1 << 0, 1 << 16
 HOT, HOT_BEFORE = 0b1110, 0b1110 << 16
-"""Bits of `vcgencmd get_throttled`: capped, throttled or at the soft limit of the temperature."""
+"""Bits of `vcgencmd get_throttled`: capped, throttled, or at the soft temperature limit."""
 ASK_WITHIN_S = 3.0
 ADAPTS = ("intel_pstate", "amd-pstate", "amd-pstate-epp")
-"""Drivers whose `powersave` goes up to full speed when there is work."""
+"""Drivers whose `powersave` still goes up to full speed under load."""
 
 
 @dataclass(frozen=True)
@@ -29,17 +29,17 @@ class PowerFacts:
     """Supply and speed as the system reports them."""
 
     pi: str = ""
-    """Model of the Raspberry Pi, empty if it is none."""
+    """Model of the Raspberry Pi, empty on other machines."""
     throttled: int | None = None
-    """Bits of `vcgencmd get_throttled`, None if that cannot be told."""
+    """Bits of `vcgencmd get_throttled`, None if not available."""
     governor: str = ""
-    """Of the CPU's frequency, empty if there is none."""
+    """The governor of the CPU frequency, empty if there is none."""
     driver: str = ""
-    """That the governor works with."""
+    """The frequency driver that the governor works with."""
 
 
 def ask_firmware() -> str:
-    """Return what a Raspberry Pi says of its supply, empty if it cannot be asked."""
+    """Return a Raspberry Pi's report on its supply, empty if it cannot be asked."""
     command = ["vcgencmd", "get_throttled"]
     try:
         done = subprocess.run(
@@ -51,7 +51,7 @@ def ask_firmware() -> str:
 
 
 def look(root: Path = ROOT, ask: Callable[[], str] = ask_firmware) -> PowerFacts:
-    """Find out."""
+    """Gather the facts."""
     model = _text(root / "proc/device-tree/model").strip("\0 \n")
     pi = model if model.startswith("Raspberry Pi") else ""
     cpu = root / "sys/devices/system/cpu/cpu0/cpufreq"
@@ -64,7 +64,7 @@ def look(root: Path = ROOT, ask: Callable[[], str] = ask_firmware) -> PowerFacts
 
 
 def judge(facts: PowerFacts) -> list[Finding]:
-    """Say what is well and what is not; nothing of what there is not."""
+    """Report what is all right and what is not; nothing about parts that do not exist."""
     found = []
     if facts.pi and facts.throttled is not None:
         found += _supply(facts.pi, facts.throttled)
@@ -76,14 +76,16 @@ def judge(facts: PowerFacts) -> list[Finding]:
 def _supply(pi: str, bits: int) -> list[Finding]:
     found = []
     if bits & (LOW | LOW_BEFORE):
-        text = _("low voltage now") if bits & LOW else _("low voltage since the start")
-        mend = _("a supply of 5 V and 5 A with its own cable, away from that of the motors")
+        text = _("low voltage now") if bits & LOW else _("low voltage since power-on")
+        mend = _("use a 5 V, 5 A supply with its own cable, separate from the motors'")
         found.append(warn("power.voltage", f"{pi}: {text}", mend))
     if bits & (HOT | HOT_BEFORE):
-        text = _("slowed down now") if bits & HOT else _("slowed down since the start")
-        mend = _("cool it: a fan, room around it; look again with vcgencmd measure_temp")
+        text = _("slowed down now") if bits & HOT else _("slowed down since power-on")
+        mend = _("cool it: a fan, space around it; check with vcgencmd measure_temp")
         found.append(warn("power.throttled", f"{pi}: {text}", mend))
-    return found or [ok("power.voltage", _("{pi}: supply and temperature are well").format(pi=pi))]
+    return found or [
+        ok("power.voltage", _("{pi}: power supply and temperature are fine").format(pi=pi))
+    ]
 
 
 def _governor(facts: PowerFacts) -> Finding:
@@ -91,12 +93,12 @@ def _governor(facts: PowerFacts) -> Finding:
     if facts.governor != "powersave" or facts.driver in ADAPTS:
         return ok("power.governor", text)
     mend = _("echo ondemand | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor")
-    text = _("{text}: the CPU stays slow, and commands come late").format(text=text)
+    text = _("{text}: the CPU stays slow, and commands arrive late").format(text=text)
     return warn("power.governor", text, mend)
 
 
 def _throttled(answer: str, root: Path) -> int | None:
-    """Return the bits of `throttled=0x50005`; without it what the kernel's own sensor says."""
+    """Return the bits of `throttled=0x50005`; without it, the state of the kernel's own sensor."""
     _name, equals, bits = answer.strip().partition("=")
     try:
         return int(bits, 16) if equals else _sensed(root)

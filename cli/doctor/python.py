@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 FIRST, AFTER_LAST = (3, 10), (3, 14)
 DISTRIBUTION = "deck-robot"
 PACKAGES = ("textual", "pydantic", "PyYAML", "psutil", "numpy", "pyserial", "setproctitle")
-"""Distributions without which the program, or a room of it, does not import."""
+"""Distributions without which the program or one of its packages cannot be imported."""
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,15 @@ class PythonFacts:
     system: str
     """`Linux`."""
     machine: str
-    """`x86_64`, `aarch64`."""
+    """Such as `x86_64` or `aarch64`."""
     installed: Mapping[str, str]
-    """Distribution to version, of PACKAGES those that are installed."""
+    """Distribution to version, for those of PACKAGES that are installed."""
     textual_wanted: str = ""
-    """The version that Deck is pinned to, empty if that is not known."""
+    """The version that Deck requires, empty if it is not known."""
 
 
 def look() -> PythonFacts:
-    """Find out."""
+    """Gather the facts."""
     installed = {}
     for name in PACKAGES:
         version = _version(name)
@@ -56,7 +56,7 @@ def look() -> PythonFacts:
 
 
 def judge(facts: PythonFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     return [_python(facts), _machine(facts), *_packages(facts), _textual(facts)]
 
 
@@ -90,7 +90,7 @@ def _textual(facts: PythonFacts) -> Finding:
         return ok("textual", f"Textual {version}")
     return warn(
         "textual",
-        _("Textual {version}, made for {wanted}").format(
+        _("Textual {version}, but Deck needs {wanted}").format(
             version=version or "-", wanted=facts.textual_wanted
         ),
         f"pip install textual=={facts.textual_wanted}",

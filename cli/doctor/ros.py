@@ -1,4 +1,4 @@
-"""Which ROS 2 is installed and whether it works: tested in its own process, which may crash."""
+"""Which ROS 2 is installed and whether it works: tested in a separate process, as it may crash."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MESSAGES = (
     *("tf2_msgs", "ackermann_msgs", "example_interfaces", "deck_interfaces"),
 )
 ESSENTIAL = {"std_msgs", "sensor_msgs"}
-"""Without them not even the screen can read a topic of the first lessons."""
+"""Without these the screen cannot even read the topics of the first lessons."""
 PROBE_WITHIN_S = 30.0
 PROBE = """
 import json, sys, importlib
@@ -59,23 +59,23 @@ class RosFacts:
     """The ROS found."""
 
     rclpy: str = ""
-    """Path of the module, empty if it is not there."""
+    """Path of the module, empty if it is not installed."""
     rmw: str = ""
     """The middleware in use: `rmw_fastrtps_cpp`."""
     error: str = ""
-    """Why no node could be made, empty if one could."""
+    """Why no node could be created, empty if one could."""
     messages: Mapping[str, str] = field(default_factory=dict)
     """Package to why it cannot be imported, empty if it can."""
     environ: Mapping[str, str] = field(default_factory=dict)
     machine: str = "x86_64"
     wheels: str = ""
-    """Version of the wheel that rclpy came in, empty if it came otherwise."""
+    """Version of the wheel that rclpy came in, empty if it is not from a wheel."""
     rviz2: str = ""
     """Path of the command, empty if it is not installed."""
 
 
 def look() -> RosFacts:
-    """Find out: import rclpy and the messages, and make a node, in a process of its own."""
+    """Gather the facts: import rclpy and the messages, and create a node, in a separate process."""
     found = _probe()
     names = ("ROS_DISTRO", "AMENT_PREFIX_PATH", "CONDA_PREFIX", "RMW_IMPLEMENTATION")
     return RosFacts(
@@ -91,7 +91,7 @@ def look() -> RosFacts:
 
 
 def judge(facts: RosFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     if not facts.rclpy:
         text = _("ROS 2: rclpy cannot be imported ({reason})").format(reason=facts.error)
         return [fail("ros.rclpy", text, how_to_get(facts))]
@@ -99,20 +99,20 @@ def judge(facts: RosFacts) -> list[Finding]:
 
 
 def origin(facts: RosFacts) -> str:
-    """Return where this ROS 2 comes from, in words."""
+    """Describe where this ROS 2 comes from."""
     distro = facts.environ.get("ROS_DISTRO", "")
     if facts.wheels:
         return _("jazzy, wheels from PyPI (rclpy {version})").format(version=facts.wheels)
     if facts.rclpy.startswith("/opt/ros/"):
-        return _("{distro} of the distribution").format(distro=facts.rclpy.split("/")[3])
+        return _("{distro} from the distribution").format(distro=facts.rclpy.split("/")[3])
     conda = facts.environ.get("CONDA_PREFIX", "")
     if conda and facts.rclpy.startswith(conda):
-        return _("{distro} of RoboStack (conda)").format(distro=distro or "jazzy")
+        return _("{distro} from RoboStack (conda)").format(distro=distro or "jazzy")
     return _("{distro}, sourced").format(distro=distro or "?")
 
 
 def how_to_get(facts: RosFacts) -> str:
-    """Return the mend for a missing ROS 2, by machine."""
+    """Return the fix for a missing ROS 2, depending on the machine."""
     if facts.machine == "x86_64":
         return _("run: make setup; or source /opt/ros/jazzy/setup.bash; or use pixi run deck")
     return _("use pixi run deck, or source /opt/ros/jazzy/setup.bash")
@@ -132,9 +132,11 @@ def _node(facts: RosFacts) -> list[Finding]:
         mend = _("try: unset RMW_IMPLEMENTATION, or install that middleware")
         if "RMW_IMPLEMENTATION" not in facts.environ:
             mend = how_to_get(facts)
-        text = _("rclpy is there, but no node can be made: {reason}").format(reason=facts.error)
+        text = _("rclpy is installed, but no node can be created: {reason}").format(
+            reason=facts.error
+        )
         return [fail("ros.rclpy", text, mend)]
-    return [ok("ros.rclpy", _("rclpy makes a node, middleware {rmw}").format(rmw=facts.rmw))]
+    return [ok("ros.rclpy", _("rclpy can create a node, middleware {rmw}").format(rmw=facts.rmw))]
 
 
 def _messages(facts: RosFacts) -> list[Finding]:
@@ -152,7 +154,7 @@ def _messages(facts: RosFacts) -> list[Finding]:
 def _rviz(facts: RosFacts) -> Finding:
     if facts.rviz2:
         return ok("ros.rviz2", f"RViz2 ({facts.rviz2})")
-    return ok("ros.rviz2", _("RViz2 is not installed; lesson 6 goes on without it"))
+    return ok("ros.rviz2", _("RViz2 is not installed; lesson 6 works without it"))
 
 
 def _wheel(rclpy: str) -> str:
@@ -182,6 +184,6 @@ def _probe() -> dict[str, Any]:
         found: dict[str, Any] = json.loads(done.stdout.decode(errors="replace").splitlines()[-1])
     except (ValueError, IndexError):
         words = done.stderr.decode(errors="replace").strip().splitlines()
-        last = words[-1] if words else _("no word")
+        last = words[-1] if words else _("no reason given")
         return {"error": _("exit code {code}: {last}").format(code=done.returncode, last=last)}
     return found

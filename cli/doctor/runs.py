@@ -1,4 +1,4 @@
-"""Deck's own state: its directories, what runs, and what an earlier run left behind."""
+"""Deck's own state: its directories, running sessions, and remains of earlier runs."""
 
 from __future__ import annotations
 
@@ -8,33 +8,34 @@ from typing import TYPE_CHECKING
 
 from cli.doctor.finding import fail, ok, warn
 from launcher.errors import LauncherError
-from launcher.rundir import check_writable, found_run_dir, log_path, run_path
+from launcher.rundir import check_writable, found_run_dir, log_path
 from text.i18n import Prose, _, said
+from text.run_path import run_path
 
 if TYPE_CHECKING:
     from cli.doctor.finding import Finding
 
 LEAST_FREE = 200 * 10**6
-"""Bytes for logs, which are rotated but not without limit."""
+"""Bytes to keep free for logs; these are rotated but may still grow to a limit."""
 
 
 @dataclass(frozen=True)
 class RunFacts:
-    """Deck's directories and processes found."""
+    """The state of Deck's directories and processes."""
 
     run_dir: str = ""
     log_dir: str = ""
     free: int = 10**10
-    """Bytes where the logs are."""
+    """Free bytes on the file system of the logs."""
     error: str = ""
     """Why a directory cannot be used."""
     running: tuple[str, ...] = ()
     strays: tuple[tuple[int, str], ...] = ()
-    """Process and node."""
+    """Process number and node."""
 
 
 def look() -> RunFacts:
-    """Find out."""
+    """Gather the facts."""
     from launcher.client.client import running
     from launcher.runs.strays import find_strays
 
@@ -55,7 +56,7 @@ def look() -> RunFacts:
 
 
 def judge(facts: RunFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     if facts.error:
         return [fail("folders", facts.error, _("set DECK_RUN_DIR and DECK_LOG_DIR"))]
     return [_folders(facts), _running(facts), *_strays(facts)]
@@ -72,7 +73,7 @@ def _folders(facts: RunFacts) -> Finding:
 
 def _running(facts: RunFacts) -> Finding:
     if not facts.running:
-        return ok("running", _("no profile runs"))
+        return ok("running", _("no profile is running"))
     return ok("running", _("running: {names}").format(names=", ".join(facts.running)))
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Access(NamedTuple):
-    """One port, and who may open it."""
+    """One port and its permissions."""
 
     port: SerialPort
     group: str = ""
@@ -32,12 +32,12 @@ class SerialFacts:
     ports: tuple[Access, ...] = ()
     user: str = ""
     groups: tuple[str, ...] = ()
-    """Of this process: a group joined a moment ago counts only after logging in again."""
+    """Groups of this process: one joined recently only counts after logging in again."""
     error: str = ""
 
 
 def look() -> SerialFacts:
-    """Find out; ports of the motherboard without anything behind them are left out."""
+    """Gather the facts; leave out ports of the motherboard without a device behind them."""
     try:
         found = serial_ports()
     except ImportError as error:
@@ -50,7 +50,7 @@ def look() -> SerialFacts:
 
 
 def judge(facts: SerialFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     if facts.error:
         return [warn("serial", facts.error, "pip install pyserial")]
     if not facts.ports:
@@ -59,7 +59,7 @@ def judge(facts: SerialFacts) -> list[Finding]:
 
 
 def permission_mend(device: str) -> str:
-    """Return how this user comes to be allowed to open a device."""
+    """Return how this user can get permission to open a device."""
     groups = tuple(map(_name, os.getgroups()))
     return _mend(_group_of(device), os.environ.get("USER", ""), groups)
 
@@ -67,7 +67,7 @@ def permission_mend(device: str) -> str:
 def _mend(group: str, user: str, groups: tuple[str, ...]) -> str:
     user, group = user or "$USER", group or "dialout"
     if group in groups:
-        mend = _("the group {group} is yours, but the port forbids it: look at its udev rule")
+        mend = _("you are in group {group}, but the port denies access: check its udev rule")
         return mend.format(group=group)
     mend = _("run: sudo usermod -aG {group} {user}, then log out and in again")
     return mend.format(group=group, user=user)

@@ -1,4 +1,4 @@
-"""/dev/shm, through which nodes of one machine talk: its free space, and what dead nodes left."""
+"""/dev/shm, which nodes on one machine communicate through: free space, remains of dead nodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from cli.doctor.finding import Finding
 
 LEAST_FREE = 64 * 2**20
-"""Bytes; Fast DDS takes half a megabyte for each node and more for pictures."""
+"""Least free bytes; Fast DDS takes half a megabyte for each node, and more for pictures."""
 DELETE_MINE = "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -delete"
 
 
@@ -28,16 +28,16 @@ class SharedMemoryFacts:
     free: int = 2**30
     """Bytes."""
     stale: int = 0
-    """Segments of Fast DDS that are this user's and that no process has mapped."""
+    """Fast DDS segments that belong to this user and that no process has mapped."""
     stale_bytes: int = 0
     unfinished: tuple[str, ...] = ()
-    """Paths of files that hold up every node, see `launcher.processes.shared_memory_unfinished`."""
+    """Paths of files that make nodes hang, see `launcher.processes.shared_memory_unfinished`."""
     foreign: tuple[str, ...] = ()
-    """Those of them that are another user's."""
+    """Those of them that belong to another user."""
 
 
 def look() -> SharedMemoryFacts:
-    """Find out."""
+    """Gather the facts."""
     if not SHARED_MEMORY.is_dir():
         return SharedMemoryFacts(exists=False, free=0)
     status = os.statvfs(SHARED_MEMORY)
@@ -55,14 +55,14 @@ def look() -> SharedMemoryFacts:
 
 
 def judge(facts: SharedMemoryFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     if not facts.exists:
         text = _("there is no /dev/shm: nodes talk through the network stack, which is slower")
         return [warn("shm", text, _("mount it; in a container: --ipc=host"))]
     found = [_room(facts)]
     if facts.unfinished:
         text = _half_made(facts.unfinished)
-        mend = _("Deck removes it with the next start; or: rm {paths}")
+        mend = _("Deck removes it at the next start; or: rm {paths}")
         paths = " ".join(facts.unfinished)
         found.append(warn("shm.unfinished", text, mend.format(paths=paths)))
     if facts.foreign:
@@ -70,13 +70,13 @@ def judge(facts: SharedMemoryFacts) -> list[Finding]:
         found.append(fail("shm.foreign", _half_made(facts.foreign), f"sudo rm {paths}"))
     if facts.stale:
         words = ngettext(
-            "{count} segment in /dev/shm that nobody holds ({size:.0f} MB)",
-            "{count} segments in /dev/shm that nobody holds ({size:.0f} MB)",
+            "{count} unused segment in /dev/shm ({size:.0f} MB)",
+            "{count} unused segments in /dev/shm ({size:.0f} MB)",
             facts.stale,
         )
         text = words.format(count=facts.stale, size=facts.stale_bytes / 1e6)
-        # By name alone it would be other users' as well.
-        mend = _("with no ROS node of yours running: {command}").format(command=DELETE_MINE)
+        # Selecting by name alone would include files of other users.
+        mend = _("while none of your ROS nodes is running: {command}").format(command=DELETE_MINE)
         found.append(warn("shm.stale", text, mend))
     return found
 
@@ -89,13 +89,13 @@ def _half_made(paths: tuple[str, ...]) -> str:
 def _room(facts: SharedMemoryFacts) -> Finding:
     text = _("/dev/shm has {size:.0f} MB free").format(size=facts.free / 1e6)
     if facts.free < LEAST_FREE:
-        mend = _("free some, or enlarge it; in a container: --shm-size=256m")
+        mend = _("free some space, or enlarge it; in a container: --shm-size=256m")
         return warn("shm", text, mend)
     return ok("shm", text)
 
 
 def _mapped() -> set[str]:
-    """Return the segments that processes have mapped, as far as one may look."""
+    """Return the segments that processes have mapped, as far as they may be inspected."""
     held: set[str] = set()
     for maps in Path("/proc").glob("[0-9]*/maps"):
         try:

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
     from cli.doctor.finding import Finding
 
-LEAST, HOME = (80, 24), (120, 40)
+LEAST = (80, 24)
 VARIABLES = ("TERM", "COLORTERM", "NO_COLOR", "SSH_CONNECTION", "TMUX", "TERM_PROGRAM", "LANG")
 TRUECOLOR_TERMS = ("-direct", "-truecolor", "kitty", "alacritty", "wezterm", "ghostty", "foot")
-"""In the names of terminals that can show 16 million colours, whether Rich knows it or not."""
+"""Words in the names of terminals that can show 16 million colours, even if Rich does not know."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class TerminalFacts:
 
 
 def look() -> TerminalFacts:
-    """Find out."""
+    """Gather the facts."""
     size = shutil.get_terminal_size(fallback=(0, 0))
     return TerminalFacts(
         is_terminal=sys.stdin.isatty() and sys.stdout.isatty(),
@@ -48,7 +48,7 @@ def look() -> TerminalFacts:
 
 
 def judge(facts: TerminalFacts) -> list[Finding]:
-    """Say what is well and what is not."""
+    """Report what is all right and what is not."""
     found = [_encoding(facts)]
     if not facts.is_terminal:
         return [ok("terminal", _("no terminal here: `deck run` works without one")), *found]
@@ -88,11 +88,11 @@ def _colour(facts: TerminalFacts) -> Finding:
         return warn("terminal.colour", _("256 colours: pictures look coarse"), mend)
     if not any(word in term for word in TRUECOLOR_TERMS):
         mend = _("if the terminal can, export TERM=xterm-256color")
-    return warn("terminal.colour", _("16 colours or fewer: hues come close"), mend)
+    return warn("terminal.colour", _("16 colours or fewer: hues are hard to tell apart"), mend)
 
 
 def _drawn_with(env: Mapping[str, str]) -> str | None:
-    """Return what the screen will be drawn with; Rich decides it, whatever the terminal can."""
+    """Return the colours that the screen will use; Rich decides, whatever the terminal supports."""
     from rich.console import Console
 
     return Console(force_terminal=True, _environ=env).color_system

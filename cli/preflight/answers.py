@@ -1,7 +1,7 @@
-"""Whether the device at a port is the expected one: by listening, and harmless questions.
+"""Whether the expected device is at a port: found out by listening and harmless requests.
 
-A sonar is only listened to; the Pico is greeted, which moves nothing and stops what moves; the
-servo board is asked for its battery. No drive line and no move is ever sent.
+A sonar is only listened to. The Pico gets a greeting, which moves nothing and stops any motion. The
+servo board is asked for its battery voltage. No drive or move command is ever sent.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
     from cli.preflight.open_port import OpenPort
 
 NAMES = {"pico": "Pico", "tf_luna": "TF-Luna", "tfmini_s": "TFmini-S", "lsc16": "LSC-16"}
-"""Kind of device to what it is called."""
+"""Kind of device to its display name."""
 LISTEN_S, ANSWER_S = 0.4, 1.0
 GREETINGS = 10
-"""In that time, for one may be lost: on a noisy line every other one is."""
+"""How many are sent in that time, as they may be lost: on a noisy line every other one is."""
 MEASURE_S = 0.5
 ENOUGH_FRAMES = 3
-"""Of a sonar that is looked for elsewhere: fewer may be chance."""
+"""Readings needed to recognise a sonar at an unexpected port: fewer may be chance."""
 
 
 class DeviceAnswer(NamedTuple):
-    """The result of asking a device."""
+    """The result of checking a device."""
 
     level: Level
     text: str
@@ -42,18 +42,18 @@ class DeviceAnswer(NamedTuple):
 
 
 def ask(kind: str, line: OpenPort) -> DeviceAnswer:
-    """Ask the device at a port; raises OSError if it goes meanwhile."""
+    """Check the device at a port; raises OSError if it disappears meanwhile."""
     if kind == "pico":
         return _pico(line)
     if kind == "lsc16":
         return _servos(line)
     if kind in ("tf_luna", "tfmini_s"):
         return _sonar(kind, line)
-    return DeviceAnswer(Level.OK, _("it can be opened; what it should say is not known"))
+    return DeviceAnswer(Level.OK, _("it can be opened; how it should answer is not known"))
 
 
 def recognised(heard: bytes) -> str:
-    """Return the name of the device that talks like this, empty if none is known to."""
+    """Return the name of the device that sends such data, empty if unknown."""
     if PicoDecoder().feed(heard):
         return NAMES["pico"]
     if len(TofDecoder().feed(heard)) >= ENOUGH_FRAMES:
@@ -79,12 +79,12 @@ def _pico(line: OpenPort) -> DeviceAnswer:
     telemetry = next((one for one in reversed(told) if isinstance(one, Telemetry)), None)
     if welcome is None and telemetry is None:
         return _python_prompt(heard) or _nothing("pico", heard, line.baud)
-    # One may have been cut by the opening of the port.
+    # One line may have been cut when the port was opened.
     garbled = decoder.errors > 1
     if welcome is None and garbled:
         return DeviceAnswer(Level.FAIL, _("some lines arrive garbled"), _better_cable())
     if welcome is None:
-        text = _("telemetry comes, but no answer: what is sent does not arrive")
+        text = _("telemetry arrives, but no answer: what is sent gets lost")
         return DeviceAnswer(
             Level.FAIL, text, _("check the cable; unplug the Pico and plug it in again")
         )
@@ -96,7 +96,7 @@ def _pico(line: OpenPort) -> DeviceAnswer:
 
 
 def _greet(line: OpenPort, answered: Callable[[bytes], bool]) -> bytes:
-    """Say hello until that is answered, then hear for a while how well lines come."""
+    """Send the greeting until it is answered, then listen for a while for garbled lines."""
     heard = b""
     for _greeting in range(GREETINGS):
         line.say(encode_pico(Hello(0)))
@@ -115,9 +115,9 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) 
             _("the emergency stop is held"),
             _("start the robot and press Ctrl+R"),
         ),
-        "L": (_("the left motor driver reports a fault"), _("check its wiring and its supply")),
-        "R": (_("the right motor driver reports a fault"), _("check its wiring and its supply")),
-        "U": (_("the battery is low"), _("charge it, and switch on the motors' supply")),
+        "L": (_("the left motor driver reports a fault"), _("check its wiring and power supply")),
+        "R": (_("the right motor driver reports a fault"), _("check its wiring and power supply")),
+        "U": (_("the battery is low"), _("charge it, and switch on the motors' power supply")),
     }
     flags = telemetry.flags if telemetry is not None else frozenset()
     found = [trouble for flag, trouble in troubles.items() if flag in flags]
@@ -170,7 +170,7 @@ def _far(metres: float) -> str:
 
 
 def _better_cable() -> str:
-    return _("check the cable: keep it short, away from the motors', with a common ground")
+    return _("check the cable: short, away from those of the motors, with a common ground")
 
 
 def _servos(line: OpenPort) -> DeviceAnswer:
@@ -194,28 +194,28 @@ def _servos(line: OpenPort) -> DeviceAnswer:
 
 
 def _another(kind: str, heard: bytes) -> DeviceAnswer:
-    text = _("{found} is talking here, not the {wanted}")
+    text = _("{found} answers here, not the {wanted}")
     return DeviceAnswer(
         Level.FAIL,
         text.format(found=recognised(heard), wanted=NAMES[kind]),
-        _("give each device its own port; ls -l /dev/serial/by-id tells which is which"),
+        _("give each device its own port; ls -l /dev/serial/by-id shows which is which"),
     )
 
 
 def _nothing(kind: str, heard: bytes, baud: int) -> DeviceAnswer:
-    """Say that nothing of use came: garbage, or not a byte."""
+    """Report that nothing useful was received: garbage, or not a single byte."""
     name = NAMES[kind]
     if heard:
-        text = _("{count} bytes came, none of which a {name} sends").format(
+        text = _("{count} bytes arrived, but no {name} sends such data").format(
             count=len(heard), name=name
         )
         mend = _("wrong baud (this is {baud}), another device, or a bad cable")
         return DeviceAnswer(Level.FAIL, text, mend.format(baud=baud))
     mends = {
         "pico": _("flash firmware/pico2 (docs/pico-firmware.md), or try another cable"),
-        "lsc16": _("switch the board on; cross TX and RX, join the grounds; baud 9600"),
+        "lsc16": _("switch the board on; cross TX and RX, connect the grounds; baud 9600"),
     }
-    sonar = _("check its supply (5 V), its wiring and its mode: serial, not I2C; baud 115200")
+    sonar = _("check its power supply (5 V), wiring and mode: serial, not I2C; baud 115200")
     return DeviceAnswer(
         Level.FAIL, _("the port is silent: no {name}").format(name=name), mends.get(kind, sonar)
     )

@@ -1,4 +1,4 @@
-"""`deck check PROFILE --hardware real --preflight`: one line per device, and the fix."""
+"""`deck check PROFILE --hardware real --preflight`: one line per device, with the fix."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ NOT_READY = 2
 
 
 def preflight_command(options: Namespace) -> int:
-    """Ask every device of a profile; 2 if one of them is not as it should be.
+    """Check every device of a profile; return 2 if one of them is not ready.
 
     Raises:
-        UsageError: without a profile, or on mock hardware, which has no devices before it runs.
+        UsageError: without a profile, or with mock hardware, whose devices exist only while it
+            runs.
     """
     if not options.profile:
         raise UsageError(say("--preflight needs a profile: deck check robot --preflight"))
     if options.hardware != "real":
-        raise UsageError(say("--preflight asks real devices: add --hardware real"))
+        raise UsageError(say("--preflight checks real devices: add --hardware real"))
     profile = load_profile(
         find_profile(options.profile),
         hardware=options.hardware,
@@ -46,7 +47,7 @@ def preflight_command(options: Namespace) -> int:
         write(json_text([asdict(finding) for finding in findings], indent=2))
         return NOT_READY if bad else 0
     if not findings:
-        write(_("{name} names no device").format(name=plain(profile.name)))
+        write(_("{name} has no devices").format(name=plain(profile.name)))
         return 0
     show(findings, Paint(sys.stdout))
     if not bad:

@@ -1,7 +1,7 @@
-"""Camera and sound of the real robot, asked in processes of their own: drivers hang and crash.
+"""Checking camera and sound of the real robot, in separate processes: drivers hang and crash.
 
-A camera is asked for one picture; of sound only the devices' names are looked for, and nothing is
-recorded or played.
+A camera has to deliver one picture; for sound only the names of the devices are checked, and
+nothing is recorded or played.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 WITHIN_S = 12.0
 OFF = "none"
-"""What the sound node takes for no device."""
+"""The value that means "no device" to the sound node."""
 PICTURE = """
 import sys, cv2
 name = sys.argv[1]
@@ -43,7 +43,7 @@ print(json.dumps([[d["name"], d["max_input_channels"], d["max_output_channels"]]
 
 
 def ask_camera(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnswer]:
-    """Ask a camera for a picture; its name goes before the answer."""
+    """Get a picture from a camera; return its name and the result."""
     source = str(settings.get("source", "0"))
     name = f"/dev/video{int(source)}" if source.isdecimal() else source
     if "://" in name:
@@ -72,7 +72,7 @@ def _picture(name: str) -> DeviceAnswer:
     mend = _("is it a video, and does it answer?")
     if name.startswith("/dev/"):
         mend = _("it may be another device of the same camera: v4l2-ctl --list-devices")
-    return DeviceAnswer(Level.FAIL, _("it gives no picture"), mend)
+    return DeviceAnswer(Level.FAIL, _("it delivers no picture"), mend)
 
 
 def ask_sound(device: str, settings: Mapping[str, Any]) -> tuple[str, DeviceAnswer]:
@@ -111,7 +111,7 @@ def _no_sound(
     text = _("not found: {missing}; sound devices: {names}").format(
         missing=", ".join(wishes), names=", ".join(there) or _("none")
     )
-    mend = _("plug it in, or give a part of its name to {variables}; `none` goes without")
+    mend = _("plug it in, or set {variables} to a part of its name; `none` works without")
     variables = ", ".join(variable(device, setting) for setting, _name in missing)
     return DeviceAnswer(Level.FAIL, text, mend.format(variables=variables))
 

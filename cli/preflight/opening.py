@@ -15,6 +15,7 @@ from cli.preflight.open_port import OpenPort
 from launcher.profile.serial_choice import how_to_choose
 from launcher.serial_ports import lasting_names
 from text.i18n import _, said
+from text.sentences import reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,7 +35,7 @@ def opened(
     ports: Sequence[SerialPort],
     opening: Callable[[str, int], OpenPort] = OpenPort,
 ) -> OpenPort | DeviceAnswer:
-    """Return the open port of a device, or why there is none; `ports`: what there is instead."""
+    """Return the open port of a device, or why not; `ports` lists those that exist."""
     if not os.path.lexists(path):
         return _missing(device, path, ports)
     try:
@@ -49,7 +50,7 @@ def opened(
 
 
 def advice(path: str) -> str:
-    """Return the name to write in place of one that changes from plugging to plugging, if any."""
+    """Return the permanent name to use instead of one that may change, if there is one."""
     if path.startswith("/dev/tty"):
         return lasting_names().get(os.path.realpath(path), "")
     return ""
@@ -67,14 +68,14 @@ def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPor
         return DeviceAnswer(
             Level.FAIL, _("it is not a serial port"), str(said(how_to_choose(device)))
         )
-    words = str(error).splitlines()[0] if str(error) else type(error).__name__
+    words = reason_of(error).splitlines()[0]
     mend = _("unplug the device, plug it in again, and look at: dmesg | tail")
     return DeviceAnswer(Level.FAIL, _("cannot be opened: {reason}").format(reason=words), mend)
 
 
 def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswer:
     dangling = os.path.islink(path)  # noqa: PTH114 - a device, not a file
-    text = _("it has gone, only its name is left") if dangling else _("there is no such port")
+    text = _("it is gone, only its name is left") if dangling else _("there is no such port")
     there = "; ".join(map(str, ports)) or _("none")
     text = _("{text}; ports: {ports}").format(text=text, ports=there)
     mend = _("plug it in, try another cable; or {choose}")
@@ -83,7 +84,7 @@ def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswe
 
 def _taken(path: str, others: Sequence[Holder]) -> DeviceAnswer:
     if not others:
-        mend = _("close that program; sudo fuser -v {path} tells which it is").format(path=path)
+        mend = _("close that program; sudo fuser -v {path} shows which it is").format(path=path)
         return DeviceAnswer(Level.FAIL, _("another program is using it"), mend)
     names = ", ".join(map(str, others))
     mend = _("close it; if it is a running robot: deck down")

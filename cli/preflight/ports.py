@@ -1,4 +1,4 @@
-"""The serial devices of a profile: which port each has, and what it says there."""
+"""Checking the serial devices of a profile: the port of each, and its answer there."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BAUD = 115_200
 def ask_ports(
     devices: Mapping[str, Mapping[str, Any]], look: Callable[[], Sequence[SerialPort]]
 ) -> dict[str, Callable[[], tuple[str, DeviceAnswer]]]:
-    """Return, for each device with a port, how to ask it: the port's name and the answer."""
+    """Return, for each device with a port, a function that checks it: port name and answer."""
     serial = wanted(devices)
     if not serial:
         return {}
@@ -68,7 +68,7 @@ def _one(
     ]
     if twins:
         text = _("the same port as {others}").format(others=", ".join(twins))
-        mend = _("give each device its own port; ls -l /dev/serial/by-id tells which is which")
+        mend = _("give each device its own port; ls -l /dev/serial/by-id shows which is which")
         return DeviceAnswer(Level.FAIL, text, mend)
     baud = settings.get("baud", BAUD)
     line = opened(device, path, baud if isinstance(baud, int) else BAUD, ports)
@@ -78,9 +78,9 @@ def _one(
         try:
             answer = ask(str(settings.get("kind", "")), line)
         except OSError as error:
-            mend = _("check the cable and the supply")
+            mend = _("check the cable and the power supply")
             return DeviceAnswer(
-                Level.FAIL, _("it disappeared while being asked: {error}").format(error=error), mend
+                Level.FAIL, _("it disappeared during the check: {error}").format(error=error), mend
             )
     lasting = advice(path)
     if answer.level is Level.OK and lasting:

@@ -1,4 +1,4 @@
-"""Where pictures come from: a camera by number or device, a video file, or a stream by its URL."""
+"""Sources of pictures: a camera by number or device, a video file, or a stream by its URL."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _NO_PICTURES = N_(
 _NO_FILE = N_("no such file")
 _NOT_READABLE = N_("no permission to read it (chmod +r {source})")
 _NO_VIDEO = N_("OpenCV finds no video in it; is it whole?")
-_NO_ANSWER = N_("nobody answers there, or what comes is not video")
+_NO_ANSWER = N_("nothing answers there, or it is not video")
 
 
 class SourceKind(Enum):
-    """What a source is."""
+    """The kind of a source."""
 
     DEVICE = "device"
     FILE = "file"
@@ -41,32 +41,32 @@ class SourceKind(Enum):
 
 @dataclass(frozen=True)
 class CameraSource:
-    """A source as a person names it."""
+    """A source as the user names it."""
 
     name: str
 
     @property
     def kind(self) -> SourceKind:
-        """Told by its name alone."""
+        """Judged by the name alone."""
         if self.name.isdecimal() or self.name.startswith("/dev/"):
             return SourceKind.DEVICE
         return SourceKind.STREAM if "://" in self.name else SourceKind.FILE
 
     @property
     def path(self) -> Path:
-        """Of a device or a file."""
+        """Path of a device or a file."""
         if self.name.isdecimal():
             return Path(f"/dev/video{int(self.name)}")
         return Path(self.name).expanduser()
 
     def __str__(self) -> str:
-        """To be shown: without the password of a URL."""
+        """Return it for display: without the password of a URL."""
         if self.kind is SourceKind.STREAM:
             return re.sub(r"(://[^/@\s:]*):[^/@\s]*@", r"\1:***@", self.name)
         return str(self.path)
 
     def open(self, width: int, height: int) -> cv2.VideoCapture | None:
-        """Open it, None if that fails. A device is asked for a size. Takes seconds at times."""
+        """Open it, None if that fails. A device is asked for a size. May take seconds."""
         capture = self._open()
         if not capture.isOpened():
             capture.release()
@@ -79,7 +79,7 @@ class CameraSource:
         return capture
 
     def why_not(self) -> str:
-        """Why it does not open, or gives no picture, and the mend; for `source` and `others`."""
+        """Return why it fails to open or to deliver, and the fix; uses `source` and `others`."""
         if self.kind is SourceKind.STREAM:
             return _NO_ANSWER
         there = self.path.exists()
@@ -106,21 +106,21 @@ class CameraSource:
 
 
 def cameras() -> list[str]:
-    """The video devices of this machine, in order of their numbers."""
+    """Return the video devices of this machine, sorted by number."""
     found = [path for path in Path("/dev").glob("video*") if path.name[5:].isdecimal()]
     return [str(path) for path in sorted(found, key=lambda path: int(path.name[5:]))]
 
 
 @dataclass(frozen=True)
 class SourceSetting(Text):
-    """A text that may also be the number of a camera."""
+    """A text parameter that may also be the number of a camera."""
 
     def accept(self, value: object) -> str:
-        """A str; a number that was given without quotes becomes one."""
+        """Return a str; a number given without quotes becomes one."""
         if isinstance(value, int) and not isinstance(value, bool) and value >= 0:
             return str(value)
         return super().accept(value)
 
     def expected(self) -> str:
-        """What it takes."""
+        """Say what is accepted."""
         return N_("number, /dev path, file or URL")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 STARTED = N_("The chassis at {port} obeys {topic}")
 COMMAND_OLD = N_("No wheel command for {seconds:g} s: stop")
-TOO_FAST = N_("A wheel is asked for {speed:.1f} rad/s of {fastest:g}: both are slowed")
+TOO_FAST = N_("A wheel should turn at {speed:.1f} rad/s, the limit is {fastest:g}: both are slowed")
 EMERGENCY = N_("EMERGENCY STOP: the wheels stand until it is released")
 RELEASED = N_("The emergency stop is released; waiting for a new command")
 _REFUSED_BY_PICO = N_(
@@ -39,19 +39,19 @@ _FLAGS = {
     "A": N_("waiting for a stop"),
 }
 _BAD = frozenset("LRUH")
-"""Flags of what is not in order."""
+"""Flags that indicate a fault."""
 _SAY_EVERY_S = 10.0
 
 
 def reasons(say: Speech, flags: Iterable[str]) -> str:
-    """Why the wheels stand, in words."""
+    """Return why the wheels stand, in words."""
     return ", ".join(say.text(phrase) for flag, phrase in _FLAGS.items() if flag in flags)
 
 
 class Standing:
     """Logs why the wheels stand still: at once, and again for those who look later.
 
-    And what the Pico refuses, which makes them stand for a moment.
+    Also logs lines that the Pico refuses, which makes them stand for a moment.
     """
 
     def __init__(self, say: Speech) -> None:
@@ -60,7 +60,7 @@ class Standing:
         self._refused: int | None = None
 
     def tell(self, telemetry: Telemetry | None) -> None:
-        """Take the newest of the Pico, as often as it pleases; None if there is none."""
+        """Report the Pico's newest telemetry, None without any; call this at any rate."""
         flags = telemetry.flags & _BAD if telemetry is not None else frozenset()
         if flags:
             every_s = 0.0 if flags - self._flags else _SAY_EVERY_S
@@ -69,7 +69,7 @@ class Standing:
         self._tell_refused(None if telemetry is None else telemetry.refused)
 
     def _tell_refused(self, count: int | None) -> None:
-        """Take how many lines the Pico has refused since its start, None if that is not known."""
+        """Report how many lines the Pico has refused since its start, None if unknown."""
         before = self._refused
         if (
             count is None
@@ -90,7 +90,7 @@ def diagnosis(
     emergency: bool,
     refused: Refusal | None,
 ) -> DiagnosticStatus:
-    """Add to the state of the port how the Pico is, for programs and for people."""
+    """Add the state of the Pico to that of the port, for programs and for people."""
     telemetry = pico.telemetry
     status.values.append(KeyValue(key="emergency_stop", value=str(emergency).lower()))
     status.values.append(KeyValue(key="refused", value=refused.told if refused else ""))

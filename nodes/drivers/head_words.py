@@ -1,4 +1,4 @@
-"""What the head says, and which parameters its servos have."""
+"""The messages of the head, and the parameters of its servos."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 STARTED = N_("The head is ready for {service}")
 STARTED_AT_PORT = N_(
-    "The head at {port}: {service}; /head_state is what was commanded, for servos do not tell"
-    " where they are"
+    "The head at {port}: {service}; /head_state is the commanded position, as servos do not"
+    " report theirs"
 )
 TURNING = N_("Turning the head to pan {pan}°, tilt {tilt}°")
 DONE = N_("The head is there: pan {pan}°, tilt {tilt}°")
@@ -41,15 +41,15 @@ DESCRIPTIONS = (
     N_("Where the pan servo is plugged in"),
     N_("Least pan"),
     N_("Most pan"),
-    N_("What the pan servo turns for the head to look straight"),
+    N_("Angle of the pan servo at which the head looks straight ahead"),
     N_("Whether a longer pulse turns the head right"),
     N_("Where the tilt servo is plugged in"),
     N_("Least tilt"),
     N_("Most tilt"),
-    N_("What the tilt servo turns for the head to look straight"),
+    N_("Angle of the tilt servo at which the head looks straight ahead"),
     N_("Whether a longer pulse turns the head down"),
 )
-"""What is made below, marked for the catalogue."""
+"""Texts made below, marked for the catalogue."""
 
 
 def _joint_settings(joint: str, servo: int, way: str) -> tuple[Setting, ...]:
@@ -68,7 +68,7 @@ def _joint_settings(joint: str, servo: int, way: str) -> tuple[Setting, ...]:
         Number(
             f"{joint}_trim",
             0.0,
-            f"What the {joint} servo turns for the head to look straight",
+            f"Angle of the {joint} servo at which the head looks straight ahead",
             low=-45.0,
             high=45.0,
             unit="deg",
@@ -103,7 +103,7 @@ SERVO_SETTINGS: tuple[Setting, ...] = (
     Number(
         "battery_every_s",
         1.0,
-        "Asks for the voltage, which proves that there is a controller; 0: never",
+        "How often to ask for the voltage, to check the controller; 0: never",
         fixed=True,
         low=0.0,
         high=60.0,
@@ -114,7 +114,7 @@ SERVO_SETTINGS: tuple[Setting, ...] = (
 
 
 def joint(values: Mapping[str, Value], name: str) -> HeadJoint:
-    """The joint that the parameters describe; `name` is pan or tilt."""
+    """Return the joint that the parameters describe; `name` is pan or tilt."""
     return HeadJoint(
         servo=int(values[f"{name}_servo"]),
         limits=Limits(float(values[f"{name}_min"]), float(values[f"{name}_max"]), "deg"),
@@ -125,7 +125,7 @@ def joint(values: Mapping[str, Value], name: str) -> HeadJoint:
 
 
 def contradiction(values: Mapping[str, Value]) -> str | None:
-    """What is wrong with these parameters taken together."""
+    """Return what is wrong with this combination of parameters."""
     if values["pan_servo"] == values["tilt_servo"]:
         return SAME_SERVO
     for name, phrase in _NO_ROOM.items():

@@ -1,7 +1,7 @@
-"""A serial port that comes and goes: a thread of its own reads it, and reopens it when lost.
+"""A serial port that comes and goes: its own thread reads it, and reopens it when lost.
 
-Only one program at a time gets a port (an advisory lock, which pyserial and we respect). The
-callbacks run on the reader's thread. What goes over it is told on `~/frames` to whoever listens.
+Only one program at a time gets a port (an advisory lock, which pyserial also respects). The
+callbacks run on the reader's thread. The traffic is published on `~/frames` to subscribers.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from nodes.drivers.serial_frames import SerialFrames
 from nodes.drivers.serial_reads import SerialReads
 from robot.frames.protocols import RawReader
 from text.i18n import N_
+from text.sentences import reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from robot.frames.protocols import FrameReader
 
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
-"""What pyserial raises when a cable is pulled; TypeError is how it sees its port closed."""
+"""Errors of pyserial when a cable is pulled; it raises TypeError if its port is closed."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.1, 1.0
 _WRITE_S = 0.1
 _SAY_EVERY_S = 10.0
@@ -75,7 +76,7 @@ class SerialLink:
     ) -> None:
         """The port is the node's parameter `port`.
 
-        `frames` makes what reads the frames of this device, for people, and speaks a language.
+        `frames` creates a reader that puts this device's frames into words of a language.
         """
         self._say, self.port, self.baud = node.say, node.text("port"), baud
         self._heard, self._opened, self._lost = heard, opened, lost
@@ -95,7 +96,7 @@ class SerialLink:
         return self._serial is not None
 
     def start(self) -> None:
-        """Begin to open the port, and to read it."""
+        """Start opening and reading the port."""
         self._thread.start()
 
     def close(self) -> None:
@@ -105,24 +106,24 @@ class SerialLink:
             self._thread.join(0.4)
 
     def write(self, data: bytes) -> bool:
-        """Send, False if that is not possible now. From any thread."""
+        """Send; return False if that is not possible now. From any thread."""
         with self._writes:
             if self._serial is None:
                 return False
             try:
                 self._serial.write(data)
             except BAD as error:
-                # The reader finds out by itself, and opens the port anew.
-                self._problem = _words(error)
+                # The reader notices by itself, and reopens the port.
+                self._problem = reason_of(error).splitlines()[0]
                 return False
             self.traffic.octets_out += len(data)
             self._frames.note("out", data)
             return True
 
     def status(self, name: str, errors: int, frames: int = 0) -> DiagnosticStatus:
-        """For /diagnostics: to what it is connected, since when, bytes and errors a second.
+        """Return the /diagnostics status: connection, its duration, bytes and errors per second.
 
-        `errors` and `frames` that came in are counted by the caller, since the start.
+        The caller counts `errors` and incoming `frames`, since the start.
         """
         seconds = time.monotonic() - self._since_s
         connected = self.connected
@@ -156,13 +157,13 @@ class SerialLink:
         return self._say.text(phrase, port=self.port, problem=self._problem)
 
     def _rates(self, errors: int, frames: int) -> list[float]:
-        """Bytes in, bytes out, frames and errors a second, since this was asked before."""
+        """Return bytes in, bytes out, frames and errors per second since the last call."""
         now_s = time.monotonic()
         counts = (self.traffic.octets_in, self.traffic.octets_out, frames, errors)
         told_s, told = self._told
         self._told = (now_s, counts)
         passed_s = max(1e-3, now_s - told_s)
-        # A device that has started anew counts its errors anew.
+        # A restarted device counts its errors from zero.
         return [max(0, new - old) / passed_s for new, old in zip(counts, told, strict=True)]
 
     # ---------------------------------------------------------------- the reader's thread
@@ -217,13 +218,9 @@ class SerialLink:
         cause = error.__context__ if isinstance(error.__context__, termios.error) else error
         number = cause.args[0] if cause.args and isinstance(cause.args[0], int) else None
         phrase = _PROBLEMS.get(number, _OTHER) if number is not None else _OTHER
-        return self._say.text(phrase, port=self.port, problem=_words(error))
+        return self._say.text(phrase, port=self.port, problem=reason_of(error).splitlines()[0])
 
 
 def _is_there(port: str) -> bool:
-    """Whether a port still has its name; one that has none (`socket://`) always is."""
+    """Whether a port's path still exists; one without a path (`socket://`) always does."""
     return "://" in port or os.path.lexists(port)
-
-
-def _words(error: BaseException) -> str:
-    return str(error).splitlines()[0] if str(error) else type(error).__name__

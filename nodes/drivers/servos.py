@@ -1,7 +1,7 @@
 """The computer's side of the LSC-16: sends moves, and asks for the voltage to see that it is there.
 
-The controller answers no move, so the answer to "how much voltage?" is all there is to tell it from
-another device, or from a wire that leads nowhere.
+The controller does not answer moves, so only its answer about the voltage distinguishes it from
+another device or an unconnected wire.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from nodes.parts.node import LessonNode
 
 _MISSED = 3
-"""So many voltages that do not come are a silence."""
+"""This many missing answers count as silence."""
 _ANSWER_S = 0.3
-"""How long an answer takes at the most, a slow adapter included."""
+"""Maximum time for an answer, with a slow adapter."""
 _LOW_EVERY_S = 60.0
 
 _ANSWERS = N_("The servo controller answers: battery {volts:.1f} V")
@@ -37,13 +37,15 @@ _SILENT = N_(
     "{port} is open, but no LSC-16 answers: is it powered, are RX and TX both wired, {baud} baud?"
     " (with TX alone set battery_every_s to 0)"
 )
-_GARBLED = N_("{port} is open, but what comes is not LSC-16: wrong port, or not {baud} baud?")
+_GARBLED = N_(
+    "{port} is open, but its data are not from an LSC-16: wrong port, or not {baud} baud?"
+)
 _LOW = N_("The battery of the servos is low: {volts:.1f} V")
 _COMMANDED = N_("positions are commanded, not measured")
 
 
 class ServoClient:
-    """Talks over a `SerialLink`; `start` and `close` that."""
+    """Communicates over a `SerialLink`; `start` and `close` that."""
 
     def __init__(self, node: LessonNode) -> None:
         self._node, self._say = node, node.say
@@ -56,30 +58,30 @@ class ServoClient:
         """The newest voltage of this connection."""
         self._heard_s, self._opened_s = 0.0, math.inf
         self._skipped = 0
-        """Bytes of no use, when a voltage came last."""
+        """Invalid bytes, as of the last voltage."""
         self._silence_told = False
         self._away = threading.Event()
         if self._every_s:
             node.every(self._every_s, self._ask)
 
     def move(self, pulses_us: tuple[tuple[int, int], ...], time_ms: int) -> bool:
-        """Send servos to pulses; False if there is nobody to send it to."""
+        """Move servos to pulses; return False if there is no connection."""
         return self.trouble() is None and self.link.write(encode(ServoMove(time_ms, pulses_us)))
 
     def trouble(self) -> str | None:
-        """Why nobody would obey a move now, None if somebody would."""
+        """Return why a move would not be obeyed now, None if it would."""
         phrase = self._phrase()
         return None if phrase is None else self._told(phrase)
 
     def was_away(self) -> bool:
-        """Whether the controller is away or silent, or was since this was asked last."""
+        """Return whether the controller is away or silent, or was since the last call."""
         self._look()
         was_away = self._away.is_set() or not self.link.connected
         self._away.clear()
         return was_away
 
     def status(self, name: str) -> DiagnosticStatus:
-        """For /diagnostics."""
+        """Return the status for /diagnostics."""
         status = self.link.status(name, self._decoder.skipped, self._decoder.frames)
         status.values.append(KeyValue(key="positions", value="commanded"))
         battery, phrase = self._battery, self._phrase()
@@ -112,7 +114,7 @@ class ServoClient:
         self._look()
 
     def _look(self) -> None:
-        """Say that the controller is silent, once each time."""
+        """Log that the controller is silent, once each time."""
         phrase = self._phrase()
         if phrase not in (_SILENT, _GARBLED):
             self._silence_told = False

@@ -1,7 +1,7 @@
-"""Says on /drive what a word or a model asks for: once, as in the course, or for a while.
+"""Publishes the commands of words or a model on /drive: once, as in the course, or for a while.
 
-A gate obeys no command that is old, so that a source that has died stops the robot. Who speaks
-once a command then has to repeat it; how long a word moves the robot is for the parameter to say.
+A gate ignores old commands, so that the robot stops if their source has died. A node with single
+commands then has to repeat them; a parameter sets how long one command moves the robot.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 REPEAT_FOR_S = Number(
     "repeat_for_s",
     0.0,
-    "A command is said 10 times a second for so long, then a stop; 0: it is said once",
+    "A command is sent 10 times a second for this long, then a stop; 0: it is sent once",
     fixed=True,
     high=60.0,
     unit="s",
 )
 _EVERY_S = 0.1
 _LAST_STOP = Duration(seconds=0.2)
-"""How long the last stop may take to reach everybody."""
+"""How long the last stop may take to reach all subscribers."""
 _OVER = N_("The command was repeated for {seconds:g} s: stop")
 
 
@@ -51,7 +51,7 @@ class DriveRepeater:
             self._timer.cancel()
 
     def say(self, setpoint: DriveSetpoint) -> None:
-        """Ask for this from now on, in place of what was asked for before."""
+        """Publish this command from now on, in place of the previous one."""
         self._publish(setpoint)
         if not self._for_s:
             return
@@ -68,7 +68,7 @@ class DriveRepeater:
             self._publish(STOP)
 
     def end(self) -> None:
-        """Stop as `hush` does, and see to it that it is heard: the node is about to end."""
+        """Stop as `hush` does, and wait until that has arrived, as the node is about to end."""
         if self._for_s and not self._timer.is_canceled():
             self.hush()
             self._publisher.wait_for_all_acked(_LAST_STOP)

@@ -1,4 +1,4 @@
-"""What `drive_to_point` says, in its log and in the result of the action."""
+"""The messages of `drive_to_point`, in its log and in the result of the action."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ REACHED = N_("There: the point is {distance:.2f} m away")
 CANCELLED = N_("Cancelled as asked, {distance:.2f} m from the point")
 REPLACED = N_("Given up for a newer goal, {distance:.2f} m from the point")
 NO_ODOMETRY = N_(
-    "Nobody tells {topic}: where the robot is is not known; start its base, or simulate:=auto"
+    "Nobody publishes {topic}: the robot's position is unknown; start its base, or simulate:=auto"
 )
 STALE = N_("No {topic} for {stale_s:g} s, {distance:.2f} m from the point: the base is gone")
 STANDS = N_(
@@ -19,8 +19,8 @@ STANDS = N_(
     "something holds it, a safety gate or an obstacle"
 )
 WANDERS = N_(
-    "The robot drives and does not arrive, {distance:.2f} m from the point: "
-    "does the odometry tell the truth, and does nobody else steer?"
+    "The robot drives but does not arrive, {distance:.2f} m from the point: "
+    "is the odometry right, and is nobody else steering?"
 )
 EMERGENCY = N_("Emergency stop, {distance:.2f} m from the point")
 ENDING = N_("The node is ending, {distance:.2f} m from the point")

@@ -1,4 +1,4 @@
-"""What the safety node says: in its log, and on /safety_state for tools and screens."""
+"""The messages of the safety node: in its log, and on /safety_state for tools and screens."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ COMMAND_CUT = N_("The command {speed:.2f} m/s, {steering:.2f} rad is stopped: {r
 COMMAND_OLD = N_("No new command for {seconds:g} s: stop")
 DRIVES = N_("{source} drives now")
 IGNORED = N_("{ignored} is ignored: {source} drives, and ranks higher")
-HELD_UP = N_("This node was held up: what has waited meanwhile is not obeyed")
+HELD_UP = N_("This node was held up: commands that waited meanwhile are not obeyed")
 
 _SIGHTS = {
     Sight.FREE: N_("The way is free ({metres:.2f} m)."),
@@ -36,7 +36,7 @@ _SIGHTS_OUT_OF_RANGE = {
     Sight.FREE: N_("The way is free (nothing in range)."),
     Sight.CLOSE: N_("EMERGENCY BRAKE! Obstacle too close to measure."),
 }
-"""Instead, by REP-117, of a distance that is infinite."""
+"""Used instead for an infinite distance by REP-117."""
 _SIGHT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
 _LOG_EVERY_S = 0.9
 
@@ -65,7 +65,7 @@ _REASONS_OUT_OF_RANGE = {
 
 
 def tell_front(say: Speech, view: View) -> None:
-    """Log what the front sonar shows; each kind of news once a second at most."""
+    """Log the state of the front sonar; each kind of message once a second at most."""
     log = say.info if view.sight == Sight.FREE else say.warn
     slowed = view.sight == Sight.FREE and view.share < 1
     log(
@@ -78,16 +78,16 @@ def tell_front(say: Speech, view: View) -> None:
 
 
 def _percent(share: float) -> int:
-    """What is let through, in whole percent: of a little not nothing, of less than all not all."""
+    """Return the share in whole percent: 0 and 100 only if it is exactly that."""
     return min(99, max(1 if share else 0, round(100 * share)))
 
 
 def diagnosis(
     say: Speech, verdict: Verdict, views: Sequence[View], snapshot: GateSnapshot, zone: SafetyZone
 ) -> DiagnosticStatus:
-    """The state of safety: level, a sentence, and key-values for programs.
+    """Return the state of safety: level, a sentence, and key-values for programs.
 
-    A robot that is only slowed is well: the level tells what holds it.
+    A robot that is only slowed is fine: the level shows what blocks it.
     """
     bad = [view for view in views if view.sight != Sight.FREE]
     blind = any(view.sight != Sight.CLOSE for view in bad)

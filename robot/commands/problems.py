@@ -1,6 +1,6 @@
-"""What is wrong with a response of the LLM, in words, and where in its text.
+"""Errors in a response of the LLM, in words, with their places in the text.
 
-A message is a template and its arguments, so that a screen can say it in another language.
+A message is a template and its arguments, so that a screen can translate it.
 """
 
 from __future__ import annotations
@@ -26,15 +26,13 @@ TEMPLATES: Mapping[str, str] = MappingProxyType(
         "key_expected": N_("a field name in double quotes is expected here"),
         "colon_expected": N_("a colon is expected after the field name"),
         "comma_expected": N_("a comma or {closing} is expected here"),
-        "string_bad": N_(
-            "this text in quotes is not finished, or a character in it needs a backslash"
-        ),
+        "string_bad": N_("the closing quote is missing, or a character needs a backslash"),
         "half_character": N_("this text holds half a character (a lone surrogate)"),
-        "not_finite": N_("nan and infinity are no numbers that a robot can follow"),
+        "not_finite": N_("nan and infinity are not allowed"),
         "decimal_comma": N_("write a fraction with a point: {mended}"),
         "too_deep": N_("nested too deeply: {limit} levels at most"),
         "text_after": N_("nothing may follow the end of the JSON"),
-        "duplicate": N_("the field {name} stands here twice"),
+        "duplicate": N_("the field {name} appears twice here"),
         "missing": N_("the field {name} is missing"),
         "unknown": N_("there is no field {name}"),
         "unknown_near": N_("there is no field {name}: did you mean {near}?"),
@@ -52,32 +50,32 @@ TEMPLATES: Mapping[str, str] = MappingProxyType(
 """Code of a problem to its message in English, for `str.format` with the arguments."""
 
 _UNITS = (N_("m/s"), N_("rad"), N_("deg"))
-"""Marked for the catalogue: in Russian a unit has its own letters."""
+"""Marked for the catalogue: in Russian units have their own letters."""
 _LONGEST_NAME = 40
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong, and where."""
+    """One error and its place."""
 
     field: str
     """`commands[1].speed`; empty for the text as a whole."""
     line: int
-    """From 1."""
+    """Counted from 1."""
     column: int
-    """From 1, in characters."""
+    """In characters, counted from 1."""
     message: str
     """In English, without the place."""
     code: str = "invalid"
     """Key of `TEMPLATES`."""
     args: Mapping[str, str | float] = dataclasses.field(default_factory=dict)
-    """What the template's fields stand for."""
+    """Values of the template's fields."""
 
     @classmethod
     def of(
         cls, code: str, path: Path = (), place: tuple[int, int] = (1, 1), **args: str | float
     ) -> Problem:
-        """Make a problem with its message from the template; `place` is line and column."""
+        """Make a problem, its message from the template; `place` is line and column."""
         shown = {
             name: shown_name(value) if isinstance(value, str) else value
             for name, value in args.items()
@@ -87,7 +85,7 @@ class Problem:
 
     def in_language(self, code: str) -> str:
         """The message in a language, without the place."""
-        # Numbers keep their point: so they are written in the JSON.
+        # Numbers keep their decimal point, as in the JSON.
         args = {**self.args, "unit": translated(str(self.args.get("unit", "")), code)}
         return translated(TEMPLATES[self.code], code).format(**args)
 
@@ -97,7 +95,7 @@ class Problem:
 
 
 class CommandError(ValueError):
-    """The response is refused; nothing of it may be executed."""
+    """The response is refused; no part of it may be executed."""
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         super().__init__("; ".join(map(str, problems)))
@@ -111,5 +109,5 @@ def field_name(path: Path) -> str:
 
 
 def shown_name(name: str) -> str:
-    """Make a name from outside fit to be shown: printable and of a sane length."""
+    """Make an untrusted name fit to show: printable and of limited length."""
     return plain(name, _LONGEST_NAME) + ("" if len(name) <= _LONGEST_NAME else "…")

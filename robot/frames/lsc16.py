@@ -1,4 +1,4 @@
-"""Frames of the LSC-16 servo controller in words, both ways."""
+"""Frames of the LSC-16 servo controller in words, in both directions."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from text.i18n import N_
 
 _HEAD = b"\x55\x55"
 _LENGTHS = range(2, 54)
-"""What the third byte may say: params + 2, with 16 servos at most."""
+"""Valid values of the third byte: params + 2, with 16 servos at most."""
 _PHRASES = {
     "move": N_("move in {time} ms: {servos}"),
     "servo": N_("servo {servo} to {pulse} us"),
     "run": N_("group {group} runs {times} times"),
     "complete": N_("group {group} has ended ({times} times)"),
     "stop": N_("group stops"),
-    "ask": N_("how is the battery?"),
+    "ask": N_("battery voltage?"),
     "battery": N_("battery {volts:.2f} V"),
-    "bad": N_("NO FRAME OF AN LSC-16"),
+    "bad": N_("NOT AN LSC-16 FRAME"),
 }
 
 
 class ServoReader(HeadedReader):
-    """Reads what is said to the controller, or what it says."""
+    """Reads frames to or from the controller."""
 
     def __init__(self, language: str) -> None:
         self._words = FramePhrases(language, _PHRASES)
@@ -57,7 +57,7 @@ class ServoReader(HeadedReader):
 
 
 def _length(start: bytes) -> int:
-    """Bytes of the frame; a length that cannot be is that of the head alone."""
+    """Return the bytes of the frame; for an impossible length, the bytes of the header alone."""
     if len(start) < 3:
         return 0
     return start[2] + 2 if start[2] in _LENGTHS else len(_HEAD)

@@ -1,4 +1,4 @@
-"""Lines of the Pico in words, both ways (see docs/pico-protocol.md)."""
+"""Lines to and from the Pico in words (see docs/pico-protocol.md)."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ _PHRASES = {
     "flags": N_(", flags: {flags}"),
     "counts": N_(", obeyed {obeyed}, refused {refused}, up {uptime:.1f} s"),
     "end": N_(", seq {seq}, crc ok"),
-    "failed": N_("CRC FAILED: {told} came, {counted:04X} is right"),
+    "failed": N_("CRC FAILED: got {told}, expected {counted:04X}"),
     "unknown": N_("UNKNOWN LINE, though its crc is right"),
-    "cut": N_("NO WHOLE LINE"),
+    "cut": N_("INCOMPLETE LINE"),
 }
 
 
 class PicoReader:
-    """Reads what is said to the Pico, or what it says."""
+    """Reads lines to or from the Pico."""
 
     def __init__(self, language: str) -> None:
         self._language, self._words = language, FramePhrases(language, _PHRASES)
         self._rest = b""
 
     def feed(self, data: bytes) -> list[FramePiece]:
-        """The pieces that these bytes complete, oldest first."""
+        """Return the pieces that these bytes complete, oldest first."""
         stream, at = self._rest + data, 0
         found: list[FramePiece] = []
         for match in _LINE.finditer(stream):
@@ -58,12 +58,12 @@ class PicoReader:
         return found + (self.flush() if len(self._rest) >= LONGEST else [])
 
     def flush(self) -> list[FramePiece]:
-        """What is left of a line that nobody goes on with."""
+        """Return what is left of an incomplete line."""
         rest, self._rest = self._rest, b""
         return [noise(rest, self._language)] if rest else []
 
     def _line(self, octets: bytes, line: bytes) -> list[FramePiece]:
-        """The pieces of a line, with its end and without."""
+        """Return the pieces of a line, given with and without its line end."""
         start = line.rfind(b"$")
         if start < 0:
             return [noise(octets, self._language)] if line else []

@@ -16,12 +16,12 @@ _PHRASES = {
     "near": N_("too close to measure ({centimetres} cm)"),
     "none": N_("no valid reading ({centimetres} cm)"),
     "rest": N_(", strength {strength}, {celsius:.1f} °C"),
-    "bad": N_("CHECKSUM FAILED: {told:02X} came, {counted:02X} is right"),
+    "bad": N_("CHECKSUM FAILED: got {told:02X}, expected {counted:02X}"),
 }
 
 
 class TofReader(HeadedReader):
-    """Reads what a sonar says; what is said to it is shown as noise."""
+    """Reads the frames of a sonar; bytes sent to it are shown as noise."""
 
     def __init__(self, language: str, model: Model = Model.LUNA) -> None:
         self._words, self._model = FramePhrases(language, _PHRASES), model

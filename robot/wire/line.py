@@ -1,23 +1,22 @@
 r"""Lines that a person can read and a program can trust: `$BODY*CRC\n`.
 
 BODY is printable ASCII without `$` and `*`; CRC is the CRC-16 of BODY in four capital hex digits.
-Whatever comes before the last `$` of a line is noise. CR ends a line as well as LF does.
+Whatever comes before the last `$` of a line is noise. CR ends a line as LF does.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from robot.wire.crc import crc16
 
 LONGEST = 128
-"""Bytes of a line at most, its end included."""
+"""Maximum bytes of a line, including its end."""
 _LINE = re.compile(rb"\$([ -#%-)+-~]+)\*([0-9A-F]{4})")
 
 
 def wrap(body: str) -> bytes:
-    """The line of a body; raises ValueError for a body that no line can carry."""
+    """Return the line for a body; raises ValueError for a body that no line can carry."""
     data = body.encode("ascii", "strict")
     line = b"$%s*%04X\n" % (data, crc16(data))
     if len(line) > LONGEST or _LINE.fullmatch(line[:-1]) is None:
@@ -26,33 +25,24 @@ def wrap(body: str) -> bytes:
 
 
 def unwrap(line: bytes) -> str | None:
-    """The body of a line without its end; None if it is none, or its CRC is wrong."""
+    """Return the body of a line without its end; None if malformed or its CRC is wrong."""
     found = _LINE.fullmatch(line)
     if found is None or crc16(found[1]) != int(found[2], 16):
         return None
     return found[1].decode("ascii")
 
 
-@dataclass
-class LineCounts:
-    """What a stream has brought so far."""
-
-    octets: int = 0
-    bad: int = 0
-    """Lines that were none, or whose check was wrong."""
-
-
 class LineSplitter:
-    """Finds the bodies in a stream that arrives in any pieces; keeps `LONGEST` bytes at most."""
+    """Finds the bodies in a stream of arbitrary pieces; buffers at most `LONGEST` bytes."""
 
     def __init__(self) -> None:
-        self.counts = LineCounts()
+        self.bad = 0
+        """Lines so far that were malformed, or had a wrong CRC."""
         self._rest = b""
         self._overlong = False
 
     def feed(self, data: bytes) -> list[str]:
-        """The bodies of the lines that these bytes end, oldest first."""
-        self.counts.octets += len(data)
+        """Return the bodies of the lines that these bytes complete, oldest first."""
         *ended, rest = (self._rest + data.replace(b"\r", b"\n")).split(b"\n")
         bodies = [body for line in ended if (body := self._take(line)) is not None]
         self._overlong = self._overlong or len(rest) >= LONGEST
@@ -65,5 +55,5 @@ class LineSplitter:
             return None
         start = line.rfind(b"$")
         body = unwrap(line[start:]) if start >= 0 and len(line) - start < LONGEST else None
-        self.counts.bad += body is None or overlong or start > 0
+        self.bad += body is None or overlong or start > 0
         return body

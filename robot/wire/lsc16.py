@@ -1,7 +1,7 @@
-"""Frames of the LSC-16 servo controller, both ways: `55 55 LEN CMD params`.
+"""Frames of the LSC-16 servo controller, in both directions: `55 55 LEN CMD params`.
 
 LEN is the number of params + 2, numbers are little-endian. There is no checksum and no answer to
-a move: a frame is believed only if its command is known and every number of it is in its range.
+a move: a frame is accepted only if its command is known and all its numbers are in range.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class ActionStop:
 
 @dataclass(frozen=True)
 class ActionComplete:
-    """A stored group came to its end."""
+    """A stored group has finished."""
 
     group: int
     times: int
@@ -71,7 +71,7 @@ ServoFrame = ServoMove | ActionRun | ActionStop | ActionComplete | BatteryReques
 
 
 def encode(frame: ServoFrame) -> bytes:
-    """The bytes of a frame; raises ValueError for values that the controller does not know."""
+    """Return the bytes of a frame; raises ValueError for values that the controller refuses."""
     try:
         command, params = _params(frame)
         data = _HEAD + bytes([len(params) + 2, command]) + params
@@ -83,7 +83,7 @@ def encode(frame: ServoFrame) -> bytes:
 
 
 def decode(data: bytes) -> ServoFrame | None:
-    """The frame of exactly these bytes, None if they are none."""
+    """Return the frame of exactly these bytes, None if they are not a frame."""
     if len(data) < 4 or data[:2] != _HEAD or data[2] != len(data) - 2:
         return None
     command, params = data[3], data[4:]
@@ -134,19 +134,16 @@ def _battery(params: bytes) -> BatteryRequest | Battery | None:
 
 
 class ServoDecoder:
-    """Finds frames in a stream that arrives in any pieces; keeps less than one frame."""
+    """Finds frames in a stream of arbitrary pieces; buffers less than one frame."""
 
     def __init__(self) -> None:
-        self.octets = 0
-        """Bytes so far."""
         self.frames = 0
         self.skipped = 0
         """Bytes so far that belonged to no frame."""
         self._rest = b""
 
     def feed(self, data: bytes) -> list[ServoFrame]:
-        """The frames that these bytes complete, oldest first."""
-        self.octets += len(data)
+        """Return the frames that these bytes complete, oldest first."""
         stream, at = self._rest + data, 0
         found: list[ServoFrame] = []
         while at < len(stream):
@@ -164,7 +161,7 @@ class ServoDecoder:
 
 
 def _size(stream: bytes, at: int) -> int:
-    """Bytes of the frame that may begin here, as far as can be told yet; 0 if none can."""
+    """Return the bytes of the frame that may begin here, as far as known; 0 if none can."""
     head = stream[at : at + 4]
     if not _HEAD.startswith(head[:2]):
         return 0

@@ -1,7 +1,7 @@
-"""What the computer and the Pico say to each other, one line each (see docs/pico-protocol.md).
+"""Messages between the computer and the Pico, one line each (see docs/pico-protocol.md).
 
 Every body begins with a letter and a sequence number 0..65535; all further fields are whole
-numbers, save for two words. Angles are milliradians on the wire, radians here.
+numbers, except two words. Angles are milliradians on the wire, radians here.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from robot.wire.line import LineSplitter, unwrap, wrap
 from text.i18n import N_
 
 PROTOCOL = 1
-"""Both sides must speak the same one; otherwise the motors stay off."""
+"""Both sides must use the same version; otherwise the motors stay off."""
 WATCHDOG_S = 0.25
-"""The Pico switches the motors off so long after the last good drive line."""
+"""The Pico switches the motors off this long after the last good drive line."""
 SEQUENCES = 0x10000
 
 _SEQUENCE = Limits(0, SEQUENCES - 1, "")
@@ -35,9 +35,9 @@ FLAGS = {
     "U": N_("battery below its limit"),
     "H": N_("no handshake, or of another protocol"),
     "A": N_("waiting for a drive line of zero speed"),
-    "N": N_("no encoders: speeds are those asked for"),
+    "N": N_("no encoders: speeds are as commanded"),
 }
-"""Letters of the last field of telemetry; `-` stands for none of them."""
+"""Letters in the last field of telemetry; `-` means none of them."""
 STANDING_FLAGS = frozenset("EWLRUHA")
 """Any of these keeps the motors off."""
 
@@ -93,11 +93,11 @@ class Telemetry:
     seq: int
     uptime_ms: int
     obeyed: int
-    """Sequence number of the newest drive line that was taken."""
+    """Sequence number of the newest drive line that was accepted."""
     left_rad_s: float
     right_rad_s: float
     steering_rad: float
-    """As commanded: a hobby servo does not tell."""
+    """As commanded: a hobby servo does not report its angle."""
     battery_v: float | None
     left_a: float | None
     right_a: float | None
@@ -116,7 +116,7 @@ Message = Hello | Drive | Halt | Release | FromPico
 
 
 def encode(message: Message) -> bytes:
-    """The line of a message; raises ValueError for a value that it cannot carry."""
+    """Return the line for a message; raises ValueError for a value that it cannot carry."""
     body = _body(message)
     if parse(body) is None:
         raise ValueError(f"out of range: {message}")
@@ -124,31 +124,26 @@ def encode(message: Message) -> bytes:
 
 
 def decode(line: bytes) -> Message | None:
-    """The message of one line without its end, None if there is none in it."""
+    """Return the message in one line given without its end, None if there is none."""
     body = unwrap(line)
     return None if body is None else parse(body)
 
 
 class PicoDecoder:
-    """Finds messages in a stream that arrives in any pieces."""
+    """Finds messages in a stream of arbitrary pieces."""
 
     def __init__(self) -> None:
         self._lines = LineSplitter()
         self.unknown = 0
-        """Lines with a right check that are no message of this protocol."""
-
-    @property
-    def octets(self) -> int:
-        """Bytes so far."""
-        return self._lines.counts.octets
+        """Lines with a correct CRC that are not messages of this protocol."""
 
     @property
     def errors(self) -> int:
-        """Lines so far that were of no use."""
-        return self._lines.counts.bad + self.unknown
+        """Unusable lines so far."""
+        return self._lines.bad + self.unknown
 
     def feed(self, data: bytes) -> list[Message]:
-        """The messages that these bytes complete, oldest first."""
+        """Return the messages that these bytes complete, oldest first."""
         found = [parse(body) for body in self._lines.feed(data)]
         messages = [message for message in found if message is not None]
         self.unknown += len(found) - len(messages)
@@ -156,7 +151,7 @@ class PicoDecoder:
 
 
 def _body(message: Message) -> str:
-    """The body, in the one way there is to write it."""
+    """Return the body in its only valid form."""
     seq = message.seq
     if isinstance(message, Hello):
         return f"V,{seq},{message.protocol}"
@@ -189,7 +184,7 @@ def _letters(flags: frozenset[str]) -> str:
 
 
 def parse(body: str) -> Message | None:
-    """The message of a body, None if any field is not as it must be."""
+    """Return the message of a body, None if any field is invalid."""
     kind, *words = body.split(",")
     if kind == "T":
         return _telemetry(words)
@@ -242,8 +237,8 @@ def _telemetry(words: list[str]) -> Telemetry | None:
 
 
 def _integers(words: list[str], limits: tuple[Limits, ...]) -> list[int] | None:
-    """The numbers, None unless there is one inside of each limit, written in the shortest way."""
-    # A hundred lines a second are read so, and one match for all words costs half as much.
+    """Return the numbers, None unless there is one within each limit, in its shortest form."""
+    # A hundred lines a second are read this way; one match for all words costs half as much.
     if len(words) != len(limits) or not _INTEGERS.fullmatch(",".join(words)):
         return None
     numbers = [int(word) for word in words]
@@ -254,12 +249,12 @@ def _integers(words: list[str], limits: tuple[Limits, ...]) -> list[int] | None:
 
 
 def _measured(milli: int) -> float | None:
-    """What -1 stands for is not there to be measured."""
+    """Return a measured value, None for -1, which means not measured."""
     return None if milli < 0 else milli / 1000
 
 
 def _milli(value: float) -> int:
-    """Thousandths; raises ValueError for what is no number."""
+    """Return thousandths; raises ValueError for what is not a finite number."""
     try:
         return round(value * 1000)
     except OverflowError:

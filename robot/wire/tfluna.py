@@ -1,8 +1,8 @@
 """Frames of the Benewake ToF sonars: TF-Luna, TFmini-S and TFmini Plus.
 
 `59 59 DistL DistH StrL StrH TempL TempH CK`: centimetres, strength, eighths of a degree above
--256 C, low byte of the sum. A sum is a weak check and 59 may stand anywhere, so a frame that does
-not follow a good one at once is believed only if another good one follows it.
+-256 C, low byte of the sum. A sum is a weak check and 59 may occur anywhere, so a frame that does
+not directly follow a good one is accepted only if another good one follows it.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ _WEAK_CM, _SATURATED_CM, _AMBIENT_CM = 65_535, 65_534, 65_532
 
 
 class Model(str, Enum):
-    """Which sensor it is: they tell bad readings in different ways."""
+    """The sensor model: models report bad readings in different ways."""
 
     LUNA = "tf_luna"
     MINI_S = "tfmini_s"
 
     @property
     def range_m(self) -> tuple[float, float]:
-        """The nearest and the farthest distance that it can measure."""
+        """The shortest and the longest distance that it can measure."""
         return (0.2, 8.0) if self is Model.LUNA else (0.1, 12.0)
 
     @property
     def view_rad(self) -> float:
-        """Opening angle of its beam."""
+        """The opening angle of its beam."""
         return math.radians(2.0 if self is Model.LUNA else 2.3)
 
 
@@ -52,13 +52,13 @@ class TofFrame:
             if self.strength == _OVEREXPOSED:
                 return math.nan
             if self.strength < _STRENGTH_MIN:
-                # A distance told with so weak an echo is none.
+                # A distance with so weak an echo is not valid.
                 return math.nan if self.distance_cm else math.inf
         elif self.distance_cm == _WEAK_CM:
             return math.inf
         elif self.distance_cm in (_SATURATED_CM, _AMBIENT_CM):
             return math.nan
-        # 0 is how "no return" is told; with a strong echo it contradicts itself.
+        # 0 means "no return"; together with a strong echo that is a contradiction.
         return math.nan if self.distance_cm == 0 else _in_range(self.distance_cm / 100, model)
 
 
@@ -70,7 +70,7 @@ def _in_range(metres: float, model: Model) -> float:
 
 
 def encode(frame: TofFrame) -> bytes:
-    """The nine bytes of a reading; raises ValueError for values that do not fit."""
+    """Return the nine bytes of a reading; raises ValueError for values that do not fit."""
     raw = round((frame.temperature_c + 256) * 8)
     try:
         words = (frame.distance_cm, frame.strength, raw)
@@ -81,7 +81,7 @@ def encode(frame: TofFrame) -> bytes:
 
 
 def decode(data: bytes) -> TofFrame | None:
-    """The reading of nine bytes, None if they are no frame."""
+    """Return the reading in nine bytes, None if they are not a frame."""
     if len(data) != SIZE or data[:2] != _HEAD or sum8(data[:-1]) != data[-1]:
         return None
     distance, strength, raw = (int.from_bytes(data[at : at + 2], "little") for at in (2, 4, 6))
@@ -89,22 +89,19 @@ def decode(data: bytes) -> TofFrame | None:
 
 
 class TofDecoder:
-    """Finds readings in a stream that arrives in any pieces; keeps less than two frames."""
+    """Finds readings in a stream of arbitrary pieces; buffers less than two frames."""
 
     def __init__(self) -> None:
-        self.octets = 0
-        """Bytes so far."""
         self.frames = 0
         self.skipped = 0
         """Bytes so far that belonged to no frame."""
         self.errors = 0
-        """How often the stream made no sense where a frame should have begun."""
+        """How often the stream was invalid where a frame should have begun."""
         self._rest = b""
         self._in_step = False
 
     def feed(self, data: bytes) -> list[TofFrame]:
-        """The readings that these bytes complete, oldest first."""
-        self.octets += len(data)
+        """Return the readings that these bytes complete, oldest first."""
         stream, at = self._rest + data, 0
         found: list[TofFrame] = []
         while len(stream) - at >= SIZE:
@@ -123,7 +120,7 @@ class TofDecoder:
         return found
 
     def _skip(self, stream: bytes, at: int) -> int:
-        """Go on to the next byte that may begin a frame."""
+        """Return the place of the next byte that may begin a frame."""
         self.errors += self._in_step
         self._in_step = False
         after = stream.find(_HEAD[:1], at + 1)

@@ -1,8 +1,8 @@
 """A simulated robot in a simulated room: the same commands give the same drive.
 
-Time passes in steps of `STEP_S`. Each rear wheel follows what was asked of it with a lag, the
-steering turns at its own pace, the robot moves as a bicycle does, and stands where it touches
-something. No clock is read and no dice are thrown that were not seeded.
+Time passes in steps of `STEP_S`. Each rear wheel follows its command with a lag, the steering turns
+at its own pace, the robot moves by the bicycle model, and stops where it touches something. No
+clock is read, and all randomness is seeded.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 import random
 from dataclasses import dataclass, field
 
-from robot.kinematics import TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M
+from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
 from robot.motion.odometry import Pose, advance
 from robot.words import DriveSetpoint
 from robot.world.room import LIVING_ROOM, Box, Room
@@ -22,25 +22,24 @@ _AWAY_M = 0.02
 
 @dataclass(frozen=True)
 class Body:
-    """Measures of the robot. Its own point is the middle of the rear axle."""
+    """Dimensions of the robot. Its reference point is the middle of the rear axle."""
 
     wheelbase_m: float = WHEELBASE_M
-    track_m: float = TRACK_M
     wheel_radius_m: float = WHEEL_RADIUS_M
     length_m: float = 0.35
     width_m: float = 0.20
     behind_m: float = 0.05
     """From the rear axle to the bumper behind it."""
     motor_lag_s: float = 0.08
-    """A wheel makes 63 % of a change of speed in this time."""
+    """A wheel completes 63 % of a speed change in this time."""
     braking_m_s2: float = 2.5
-    """A wheel that shall stand loses speed at least so fast."""
+    """A wheel that should stop decelerates at least this fast."""
     steering_rad_s: float = 5.0
     max_wheel_rad_s: float = 20.0
     max_steering_rad: float = 0.6
 
     def outline(self, pose: Pose) -> Box:
-        """What it covers of the floor."""
+        """Return the floor area that it covers."""
         ahead_m = self.length_m / 2 - self.behind_m
         x_m = pose.x_m + ahead_m * math.cos(pose.heading_rad)
         y_m = pose.y_m + ahead_m * math.sin(pose.heading_rad)
@@ -49,7 +48,7 @@ class Body:
 
 @dataclass
 class Wheels:
-    """Two rear wheels and the steering; as asked for, or as they are."""
+    """Two rear wheels and the steering; as commanded, or as they are."""
 
     left_rad_s: float = 0.0
     right_rad_s: float = 0.0
@@ -58,20 +57,20 @@ class Wheels:
 
 @dataclass(frozen=True)
 class SimulatedSonar:
-    """A distance sensor at a bumper: it looks forward, or backward."""
+    """A distance sensor at a bumper, facing forward or backward."""
 
     forward: bool = True
     nearest_m: float = 0.2
     farthest_m: float = 8.0
     noise_m: float = 0.01
-    """Standard deviation."""
+    """Standard deviation of the noise."""
     dropout: float = 0.01
-    """Share of readings that are no distance."""
+    """Share of invalid readings."""
     rays_rad: tuple[float, ...] = (-0.02, 0.0, 0.02)
     """Directions within its beam; the nearest counts."""
 
     def true_m(self, room: Room, body: Body, pose: Pose) -> float:
-        """What a perfect sensor would measure, without limits."""
+        """Return what a perfect sensor without limits would measure."""
         offset_m = body.length_m - body.behind_m if self.forward else -body.behind_m
         x_m = pose.x_m + offset_m * math.cos(pose.heading_rad)
         y_m = pose.y_m + offset_m * math.sin(pose.heading_rad)
@@ -79,7 +78,7 @@ class SimulatedSonar:
         return min(room.distance(x_m, y_m, heading + ray) for ray in self.rays_rad)
 
     def read(self, room: Room, body: Body, pose: Pose, dice: random.Random) -> float:
-        """A reading by REP-117: +inf nothing in range, -inf too close, nan no valid reading."""
+        """Read by REP-117: +inf nothing in range, -inf too close, nan no valid reading."""
         noise_m, dropped = dice.gauss(0.0, self.noise_m), dice.random() < self.dropout
         if dropped:
             return math.nan
@@ -91,7 +90,7 @@ class SimulatedSonar:
 
 @dataclass
 class World:
-    """The room, the robot, and what has become of it so far."""
+    """The room, the robot, and its state so far."""
 
     room: Room = LIVING_ROOM
     body: Body = Body()
@@ -100,40 +99,26 @@ class World:
     front: SimulatedSonar = SimulatedSonar()
     rear: SimulatedSonar = SimulatedSonar(forward=False)
     asked: Wheels = field(default_factory=Wheels)
-    """What the wheels shall do; to be set from outside."""
+    """The command to the wheels; set from outside."""
     stalled: tuple[bool, bool] = (False, False)
-    """Left and right: a motor that does not turn."""
+    """Whether the left and the right motor are stalled."""
     wheels: Wheels = field(default_factory=Wheels)
     steps: int = 0
     collisions: int = 0
     """How often the robot has run into something."""
-    travelled_m: float = 0.0
     _dice: random.Random = field(init=False, repr=False)
     _free_m: float = field(default=0.0, init=False, repr=False)
-    """The robot may move so far before it can touch anything."""
-    _rest_s: float = field(default=0.0, init=False, repr=False)
+    """How far the robot may move before it can touch anything."""
     _since_hit_m: float = field(default=math.inf, init=False, repr=False)
 
     def __post_init__(self) -> None:
         self._dice = random.Random(self.seed)
 
     @property
-    def now_s(self) -> float:
-        """Seconds since the beginning."""
-        return self.steps * STEP_S
-
-    @property
     def speed_m_s(self) -> float:
-        """Of the rear axle, + forward."""
+        """Speed of the rear axle, + forward."""
         mean_rad_s = (self.wheels.left_rad_s + self.wheels.right_rad_s) / 2
         return mean_rad_s * self.body.wheel_radius_m
-
-    def advance(self, seconds: float) -> None:
-        """Let so many whole steps pass; what is left over counts for the next time."""
-        self._rest_s += seconds
-        while self._rest_s >= STEP_S - 1e-9:
-            self._rest_s -= STEP_S
-            self.step()
 
     def step(self) -> None:
         """Let `STEP_S` pass."""
@@ -145,24 +130,23 @@ class World:
         pose = advance(self.pose, command, STEP_S, self.body.wheelbase_m)
         moved_m = abs(command.speed_m_s) * STEP_S
         if self._would_touch(pose, moved_m):
-            # Leaning on a wall is no new collision.
+            # Leaning on a wall is not a new collision.
             self.collisions += self._since_hit_m > _AWAY_M
             self._since_hit_m = 0.0
             self.wheels.left_rad_s = self.wheels.right_rad_s = 0.0
             return
         self._since_hit_m += moved_m
         self.pose = pose
-        self.travelled_m += moved_m
 
     def place(self, pose: Pose) -> bool:
-        """Carry the robot elsewhere, False if it would touch something there."""
+        """Move the robot elsewhere; return False if it would touch something there."""
         if self.room.touches(self.body.outline(pose)):
             return False
         self.pose, self._free_m, self._since_hit_m = pose, 0.0, math.inf
         return True
 
     def read_sonars(self) -> tuple[float, float]:
-        """Front and rear, metres by REP-117; every reading is thrown anew."""
+        """Return front and rear in metres by REP-117; each call draws new noise."""
         front, rear = (
             sonar.read(self.room, self.body, self.pose, self._dice)
             for sonar in (self.front, self.rear)
@@ -183,13 +167,13 @@ class World:
         goal = _within(asked, self.body.max_wheel_rad_s)
         fresh = now + (goal - now) * (1.0 - math.exp(-STEP_S / self.body.motor_lag_s))
         if goal == 0.0:
-            # Friction brings it to a stand that a lag alone would only come near to.
+            # Friction stops it completely, which a lag alone would only approach.
             loss = self.body.braking_m_s2 / self.body.wheel_radius_m * STEP_S
             fresh = math.copysign(max(0.0, min(abs(fresh), abs(now) - loss)), now)
         return fresh
 
     def _would_touch(self, pose: Pose, moved_m: float) -> bool:
-        # No corner moves farther than the axle and the turn take it.
+        # No corner moves farther than the axle plus the rotation.
         turned = abs(math.remainder(pose.heading_rad - self.pose.heading_rad, math.tau))
         reach_m = math.hypot(self.body.length_m, self.body.width_m)
         self._free_m -= moved_m + turned * reach_m

@@ -13,10 +13,10 @@ import pytest
 
 from tests.e2e import marked
 from tests.e2e.terminal import Terminal
-from tests.half_made import half_made
+from tests.unfinished_shared_memory import unfinished
 from tests.waiting import comes
 
-__all__ = ["half_made"]
+__all__ = ["unfinished"]
 
 ROOT = Path(__file__).resolve().parents[2]
 

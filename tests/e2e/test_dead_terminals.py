@@ -95,7 +95,7 @@ def test_leaving_twice_ends_the_screen_of_a_supervisor_that_hangs(line: Line, de
     os.write(own, b"q")
     read_until(own, "Stopping")
     os.write(own, b"q")
-    read_until(own, f"the supervisor (pid {supervisor}) gave no answer; it was killed")
+    read_until(own, f"the supervisor (pid {supervisor}) did not answer; it was killed")
     assert process.wait(30) == 0
     wait_until(lambda: not marked.alive(deck.mark), "every process gone")
     os.close(own)

@@ -10,7 +10,7 @@ from std_msgs.msg import String
 
 from tests.e2e.conftest import Deck
 from tests.e2e.terminal import Terminal
-from tests.hostile import EVIL, WORST, harm_on_screen, quoted
+from tests.hostile_text import EVIL, WORST, harm_on_screen, quoted
 from tests.ros.peer import Peer
 
 PRINTING = f"""\

@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 from tests.e2e.conftest import ROOT, Deck
-from tests.half_made import is_half_made, make_old
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import Peer
+from tests.unfinished_shared_memory import is_unfinished, make_old
 from tests.waiting import wait_until
 
 
@@ -35,11 +35,11 @@ def test_a_running_node_is_seen_stopped_by_nobody_and_left_alone(
 
 
 def test_it_begins_where_a_process_was_killed_as_it_joined(
-    deck: Deck, half_made: list[Path], ros_domain: int
+    deck: Deck, unfinished: list[Path], ros_domain: int
 ) -> None:
-    make_old(half_made)
+    make_old(unfinished)
     terminal = deck.open("watch", "--lang", "en")
-    wait_until(lambda: not any(map(is_half_made, half_made)), "a clear way")
+    wait_until(lambda: not any(map(is_unfinished, unfinished)), "a clear way")
     with NodeProcess("nodes.hello", ros_domain, name="ours"):
         terminal.wait_for("1 node runs here: ours")
 

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.half_made import half_made
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
 from tests.ros.supervised import start
+from tests.unfinished_shared_memory import unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["half_made", "start"]
+__all__ = ["start", "unfinished"]
 
 
 @pytest.fixture

@@ -28,6 +28,12 @@ def drive(world: World, speed: float, steering: float = 0.0) -> None:
     world.asked = Wheels(wheels.left_m_s / radius, wheels.right_m_s / radius, steering)
 
 
+def let_pass(world: World, seconds: float) -> None:
+    """Let so many seconds pass in the simulated room."""
+    for _ in range(round(seconds / STEP_S)):
+        world.step()
+
+
 class RandomDriver:
     """Changes its mind, sends nonsense, and hears its sonars only as the gate does.
 
@@ -39,6 +45,7 @@ class RandomDriver:
         self.world, self.dice, self.zone = world, random.Random(seed), zone
         self.avoidable = 0
         """Collisions that a stop could have avoided."""
+        self.driven_m = 0.0
         self._asked = STOP
         self._readings = [(math.nan, -1.0), (math.nan, -1.0)]
         self._silent_until_s = self._stalled_until_s = 0.0
@@ -46,18 +53,23 @@ class RandomDriver:
     def drive_for(self, seconds: float) -> None:
         """Drive on for so long."""
         for _ in range(round(seconds / CARRIED_AFTER_S)):
-            went_m = self.world.travelled_m
+            before_m = self.driven_m
             for _ in range(round(CARRIED_AFTER_S / STEP_S) // CONTROL_STEPS):
                 self._round()
-            if self.world.travelled_m - went_m < 0.2:
+            if self.driven_m - before_m < 0.2:
                 self._carry()
+
+    @property
+    def now_s(self) -> float:
+        """Seconds since the beginning."""
+        return self.world.steps * STEP_S
 
     def _round(self) -> None:
         """One look, one command, and the time until the next."""
         world, dice = self.world, self.dice
         self._trouble()
-        if world.now_s >= self._silent_until_s:
-            self._readings = [(metres, world.now_s) for metres in world.read_sonars()]
+        if self.now_s >= self._silent_until_s:
+            self._readings = [(metres, self.now_s) for metres in world.read_sonars()]
         if dice.random() < 0.02:
             speed = dice.choice([0.5, 0.3, -0.3, -0.5, 0.0])
             self._asked = DriveSetpoint(speed, dice.uniform(-0.5, 0.5))
@@ -70,7 +82,7 @@ class RandomDriver:
         self._pass()
 
     def _trouble(self) -> None:
-        now_s, dice = self.world.now_s, self.dice
+        now_s, dice = self.now_s, self.dice
         if dice.random() < 0.002:
             self._silent_until_s = now_s + dice.uniform(0.1, 1.0)
         if dice.random() < 0.0005:
@@ -80,7 +92,7 @@ class RandomDriver:
             self.world.stalled = (False, False)
 
     def _gated(self, command: DriveSetpoint, zone: SafetyZone) -> DriveSetpoint:
-        front, rear = (Reading(m, self.world.now_s - then) for m, then in self._readings)
+        front, rear = (Reading(m, self.now_s - then) for m, then in self._readings)
         ahead = look(front, zone.critical_m, zone.stale_after_s)
         behind = look(rear, zone.critical_m, zone.stale_after_s)
         shares = Shares(share(front, zone), share(rear, zone))
@@ -97,8 +109,9 @@ class RandomDriver:
     def _pass(self) -> None:
         world = self.world
         for _ in range(CONTROL_STEPS):
-            speed, before = world.speed_m_s, world.collisions
+            speed, before, pose = world.speed_m_s, world.collisions, world.pose
             world.step()
+            self.driven_m += math.dist((pose.x_m, pose.y_m), (world.pose.x_m, world.pose.y_m))
             if world.collisions > before:
                 sonar = world.front if speed > 0 else world.rear
                 # What it ran into stood before its sonar, and not beside the beam.

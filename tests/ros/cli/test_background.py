@@ -108,7 +108,7 @@ def test_up_says_what_did_not_come_up(tmp_path: Path) -> None:
     assert up.process.returncode == 1
     assert "bad   failed" in up.lines[2]
     assert "exit code 4: oh" in up.lines[2]
-    assert up.errors[0].startswith("something is wrong; `deck logs NODE`")
+    assert up.errors[0].startswith("some nodes are not healthy; `deck logs NODE`")
 
 
 def test_two_at_once_are_told_apart_by_name(tmp_path: Path, other_domain: int) -> None:

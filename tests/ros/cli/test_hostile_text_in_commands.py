@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from launcher.client.client import running
-from tests.hostile import EVIL, EVIL_NAME, WORST, harm_in, quoted
+from tests.hostile_text import EVIL, EVIL_NAME, WORST, harm_in, quoted
 from tests.ros.supervised import end_sessions
 from tests.unit.bags import write_bag
 from tests.waiting import wait_until

@@ -66,7 +66,7 @@ def test_devices_in_each_others_place(folder: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("DECK_TOF_FRONT_PORT", str(folder / "pico"))
     code, found = preflight()
     assert code == 2
-    assert "a ToF sonar is talking here, not the Pico" in found["pico"]
+    assert "a ToF sonar answers here, not the Pico" in found["pico"]
     assert found["tof_front"].startswith("FAIL")
     assert "TF-Luna" in found["tof_front"], "a Pico that is not greeted may be quiet"
     assert found["tof_rear"].startswith("ok")

@@ -10,10 +10,10 @@ import pytest
 from std_msgs.msg import Float32
 
 from tests.deck_process import DeckProcess, deck
-from tests.half_made import make_old
 from tests.middleware_words import own_words
 from tests.ros.peer import Peer
 from tests.ros.recorded import read_by_mcap
+from tests.unfinished_shared_memory import make_old
 from tests.waiting import wait_until
 
 
@@ -72,9 +72,9 @@ def test_what_the_middleware_prints_is_not_among_the_json(
 
 
 def test_it_begins_where_a_process_was_killed_as_it_joined(
-    half_made: list[Path], tmp_path: Path
+    unfinished: list[Path], tmp_path: Path
 ) -> None:
-    make_old(half_made)
+    make_old(unfinished)
     run = DeckProcess("record", "-o", str(tmp_path / "bag"), "--for", "0.5")
     assert run.finish() == 1
     assert any("nothing was recorded" in line for line in run.lines)
@@ -95,4 +95,4 @@ def test_no_seconds_at_all_end_it_at_once(tmp_path: Path) -> None:
 def test_a_folder_that_is_there_is_refused_with_a_word(tmp_path: Path) -> None:
     run = deck("record", "-o", str(tmp_path))
     assert run.process.returncode == 2
-    assert "is there already: choose another folder" in run.errors[0]
+    assert "already exists: choose another folder" in run.errors[0]

@@ -89,7 +89,7 @@ def test_what_moves_a_robot_is_left_out_by_default(ros_domain: int, tmp_path: Pa
         assert [len(heard) for heard in (*moving, stops)] == [0, 0, 0]
     left_out = [line.split(": ")[1] for line in run.lines if line.startswith("not published")]
     assert left_out == ["/ai_command", "/cmd_vel", "/cmd_vel_stamped", "/emergency_stop"]
-    assert any("/cmd_vel: it moves the robot; --motion publishes it too" in x for x in run.lines)
+    assert any("/cmd_vel: moves the robot; --motion publishes it too" in x for x in run.lines)
 
 
 def test_asked_for_it_moves_and_stops_when_it_is_stopped(ros_domain: int, tmp_path: Path) -> None:

@@ -138,7 +138,7 @@ def test_a_profile_that_runs_already_is_not_started(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("variable", "words"),
-    [("DECK_RUN_DIR", "is not a directory"), ("DECK_LOG_DIR", "cannot be made")],
+    [("DECK_RUN_DIR", "is not a directory"), ("DECK_LOG_DIR", "cannot be created")],
 )
 def test_without_a_place_for_the_run_nothing_is_started(
     variable: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -310,7 +310,7 @@ def test_interrupting_twice_ends_a_run_whose_supervisor_hangs(tmp_path: Path) ->
         run.said("stopping")
         run.signal(signal.SIGINT)
         run.finish()
-        run.said(f"the supervisor (pid {session.supervisor_pid}) gave no answer; it was killed")
+        run.said(f"the supervisor (pid {session.supervisor_pid}) did not answer; it was killed")
         assert not alive(session.supervisor_pid)
     finally:
         run.close()

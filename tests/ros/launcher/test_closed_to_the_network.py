@@ -181,6 +181,6 @@ def test_settings_of_the_users_own_are_told_of(
     monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(own))
     session = DeckProcess("run", profile(tmp_path, "localhost"), "--domain", str(ros_domain))
     try:
-        session.said("FASTRTPS_DEFAULT_PROFILES_FILE is set, so Deck's own settings", 60)
+        session.said("FASTRTPS_DEFAULT_PROFILES_FILE is set, so Deck's own Fast DDS settings", 60)
     finally:
         session.close()

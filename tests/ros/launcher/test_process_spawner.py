@@ -89,7 +89,9 @@ async def test_a_spawn_server_that_does_not_answer_is_replaced(
     assert lives(born)
     assert spawner.server_pid not in (hung, None)
     (words,) = told
-    assert words.startswith(f"the spawn server (pid {hung}) gave no answer for 2 s and was killed")
+    assert words.startswith(
+        f"the spawn server (pid {hung}) did not answer within 2 s and was killed"
+    )
 
 
 async def test_two_that_do_not_answer_are_a_reason(
@@ -146,7 +148,7 @@ async def test_a_spawn_server_that_dies_at_once_is_replaced(
     await until(lambda: (found := read_process(dead)) is None or found.zombie, "its end")
     spawner.preload(["nodes"])
     assert lives(await spawner.spawn(SLEEP, nowhere))
-    assert told == [f"the spawn server (pid {dead}) ended; the next starts use a new one"]
+    assert told == [f"the spawn server (pid {dead}) ended; a new one takes over"]
 
 
 async def test_where_no_spawn_server_can_be_started_it_is_said(

@@ -61,7 +61,7 @@ async def test_what_is_removed_is_made_again_and_told(
     assert stat.S_IMODE((folder / "control.sock").stat().st_mode) == 0o600
     other = await attach("test")
     assert other.nodes["node"].pid == pid
-    assert any("has gone" in line.text for line in await other.history(None, 100))
+    assert any("is gone" in line.text for line in await other.history(None, 100))
     await other.aclose()
     await client.restart("node")
     await until(lambda: client.nodes["node"].pid not in (pid, None), "another process")

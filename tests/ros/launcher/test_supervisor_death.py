@@ -22,7 +22,6 @@ from launcher.processes.table import (
     read_marks,
     read_process,
 )
-from launcher.rundir import OWN_RUN_DIR
 from launcher.runs.strays import find_strays
 from launcher.status import NodeState, Stray
 from tests.ros.supervised import (
@@ -39,6 +38,7 @@ from tests.ros.supervised import (
     write_profile,
 )
 from tests.waiting import until
+from text.run_path import OWN_RUN_DIR
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

@@ -209,7 +209,7 @@ async def test_a_crash_loop_is_given_up(start: Launch) -> None:
         await client.start("node")
     status = await until_state(client, "node", NodeState.FAILED)
     assert status.restarts == 4
-    assert status.detail.startswith("given up: it ended 5 times in ")
+    assert status.detail.startswith("given up after 5 exits in ")
     assert status.detail.endswith("exit code 1: no port")
 
 

@@ -248,7 +248,7 @@ async def test_a_topic_of_another_type_or_too_seldom_is_not_what_was_promised(
     )
     await until_state(client, "seldom", NodeState.RUNNING)
     await until(
-        lambda: re.search(r"/ticks comes at [1-9]\S* Hz", client.nodes["seldom"].detail),
+        lambda: re.search(r"/ticks arrives at [1-9]\S* Hz", client.nodes["seldom"].detail),
         "the rate that is measured",
     )
     assert client.nodes["seldom"].detail.endswith("expected 500 Hz")
@@ -302,7 +302,7 @@ async def test_where_rclpy_is_missing_nodes_run_and_nobody_waits_for_ever(
     client = await start({"node": node, "other": {"exec": SLEEPER, "needs": ["node"]}})
     await said(client, "node", "running")
     status = await until_state(client, "node", NodeState.RUNNING)
-    assert status.detail == "whether it is ready cannot be seen"
+    assert status.detail == "whether it is ready cannot be determined"
     await running_pid(client, "other")
 
 

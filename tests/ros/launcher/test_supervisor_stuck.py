@@ -143,7 +143,7 @@ async def test_a_supervisor_that_hangs_is_killed_with_all_its_nodes(
     with pytest.raises(SilentSupervisorError) as error:
         await soon(stopped.shutdown(now=True))
     assert str(error.value) == (
-        f"the supervisor (pid {supervisor}) gave no answer; it was killed with all its nodes"
+        f"the supervisor (pid {supervisor}) did not answer; it was killed with all its nodes"
     )
     with pytest.raises(SilentSupervisorError):
         await soon(first)

@@ -34,8 +34,10 @@ def ramp(seconds: float, step: int) -> bytes:
 
 
 @pytest.fixture(scope="module")
-def stand_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_stand_in(tmp_path_factory.mktemp("portaudio"))
+def stand_in() -> Iterator[Path]:
+    # `ctypes.util.find_library` cuts the path of what it finds at a blank.
+    with tempfile.TemporaryDirectory(prefix="deck-test-portaudio-", dir="/tmp") as folder:
+        yield build_stand_in(Path(folder))
 
 
 @pytest.fixture(params=libraries())

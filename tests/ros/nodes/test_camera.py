@@ -125,7 +125,7 @@ def test_a_stream_dies_and_comes_back(peer: Peer, ros_domain: int) -> None:
         wait_until(lambda: len(pictures) > 5, "pictures")
     with node:
         node.wait_for_words(f"Lost {stream.url}")
-        wait_told(told, DiagnosticStatus.ERROR, "nobody answers there")
+        wait_told(told, DiagnosticStatus.ERROR, "nothing answers there")
         pictures.clear()
         with Stream(stream.port):
             wait_until(lambda: len(pictures) > 5, "pictures again")

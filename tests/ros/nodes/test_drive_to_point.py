@@ -213,7 +213,7 @@ def test_without_odometry_it_says_so(peer: Peer, ros_domain: int) -> None:
         assert asker.ask(1.0, 0.0)
         status, result = asker.end()
         assert status == ABORTED
-        assert "Nobody tells /odom" in result.message
+        assert "Nobody publishes /odom" in result.message
         assert math.isnan(result.distance)
 
 

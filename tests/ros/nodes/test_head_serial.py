@@ -155,7 +155,7 @@ def test_servos_go_where_the_head_is_asked_to_look_and_no_faster(
         "tilt_min": -20,
     }
     with Head(peer, ros_domain, bench.path, **params) as head:
-        head.wait_says(f"The head at {bench.path}", "what was commanded", "answers")
+        head.wait_says(f"The head at {bench.path}", "the commanded position", "answers")
         head.wait_unknown()
         values = head.wait_told(DiagnosticStatus.OK, "positions are commanded, not measured")
         assert (values["battery_v"], values["positions"]) == ("7.40", "commanded")
@@ -230,10 +230,10 @@ def test_a_controller_that_falls_silent_is_told_and_gets_no_moves(
 def test_another_device_at_the_port_gets_no_moves(head: tuple[Head, ServoBench]) -> None:
     node, bench = head
     bench.says = encode(TofFrame(123, 1000, 25.0))
-    node.wait_says("what comes is not LSC-16")
+    node.wait_says("its data are not from an LSC-16")
     assert node.turn(10, 0) == 0
     bench.says = random.Random(3).randbytes(50)
-    node.wait_told(DiagnosticStatus.ERROR, "what comes is not LSC-16")
+    node.wait_told(DiagnosticStatus.ERROR, "its data are not from an LSC-16")
     assert node.turn(10, 0) == 0
     assert moves_of(bench) == []
 

@@ -19,6 +19,7 @@ from robot.wire.lsc16 import encode as encode_servo
 from robot.wire.pico import Drive, Hello, PicoDecoder, Telemetry, Welcome, encode
 from robot.wire.tfluna import Model, TofDecoder, TofFrame
 from tests.ros.devices import mock_robot, set_parameter
+from tests.ros.node_process import NodeProcess
 from tests.ros.peer import LATCHED, Peer
 from tests.waiting import wait_until
 from tui.devices import trouble as device_trouble
@@ -26,8 +27,6 @@ from tui.devices import trouble as device_trouble
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-
-    from tests.ros.node_process import NodeProcess
 
 Frame = TypeVar("Frame")
 
@@ -182,6 +181,15 @@ def test_it_takes_its_devices_with_it(module_domain: int, tmp_path: Path) -> Non
         robot.send(signal.SIGTERM)
         assert robot.wait() == 0
         assert list(folder.iterdir()) == []
+
+
+def test_without_a_folder_the_devices_are_in_the_run_directory(
+    module_domain: int, tmp_path: Path
+) -> None:
+    folder = tmp_path / "run" / "devices"
+    with NodeProcess("nodes.mock_robot", module_domain) as robot:
+        robot.wait_for_words(f"The simulated robot is in {folder}")
+        assert {path.name for path in folder.iterdir()} == set(NAMES)
 
 
 def test_a_folder_that_cannot_be_is_told_in_one_line(module_domain: int, tmp_path: Path) -> None:

@@ -17,11 +17,14 @@ from hypothesis import strategies as st
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 
+from graph.data import ParameterRow
 from nodes.parts.node import LessonNode
 from nodes.parts.parameters import BadValueError, Choice, Number, Setting, Switch, Text, Whole
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, ROOT, Peer
 from tests.unit.scripts_of_setup import load
+from text.i18n import set_language
+from tui.graph.parameter_words import allowed_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,6 +63,44 @@ def test_the_screen_has_every_description_in_russian(module: str) -> None:
         entry = catalogue.get(setting.about)
         assert entry is not None, setting.about
         assert re.search("[а-яё]|JPEG", str(entry.string), re.IGNORECASE), setting.about
+
+
+@pytest.fixture
+def in_russian() -> Iterator[None]:
+    """The screen speaks Russian."""
+    set_language("ru")
+    yield
+    set_language("en")
+
+
+@pytest.mark.parametrize("module", [*MODULES, "camera"])
+def test_nothing_english_is_left_in_what_a_parameter_may_be(module: str, in_russian: None) -> None:
+    """Only words that are typed as they are stay."""
+    del in_russian
+    for setting in settings_of(module):
+        choices = getattr(setting, "choices", ())
+        kept = {
+            "none",
+            "dev",
+            "URL",
+            "inf",
+            "true",
+            "false",
+            *re.findall(r"[A-Za-z]+", str(choices)),
+        }
+        descriptor = setting.descriptor()
+        ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
+        row = ParameterRow(
+            setting.name,
+            "",
+            setting.default,
+            constraints=descriptor.additional_constraints,
+            least=ranges[0].from_value if ranges else None,
+            greatest=ranges[0].to_value if ranges else None,
+        )
+        words = allowed_words(row)
+        assert words
+        assert {*re.findall(r"[A-Za-z]+", words)} <= kept, words
 
 
 def test_the_screen_has_the_descriptions_of_rclpys_own_parameters_in_russian(

@@ -61,7 +61,7 @@ def test_the_command_word_is_found(words: list[str], command: str, rest: list[st
         (["logs", "x", "-n", "-3"], "'-3' is not a number of lines"),
         (
             ["--bandwidth", "fast"],
-            "'fast' is not a bandwidth; expected kB/s from 1 on, as 40, or off",
+            "'fast' is not a bandwidth; expected kB/s from 1 up, such as 40, or off",
         ),
         (["replay", "x", "--bandwidth", "0.5"], "'0.5' is not a bandwidth"),
         (["attach", "--bandwidth", "nan"], "'nan' is not a bandwidth"),

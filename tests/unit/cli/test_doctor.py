@@ -82,12 +82,12 @@ WHEELS = RosFacts(
         (
             "/opt/ros/jazzy/lib/python3.12/site-packages/rclpy/__init__.py",
             {"ROS_DISTRO": "jazzy"},
-            "jazzy of the distribution",
+            "jazzy from the distribution",
         ),
         (
             "/pixi/envs/default/lib/python3.12/site-packages/rclpy/__init__.py",
             {"CONDA_PREFIX": "/pixi/envs/default", "ROS_DISTRO": "jazzy"},
-            "jazzy of RoboStack",
+            "jazzy from RoboStack",
         ),
         (
             "/ws/install/lib/python3/site-packages/rclpy/__init__.py",
@@ -217,7 +217,7 @@ def test_shared_memory() -> None:
     assert bad(judge_shared_memory(SharedMemoryFacts(exists=False))) == [("shm", "warn")]
     stale = judge_shared_memory(SharedMemoryFacts(stale=3, stale_bytes=1_500_000))
     assert bad(stale) == [("shm.stale", "warn")]
-    assert "3 segments" in text(stale, "shm.stale")
+    assert "3 unused segments" in text(stale, "shm.stale")
     (mend,) = [one.mend for one in stale if one.key == "shm.stale"]
     assert "rm /dev/shm" not in mend, "those of other users are there too"
     assert "find /dev/shm -maxdepth 1 -user $(id -un) -name 'fastrtps_*' -delete" in mend
@@ -270,7 +270,7 @@ def test_logging_out(facts: LoginFacts, verdict: list[tuple[str, str]]) -> None:
 
 def test_up_says_in_a_login_that_logging_out_ends_it() -> None:
     lines = before_logout(LoginFacts(logind=True), {"XDG_SESSION_ID": "3"})
-    assert "`deck up` falls silent" in lines[0]
+    assert "`deck up` lose each other" in lines[0]
     assert "loginctl enable-linger" in lines[1]
     assert before_logout(LoginFacts(logind=True), {}) == []
     assert before_logout(LoginFacts(logind=True, lingers=True), {"XDG_SESSION_ID": "3"}) == []

@@ -47,8 +47,8 @@ def test_low_voltage_now_and_before_are_two_things(tmp_path: Path) -> None:
     root = machine(tmp_path, {"proc/device-tree/model": PI})
     now = power.judge(power.look(root, lambda: "throttled=0x10001"))
     before = power.judge(power.look(root, lambda: "throttled=0x10000"))
-    assert "low voltage now | a supply of 5 V" in text(now, "power.voltage")
-    assert "low voltage since the start" in text(before, "power.voltage")
+    assert "low voltage now | use a 5 V, 5 A supply" in text(now, "power.voltage")
+    assert "low voltage since power-on" in text(before, "power.voltage")
 
 
 @pytest.mark.parametrize("answer", ["", "VCHI initialization failed\n", "throttled=?"])

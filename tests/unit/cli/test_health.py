@@ -55,7 +55,7 @@ def test_when_all_is_up_and_when_all_is_over(
     [
         (node("a", READY), True),
         (node("a", RUNNING), True),
-        (node("a", RUNNING, detail="whether it is ready cannot be seen"), True),
+        (node("a", RUNNING, detail="whether it is ready cannot be determined"), True),
         (node("a", RUNNING, detail=LATE), False),
         (node("a", READY, restarts=1), False),
         (node("a", EXITED, exit_code=0), True),

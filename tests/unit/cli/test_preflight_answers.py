@@ -96,7 +96,7 @@ def test_a_pico_whose_lines_come_garbled_is_told() -> None:
     answer = asked("pico", noisy)
     assert answer.level is Level.WARN
     assert answer.text.endswith("7.4 V, the battery is low, some lines arrive garbled")
-    assert "keep it short" in answer.mend
+    assert "the cable: short" in answer.mend
     dumb = Device(answers={HELLO: b"$T,4" * 99 + b"\n" + b"\xff\n" * 3 + pico().answers[HELLO]})
     assert asked("pico", dumb).text == "firmware 1.0.0, some lines arrive garbled"
 
@@ -132,20 +132,20 @@ def test_a_pico_in_trouble_is_told(flags: str, words: str, mend: str) -> None:
     ("kind", "device", "words", "mend"),
     [
         ("pico", Device(), "silent: no Pico", "flash firmware/pico2"),
-        ("pico", Device(READING * 9), "a ToF sonar is talking here, not the Pico", "by-id"),
-        ("pico", Device(GARBAGE), "none of which a Pico sends", "baud (this is 115200)"),
+        ("pico", Device(READING * 9), "a ToF sonar answers here, not the Pico", "by-id"),
+        ("pico", Device(GARBAGE), "no Pico sends such", "baud (this is 115200)"),
         ("pico", Device(answers={HELLO: b"$V\r\nTraceback\r\n>>> "}), "not with Deck's", "flash"),
         ("pico", Device(b"MicroPython v1.27\r\n>>> "), "not with Deck's firmware", "flash"),
-        ("pico", Device(telemetry()), "what is sent does not arrive", "cable"),
-        ("pico", Device(telemetry() + b"$T,4\n"), "some lines arrive garbled", "keep it short"),
+        ("pico", Device(telemetry()), "what is sent gets lost", "cable"),
+        ("pico", Device(telemetry() + b"$T,4\n"), "some lines arrive garbled", "the cable: short"),
         ("pico", pico(protocol=2), "protocol 2, this program 1", "flash"),
         ("tf_luna", Device(), "silent: no TF-Luna", "not I2C"),
-        ("tf_luna", Device(telemetry() * 3), "Pico is talking here, not the TF-Luna", "by-id"),
-        ("tf_luna", Device(GARBAGE, baud=9600), "none of which a TF-Luna", "baud (this is 9600)"),
+        ("tf_luna", Device(telemetry() * 3), "Pico answers here, not the TF-Luna", "by-id"),
+        ("tf_luna", Device(GARBAGE, baud=9600), "no TF-Luna sends", "baud (this is 9600)"),
         ("tfmini_s", Device(), "silent: no TFmini-S", "not I2C"),
         ("lsc16", Device(), "silent: no LSC-16", "cross TX and RX"),
-        ("lsc16", Device(READING * 9), "a ToF sonar is talking here, not the LSC-16", "by-id"),
-        ("lsc16", Device(answers={BATTERY: GARBAGE}), "none of which a LSC-16 sends", "baud"),
+        ("lsc16", Device(READING * 9), "a ToF sonar answers here, not the LSC-16", "by-id"),
+        ("lsc16", Device(answers={BATTERY: GARBAGE}), "no LSC-16 sends", "baud"),
     ],
 )
 def test_wrong_devices(kind: str, device: Device, words: str, mend: str) -> None:

@@ -199,4 +199,4 @@ def test_a_lesson_without_devices_has_nothing_to_be_asked(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["check", "01-hello", "--hardware", "real", "--preflight"]) == 0
-    assert capsys.readouterr().out == "01-hello names no device\n"
+    assert capsys.readouterr().out == "01-hello has no devices\n"

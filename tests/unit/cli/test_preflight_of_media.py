@@ -30,7 +30,7 @@ def test_cameras_that_are_missing_or_none(tmp_path: Path) -> None:
     assert "DECK_EYE_SOURCE=" in none.mend
     (other,) = examine(robot(eye={"kind": "camera", "source": str(tmp_path / "note.txt")}), list)
     assert other.level is Level.FAIL
-    assert "it gives no picture" in other.text
+    assert "it delivers no picture" in other.text
 
 
 CARDS = '[["USB Microphone: Audio (hw:1,0)", 1, 0], ["MAX98357A (hw:2,0)", 0, 2]]'

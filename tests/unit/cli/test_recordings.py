@@ -49,7 +49,7 @@ def test_they_are_listed_the_newest_first(capsys: pytest.CaptureFixture[str]) ->
     assert head.split() == ["NAME", "ENDED", "LENGTH", "TOPICS", "MESSAGES", "SIZE"]
     assert new.split()[:6] == ["new", *new.split()[1:3], "1:15", "3", "753"]
     assert old.split()[0] == "old"
-    assert last == f"in {recordings_path()}; to see one: deck replay NAME"
+    assert last == f"recordings are in {recordings_path()}; to open one: deck replay NAME"
 
 
 def test_topics_that_said_nothing_are_counted_as_the_end_of_a_recording_counts_them(
@@ -137,4 +137,4 @@ def test_options_of_publishing_are_refused_without_it(
     option: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["replay", *option]) == 2
-    assert "for --publish alone" in capsys.readouterr().err
+    assert "only work with --publish" in capsys.readouterr().err

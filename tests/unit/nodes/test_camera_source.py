@@ -38,7 +38,7 @@ def test_a_source_is_known_by_its_name(name: str, kind: SourceKind, shown: str) 
         ("/dev/video99", "no such camera"),
         ("/dev/null", "no pictures"),
         ("/dev/shm", "it is not a camera"),
-        ("http://x", "nobody answers"),
+        ("http://x", "nothing answers"),
     ],
 )
 def test_why_it_does_not_open_is_told(name: str, words: str) -> None:

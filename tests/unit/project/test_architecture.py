@@ -7,10 +7,10 @@ import re
 
 import pytest
 
+from tests.rooms import ROOMS
 from tests.unit.scripts_of_setup import ROOT, load
 
 architecture = load("architecture")
-ROOMS = ("cli", "deck", "graph", "launcher", "nodes", "robot", "text", "tui")
 PAGES = ("ARCHITECTURE.md", "CONTRIBUTING.md")
 EXAMPLES = re.compile(r"thermometer|notes")
 """In the names of what a reader of CONTRIBUTING.md is told to make."""

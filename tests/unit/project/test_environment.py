@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -71,7 +70,7 @@ def test_an_environment_that_somebody_else_has_made_stays(
     monkeypatch.setattr(environment, "WORK", made.tree / "build")
     assert environment.main(str(made.subject.folder)) == 1
     said = capsys.readouterr().err.splitlines()[-1]
-    assert said.startswith(f"deck: cannot set up here: {made.subject.folder} is there already")
+    assert said.startswith(f"deck: cannot set up here: {made.subject.folder} already exists")
     assert precious.read_text() == "mine"
     assert made.steps == []
 
@@ -204,8 +203,7 @@ def test_a_second_make_waits_and_finds_the_work_done(
     def first() -> None:
         with environment.only_one():
             held.set()
-            while "waiting" not in capsys.readouterr().err:
-                time.sleep(0.01)
+            wait_until(lambda: "waiting" in capsys.readouterr().err, "the word of the second")
             made.subject.update()
 
     thread = threading.Thread(target=first)

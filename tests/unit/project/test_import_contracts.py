@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.rooms import PYPROJECT, ROOMS
+
 ROOT = Path(__file__).parents[3]
-PYPROJECT = ROOT / "pyproject.toml"
 LINTER = "from importlinter.cli import lint_imports_command; lint_imports_command()"
-ROOMS = ("cli", "deck", "graph", "launcher", "nodes", "robot", "text", "tui")
 IGNORED = re.compile(r'"([\w.]+) -> ([\w.]+)"')
 """An exception of a contract, which the linter expects to find."""
 

@@ -68,4 +68,5 @@ def test_what_is_asked_for_is_locked_once_for_every_python(name: str, python: st
 
 def asked_for() -> dict[str, list[str]]:
     """Return what both pyproject.toml ask for."""
-    return lock.requirements()  # type: ignore[no-any-return]
+    asked: dict[str, list[str]] = lock.requirements()
+    return asked

@@ -8,10 +8,10 @@ import pytest
 
 from launcher.profile.panels import Panel
 from robot import joints, topics
+from tests.rooms import ROOMS
 from tui.panels.registry import PANELS
 
 ROOT = Path(__file__).parents[3]
-ROOMS = ("cli", "graph", "launcher", "nodes", "robot", "text", "tui")
 NAMES = {
     value
     for module in (topics, joints)

@@ -15,7 +15,7 @@ import pytest
 from cli.arguments import COMMANDS, parser_of, split
 from launcher.profile.device_variables import variable
 from launcher.profile.load import load_profile
-from launcher.rundir import OWN_RUN_DIR
+from text.run_path import OWN_RUN_DIR
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 SERVICE = DOCS / "deck-robot@.service"

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
+import yaml
 from textual.app import App
 
 from cli.arguments import COMMANDS
@@ -35,6 +36,14 @@ def test_the_profile_shown_is_valid_and_starts_what_it_says(readme: str, tmp_pat
     profile = load_profile(path)
     assert list(profile.nodes) == ["sonar_front", "safety_stop"]
     assert profile.nodes["safety_stop"].needs == ("sonar_front",)
+
+
+def test_both_readmes_show_the_same_profile() -> None:
+    shown = [
+        re.findall(r"```yaml\n(.*?)```", (ROOT / name).read_text(), re.DOTALL) for name in READMES
+    ]
+    english, russian = (yaml.safe_load(text) for (text,) in shown)
+    assert english == russian
 
 
 def test_every_lesson_is_listed_and_no_other(readme: str) -> None:

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import grimp
 
+from tests.rooms import ROOMS
+
 ROOT = Path(__file__).parents[3]
-ROOMS = ("cli", "deck", "graph", "launcher", "nodes", "robot", "text", "tui")
 FLAT = 30
 """How many modules one sees at a glance."""
 

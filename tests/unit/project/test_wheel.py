@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.installed_wheel import ROOMS, ROOT, Installed, build_wheel
+from tests.installed_wheel import INSIDE, ROOT, Installed, build_wheel
 
 CHANGELOG = ROOT / "CHANGELOG.md"
-FOLDERS = (*ROOMS, "profiles")
+FOLDERS = (*INSIDE, "profiles")
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def test_the_wheel_speaks_russian(wheel: zipfile.ZipFile) -> None:
 
 def test_type_checkers_may_read_it(wheel: zipfile.ZipFile) -> None:
     marked = {name for name in wheel.namelist() if name.endswith("/py.typed")}
-    assert marked == {"deck/py.typed", *(f"deck/{room}/py.typed" for room in ROOMS)}
+    assert marked == {"deck/py.typed", *(f"deck/{room}/py.typed" for room in INSIDE)}
 
 
 def test_deck_is_a_command(wheel: zipfile.ZipFile) -> None:
@@ -93,7 +93,7 @@ def test_an_installed_deck_uses_its_own_modules(installed: Installed) -> None:
     assert not installed.imported.exists()
 
 
-@pytest.mark.parametrize("room", ROOMS)
+@pytest.mark.parametrize("room", INSIDE)
 def test_the_packages_of_others_stay_theirs(installed: Installed, room: str) -> None:
     """To import Deck's package moves nothing either."""
     program = f"import deck, {room}; print({room}.WHOSE)"

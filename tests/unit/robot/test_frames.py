@@ -32,13 +32,13 @@ READERS = (PicoReader, TofReader, ServoReader, RawReader)
 TELEMETRY = Telemetry(3, 61250, 2, 6.18, -6.15, 0.35, 7.42, 0.81, None, 0, frozenset("EN"))
 TELEMETRY_EN = (
     "wheels left 6.18 right -6.15 rad/s steering 0.35 rad, flags: emergency stop latched,"
-    " no encoders: speeds are those asked for, 7.42 V, left 0.81 A, obeyed 2, refused 0,"
+    " no encoders: speeds are as commanded, 7.42 V, left 0.81 A, obeyed 2, refused 0,"
     " up 61.2 s, seq 3, crc ok"
 )
 TELEMETRY_RU = (
     "колёса: левое 6,18 правое -6,15 рад/с, руль 0,35 рад, флаги: аварийный стоп,"
-    " без энкодеров, 7,42 В, левый 0,81 А, исполнено 2, отвергнуто 0, работает 61,2 с,"
-    " № 3, crc верна"
+    " без энкодеров: скорости по командам, 7,42 В, левый 0,81 А, исполнено 2,"
+    " отвергнуто 0, работает 61,2 с, № 3, crc верна"
 )
 NEAR = wire_tfluna.encode(TofFrame(123, 1000, 25.0))
 
@@ -90,9 +90,9 @@ def test_lines_of_the_pico(message: wire_pico.Message, en: str, ru: str) -> None
 @pytest.mark.parametrize(
     ("line", "kind", "words"),
     [
-        (b"$D,2,6200,-6200,350*2673\n", "bad", "CRC FAILED: 2673 came, 2672 is right"),
-        (b"$D,2,6200,-62\r\n", "bad", "NO WHOLE LINE"),
-        (b"$D,2,6200,-6200,350*2672"[:-1] + b"\xff\n", "bad", "NO WHOLE LINE"),
+        (b"$D,2,6200,-6200,350*2673\n", "bad", "CRC FAILED: got 2673, expected 2672"),
+        (b"$D,2,6200,-62\r\n", "bad", "INCOMPLETE LINE"),
+        (b"$D,2,6200,-6200,350*2672"[:-1] + b"\xff\n", "bad", "INCOMPLETE LINE"),
         (wrap("X,1"), "bad", "UNKNOWN LINE, though its crc is right"),
         (b"MicroPython v1.25\n", "noise", "noise 18 bytes"),
         (b"\x1b[31m" * 40, "noise", "noise 200 bytes"),
@@ -125,7 +125,7 @@ def test_bad_frames_of_a_sonar_and_what_is_between() -> None:
     found = said(TofReader("en"), b"noise" + bad[:4], bad[4:] + NEAR[:3] + NEAR, b"Y", b"Z" + NEAR)
     assert found == [
         ("noise", "noise 5 bytes"),
-        ("bad", "CHECKSUM FAILED: 00 came, E8 is right"),
+        ("bad", "CHECKSUM FAILED: got 00, expected E8"),
         ("noise", "noise 3 bytes"),
         ("frame", "distance 1.23 m, strength 1000, 25.0 °C"),
         ("noise", "noise 2 bytes"),
@@ -142,10 +142,10 @@ def test_bad_frames_of_a_sonar_and_what_is_between() -> None:
             ("frame", "move in 500 ms: servo 1 to 1500 us, servo 2 to 1700 us"),
         ),
         (wire_lsc16.encode(Battery(7400)), ("frame", "battery 7.40 V")),
-        (wire_lsc16.encode(BatteryRequest()), ("frame", "how is the battery?")),
+        (wire_lsc16.encode(BatteryRequest()), ("frame", "battery voltage?")),
         (wire_lsc16.encode(wire_lsc16.ActionRun(3, 2)), ("frame", "group 3 runs 2 times")),
         (b"\x55\x55\x02\x07", ("frame", "group stops")),
-        (b"\x55\x55\x02\x63", ("bad", "NO FRAME OF AN LSC-16")),
+        (b"\x55\x55\x02\x63", ("bad", "NOT AN LSC-16 FRAME")),
         (b"\x55\x55\xff", ("noise", "noise 2 bytes")),
     ],
 )

@@ -80,7 +80,6 @@ def test_frames_behind_noise_are_found_however_the_stream_is_cut(
     stream = before + bytes(60) + b"".join(map(encode, sent))
     heard = [frame for piece in cut(stream, places) for frame in decoder.feed(piece)]
     assert heard[len(heard) - len(sent) :] == sent
-    assert decoder.octets == len(stream)
     assert decoder.skipped + sum(len(encode(frame)) for frame in heard) == len(stream)
 
 

@@ -14,9 +14,9 @@ import asyncio, sys
 from tui.lifecycle.opener import LiveOpener
 
 async def main():
-    pad = LiveOpener()
-    pad._start_ahead = lambda: asyncio.sleep(0)
-    await pad.prepare()
+    opener = LiveOpener()
+    opener._start_ahead = lambda: asyncio.sleep(0)
+    await opener.prepare()
     before = set(sys.modules)
     import tui.deck.screen
     from tui.panels.registry import PANELS, make_panel

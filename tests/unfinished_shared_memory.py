@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-HALF_MADE = b"\1".ljust(52_400, b"\0")
+UNFINISHED = b"\1".ljust(52_400, b"\0")
 """As large as Fast DDS makes it; the first word is boost.interprocess's `initializing`."""
 PARTICIPANTS = 4
 
 
 @pytest.fixture
-def half_made(ros_domain: int) -> Iterator[list[Path]]:
+def unfinished(ros_domain: int) -> Iterator[list[Path]]:
     """The ports of the test's own domain, as they are while Fast DDS makes them.
 
     The numbers are those of RTPS 2.5, section 9.6.2.3, for the unicast of users.
@@ -31,7 +31,7 @@ def half_made(ros_domain: int) -> Iterator[list[Path]]:
     # What another user's node has left is not to be written to; a node goes on to the next one.
     paths = list(itertools.islice(itertools.filterfalse(_is_anothers, every), PARTICIPANTS))
     for path in paths:
-        path.write_bytes(HALF_MADE)
+        path.write_bytes(UNFINISHED)
     yield paths
     for path in paths:
         path.unlink(missing_ok=True)
@@ -49,6 +49,6 @@ def make_old(paths: Iterable[Path], age_s: float = 60.0) -> None:
         os.utime(path, (then_s, then_s))
 
 
-def is_half_made(path: Path) -> bool:
+def is_unfinished(path: Path) -> bool:
     """Whether it still is as it was."""
-    return path.exists() and path.read_bytes() == HALF_MADE
+    return path.exists() and path.read_bytes() == UNFINISHED
