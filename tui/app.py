@@ -1,4 +1,4 @@
-"""The app: its screens, its languages and themes, and the session opened, closed and left."""
+"""The app: its screens, languages and themes, and opening, closing and leaving the session."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from textual.events import Key, Paste
 
 from text.i18n import LANGUAGES, _, language, set_language
 from text.plain import plain, plain_lines
-from tui.actions import Acting, Action, bindings
+from tui.actions import Acting, Action, Keys, bindings
 from tui.dialogs.opening import OpeningScreen
 from tui.emergency.control import EmergencyControl
 from tui.emergency.messages import EmergencyChanged
@@ -25,7 +25,7 @@ from tui.lifecycle.sessions import Sessions
 from tui.recording.recording import Recording
 from tui.screens import Screens
 from tui.session.feed import Feed, GraphReady
-from tui.session.messages import LanguageChanged
+from tui.session.messages import LanguageChanged, LessonOpened
 from tui.session.strangers import Strangers
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from tui.session.requests import OpenRequest
 
 STRANGERS_S = 20.0
-"""How long it is told beside the title who publishes past the gate."""
+"""How long the notification about a publisher that bypasses the gate is shown."""
 
 
 def _commands() -> type[Provider]:
@@ -57,21 +57,21 @@ def _commands() -> type[Provider]:
 
 
 class Surroundings(Protocol):
-    """What is around an app on a real terminal; without one there is nothing."""
+    """The environment of an app on a real terminal; without a terminal these methods do nothing."""
 
     @property
     def terminal_fd(self) -> int:
-        """Where the terminal is written to."""
+        """File descriptor that the terminal is written to."""
 
     def arrive(self, app: DeckApp) -> None:
-        """Take note that the app runs now."""
+        """Record that the app is now running."""
 
     def remember(self, **values: str) -> None:
-        """Keep this theme, language or lesson for the next time."""
+        """Save the current theme, language and lesson for the next run."""
 
 
 class DeckApp(App[int], Acting):
-    """One screen for the lessons."""
+    """The Textual app that shows the lessons."""
 
     TITLE = "Deck"
     BINDINGS: ClassVar[list[BindingType]] = bindings(
@@ -79,7 +79,7 @@ class DeckApp(App[int], Acting):
     )
     COMMANDS: ClassVar = {_commands}
     ENABLE_COMMAND_PALETTE = False
-    """Textual's own key for it; ours speaks the language of the screen."""
+    """Disables Textual's own key for it; Deck's palette is in the language of the screen."""
 
     _surroundings: Surroundings | None = None
 
@@ -93,15 +93,15 @@ class DeckApp(App[int], Acting):
         bandwidth: Bandwidth | None = None,
         surroundings: Surroundings | None = None,
     ) -> None:
-        """`opener` lists and opens; a `request` that names nothing is asked for by the picker.
+        """Start with `opener`, which lists and opens sessions; an empty `request` shows the picker.
 
-        With a `journal` the app outlives what its widgets raise, see `tui.faults`.
+        With a `journal`, the app survives exceptions raised by its widgets, see `tui.faults`.
         """
         super().__init__(driver_class=driver_class)
         self._surroundings = surroundings
         self.faults = Faults(self, self, journal)
         self.has_begun = False
-        """Whether the first frame is out."""
+        """Whether the first frame has been drawn."""
         self.feed = Feed(self, FOLLOWED, self.faults)
         self.emergency = EmergencyControl(self, self.feed, self._emergency_changed)
         self.strangers = Strangers()
@@ -117,35 +117,34 @@ class DeckApp(App[int], Acting):
             opener,
             request,
         )
-        self.sessions.lesson_opened = lambda name: self._remember(lesson=name)
         self.stall_detector = KeyStallDetector()
         self.bandwidth = bandwidth or Bandwidth()
-        """What is written to the terminal, and how much of pictures that may be."""
+        """Counts what is written to the terminal, and limits the share of pictures."""
         self._harmless = Harmless()
         self._key_queue = KeyQueue(self)
         self._first_screen = "picker" if self.sessions.picking else first_screen
         self.register_theme(HIGH_CONTRAST)
 
     def get_default_screen(self) -> Screen[Any]:
-        """Begin with a screen that costs next to nothing: nobody waits for a first frame."""
+        """Start with a screen that costs almost nothing, so that the first frame comes at once."""
         opening = self.sessions.opening
         words = _("opening {name}…").format(name=plain(opening)) if opening else _("Lessons")
         return OpeningScreen(words)
 
     def on_mount(self) -> None:
-        """Go on when the first frame is out."""
+        """Continue once the first frame has been drawn."""
         if self._surroundings is not None:
             self._surroundings.arrive(self)
         self.stall_detector.watch()
-        # A moment of rest lets the threads that write to the terminal have their turn.
+        # A short pause lets the threads that write to the terminal run.
         self.call_after_refresh(self.set_timer, 0.01, self._begin)
 
     def on_unmount(self) -> None:
-        """Leave no thread behind."""
+        """Leave no threads behind."""
         self.stall_detector.end()
 
     async def on_event(self, event: Event) -> None:
-        """Take keys one after the other; the emergency stop waits for none."""
+        """Handle keys one at a time; only the emergency stop does not wait its turn."""
         if not isinstance(event, (Key, Paste)) or event.is_forwarded:
             await super().on_event(event)
         elif not self._key_queue.must_wait(event):
@@ -156,7 +155,7 @@ class DeckApp(App[int], Acting):
             self._key_queue.wait(event)
 
     async def _stopped_by(self, event: Key | Paste) -> bool:
-        """Stop the wheels if that is what this key, where it is pressed, is for."""
+        """Stop the wheels if this key means that where it was pressed; return whether it did."""
         keys = self._keymap.get(EmergencyStop.id, EmergencyStop.key).split(",")
         return (
             isinstance(event, Key)
@@ -165,7 +164,7 @@ class DeckApp(App[int], Acting):
         )
 
     async def _begin(self) -> None:
-        """Show the lesson, or the picker if none was named, and open what was asked for."""
+        """Show the lesson, or the picker if none was named, and open what was requested."""
         self.has_begun = True
         await self.push_screen(self._screens.made(self._first_screen))
         self.sessions.begin()
@@ -175,7 +174,7 @@ class DeckApp(App[int], Acting):
         await self._screens.show(name)
 
     def get_css_variables(self) -> dict[str, str]:
-        """Return the colours of the theme, as far as the terminal can tell them apart."""
+        """Return the colours of the theme, adapted to what the terminal can distinguish."""
         variables = super().get_css_variables()
         if self.console.color_system == "standard":
             variables = {**variables, **few_colours(dark=self.current_theme.dark)}
@@ -183,7 +182,7 @@ class DeckApp(App[int], Acting):
         return variables
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Look at every line once more before it goes to the terminal."""
+        """Check every line once more before it goes to the terminal."""
         return [*super().get_line_filters(), self._harmless]
 
     def notify(
@@ -195,16 +194,16 @@ class DeckApp(App[int], Acting):
         timeout: float | None = None,
         markup: bool = False,
     ) -> None:
-        """Tell something in a corner, as the text that it is."""
+        """Show a notification as plain text."""
         message, title = plain_lines(message), plain(title)
         super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
 
     def copy_to_clipboard(self, text: str) -> None:
-        """Copy lines of text, which may be pasted where they would be obeyed."""
+        """Copy text made safe to paste, since it may be pasted into a shell."""
         super().copy_to_clipboard(plain_lines(text))
 
     async def show_safe_screen(self, broken: Screen[Any]) -> None:
-        """Let go of a screen that cannot be drawn; it is made anew when it is asked for again."""
+        """Discard a screen that cannot be drawn; it is created again when next requested."""
         from tui.dialogs.safe import SafeScreen
 
         if broken is not self.screen:
@@ -215,25 +214,25 @@ class DeckApp(App[int], Acting):
             await broken.remove()
 
     def is_safe(self, screen: Screen[Any]) -> bool:
-        """Whether this is what is shown in place of a screen that cannot be drawn."""
+        """Whether this screen is the substitute for one that cannot be drawn."""
         from tui.dialogs.safe import SafeScreen
 
         return isinstance(screen, SafeScreen)
 
     def give_up(self, words: str) -> None:
-        """Leave, in order: nothing can be drawn any more."""
+        """Exit cleanly: nothing can be drawn any more."""
         self.sessions.parting_words = words
         self.sessions.leave(1)
 
     def _handle_exception(self, error: Exception) -> None:
-        """Go on, where faults are isolated: Textual would end the app by any of them."""
+        """Keep running where faults are isolated; Textual would end the app on any of them."""
         if self.faults.isolates:
             self.faults.caught(error)
         else:
             super()._handle_exception(error)
 
     def show_help(self) -> None:
-        """Explain the screen in front."""
+        """Open the help page of the screen in front."""
         from tui.help.screen import HelpScreen
 
         if not isinstance(self.screen, HelpScreen):
@@ -241,11 +240,11 @@ class DeckApp(App[int], Acting):
 
     @property
     def crashed(self) -> bool:
-        """Whether the app ended by a fault of its own."""
+        """Whether the app ended because of a fault of its own."""
         return self._exception is not None
 
     def on_graph_ready(self, message: GraphReady) -> None:
-        """Take the update that waits; a fault of the stop does not keep it from the screens."""
+        """Take the waiting update; the screens get it even if the emergency stop fails on it."""
         del message
         before, update = self.feed.update, self.feed.take_update()
         if update is None:
@@ -256,29 +255,29 @@ class DeckApp(App[int], Acting):
             self.feed.hand_over(update)
         front = self.feed.front
         if self.feed.watching and front and (before is None or before.nodes != update.nodes):
-            # Their number stands in the title.
+            # The title shows how many there are.
             front.show_frame()
         if self.strangers.see(update, self.feed.nodes):
             self._tell_of_strangers()
 
     def _tell_of_strangers(self) -> None:
-        """Name in every title, and once beside it, who publishes past the gate."""
+        """Show in every title, and once as a notification, who publishes past the gate."""
         if words := self.strangers.words():
             self.notify(words[0], severity="error", timeout=STRANGERS_S, markup=False)
         self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
 
     def _emergency_changed(self) -> None:
-        """Tell every screen, and the keys: a release is possible only when engaged."""
+        """Update every screen and the keys: release is possible only while the stop is engaged."""
         self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
         self.refresh_bindings()
 
     def replay_changed(self) -> None:
-        """Show at once where the recording is now."""
+        """Show at once the new position in the recording."""
         for bar in self.screen.query(ReplayBar):
             bar.look()
 
-    def keys_of(self, action: type[Action[Any]]) -> list[str]:
-        """Return how the keys of `action` are written, those of the user's keymap."""
+    def keys_of(self, action: type[Action[Any]] | Keys) -> list[str]:
+        """Return how the keys of `action` are written, following the user's keymap."""
         keys = self._keymap.get(action.id, action.key).split(",")
         return [self.key_text(key.strip()) for key in keys]
 
@@ -287,7 +286,7 @@ class DeckApp(App[int], Acting):
         return self.get_key_display(Binding(key, ""))
 
     def show_palette(self) -> None:
-        """Open the palette in the language spoken now."""
+        """Open the palette in the current language."""
         from textual.command import CommandPalette
 
         if not isinstance(self.screen, CommandPalette):
@@ -295,11 +294,11 @@ class DeckApp(App[int], Acting):
             self.push_screen(CommandPalette(placeholder=words, id="--command-palette"))
 
     def action_help_quit(self) -> None:
-        """Ctrl+C copies elsewhere: say how to leave."""
+        """Say how to quit, since Ctrl+C means copy in other programs."""
         self.notify(_("Press q, or Ctrl+Q in a text field, to leave."), markup=False)
 
     def speak(self, code: str) -> None:
-        """Speak this language from now on, and draw every text anew."""
+        """Switch to this language and redraw every text."""
         set_language(code)
         self._remember(language=code)
         for screen in self.screen_stack:
@@ -308,29 +307,29 @@ class DeckApp(App[int], Acting):
         self.refresh_bindings()
 
     def switch_language(self) -> None:
-        """Speak the next language."""
+        """Switch to the next language."""
         self.speak(LANGUAGES[(LANGUAGES.index(language()) + 1) % len(LANGUAGES)])
 
     def redraw(self) -> None:
-        """Draw everything anew, whatever the terminal may show."""
+        """Redraw everything, whatever the terminal may be showing."""
         if isinstance(self._driver, DeckDriver):
             self._driver.forget()
         self.refresh(layout=True)
 
     @property
     def terminal_fd(self) -> int:
-        """Where the driver writes to, the usual output without a real terminal."""
+        """The descriptor that the driver writes to; standard output without a real terminal."""
         return 1 if self._surroundings is None else self._surroundings.terminal_fd
 
     def terminal_is_gone(self) -> bool:
-        """Tell whether there is a terminal no more; nothing is written to it from then on."""
+        """Record that the terminal is gone; nothing is written to it from now on."""
         if not isinstance(self._driver, DeckDriver) or not self._driver.gone:
             return False
         self._driver.give_up()
         return True
 
     def on_resize(self) -> None:
-        """Draw everything anew: a window made small and large again has lost its cells."""
+        """Redraw everything: a window that was made small and large again has lost its cells."""
         if isinstance(self._driver, DeckDriver):
             self.redraw()
 
@@ -338,14 +337,18 @@ class DeckApp(App[int], Acting):
         """Remember the theme."""
         self._remember(theme=theme)
 
+    def on_lesson_opened(self, message: LessonOpened) -> None:
+        """Remember the lesson, where the list begins the next time."""
+        self._remember(lesson=message.name)
+
     def _remember(self, **values: str) -> None:
         if self._surroundings is not None:
             self._surroundings.remember(**values)
 
     def get_key_display(self, binding: Binding) -> str:
-        """Return how a key is written, in the language spoken now."""
+        """Return how a key is written in the current language."""
         return _("space") if binding.key == "space" else super().get_key_display(binding)
 
     def next_theme(self) -> None:
-        """Take the next theme of the cycle."""
+        """Switch to the next theme of the cycle."""
         self.theme = after(self.theme)

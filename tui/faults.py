@@ -1,14 +1,13 @@
-"""What fails on the screen: told once, in the place where it is, while all the rest goes on.
+"""Failures in the screen: reported once, where they occurred, while everything else keeps running.
 
-A fault of a panel must not take the emergency stop away. `tui.isolation` brings every
-exception that Textual would end the app by to `Faults.caught`.
+A fault in a panel must not take the emergency stop away. `tui.isolation` sends every exception that
+would make Textual end the app to `Faults.caught`.
 """
 
 from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from time import monotonic
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
@@ -27,32 +26,24 @@ if TYPE_CHECKING:
 
 
 Journal = Callable[[str, str], None]
-"""Takes what has failed, in a line, and its traceback."""
+"""Receives a failure as one line, and its traceback."""
 TOLD_AGAIN_S = 60.0
-"""The same fault is told so often at most, however often it comes."""
+"""The same fault is reported at most once in this time, however often it occurs."""
 MOST_TOLD = 64
-"""So many different faults are told, each with its traceback; of more only their number counts."""
+"""This many different faults are reported with a traceback; further ones are only counted."""
 UNDRAWN_WITHIN_S = 20.0
 MOST_UNDRAWN = 3
-"""A screen that so often within that time could not be drawn is given up."""
+"""A screen that could not be drawn this often within that time is given up."""
 RETRY_S = 0.2
 LAYING_OUT = frozenset({"_refresh_layout", "_compositor_refresh"})
-"""Where Textual draws a whole screen."""
+"""The methods in which Textual draws a whole screen."""
 COMPOSING = frozenset({"_compose", "_on_compose"})
-"""Where it makes what is on it."""
-
-
-@dataclass
-class Told:
-    """When a fault was told, and how often it has come since."""
-
-    at_s: float
-    again: int = 0
+"""The methods in which Textual creates the widgets of a screen."""
 
 
 @runtime_checkable
 class Failing(Protocol):
-    """A panel: it can say in its own place that it has failed."""
+    """A panel that can show its own failure."""
 
     @property
     def title(self) -> str:
@@ -60,59 +51,60 @@ class Failing(Protocol):
 
     @property
     def failed(self) -> bool:
-        """Whether words stand in its place."""
+        """Whether an error message is shown in its place."""
 
     def show_fault(self, words: str) -> None:
-        """Say in its place what has failed; nothing has if there are no words."""
+        """Show an error message in its place; an empty text means it works again."""
 
 
 class SafetyNet(Protocol):
-    """What stands in place of a screen that cannot be drawn."""
+    """Replaces a screen that cannot be drawn."""
 
     @property
     def has_begun(self) -> bool:
-        """Whether the first frame is out."""
+        """Whether the first frame has been drawn."""
 
     async def show_safe_screen(self, broken: Screen[Any]) -> None:
-        """Let go of a screen that cannot be drawn."""
+        """Discard a screen that cannot be drawn."""
 
     def is_safe(self, screen: Screen[Any]) -> bool:
-        """Whether this is what is shown in place of others."""
+        """Whether this is the screen shown in place of a broken one."""
 
     def give_up(self, words: str) -> None:
-        """Leave, in order: nothing can be drawn any more."""
+        """Exit cleanly: nothing can be drawn any more."""
 
 
 class Faults:
-    """Decides what becomes of an exception; without a journal it ends the app, as in a test."""
+    """Decides what happens to an exception; without a journal it ends the app, as in tests."""
 
     def __init__(self, app: App[Any], net: SafetyNet, journal: Journal | None) -> None:
-        """Tell of faults in `app`; what cannot be drawn is for `net`."""
+        """Report faults in `app`; `net` replaces screens that cannot be drawn."""
         self._app = app
         self._net = net
         self._journal = journal
-        self._told: dict[tuple[type[BaseException], str], Told] = {}
+        self._told: dict[tuple[type[BaseException], str], float] = {}
+        """When each fault was reported."""
         self._undrawn: WeakKeyDictionary[Screen[object], list[float]] = WeakKeyDictionary()
-        """When each screen could not be drawn; one below the front one fails again and again."""
+        """Times at which each screen could not be drawn; one below the front one keeps failing."""
         self.given_up = False
-        """Whether not even the safe screen can be drawn: the app ends, in order."""
+        """Whether not even the safe screen can be drawn: then the app exits cleanly."""
 
     @property
     def isolates(self) -> bool:
-        """Whether the app outlives an exception now: not before it has begun, or has ended."""
+        """Whether the app survives an exception now: only between its first frame and its end."""
         return self._journal is not None and self._app.is_running and self._net.has_begun
 
     def caught(self, error: Exception, place: Widget | None = None) -> str:
-        """Take an exception that nobody else takes, and return it in words.
+        """Handle an uncaught exception, and return it as a message.
 
-        A `place` shows them itself; else they are shown by the panel that failed, if it was one.
-        Raises the exception where faults are not isolated.
+        A `place` shows the message itself; otherwise the failed panel shows it, if it was one.
+        Re-raises the exception where faults are not isolated.
         """
         if not self.isolates:
             raise error
         try:
             return self._take(error, place)
-        except Exception:  # noqa: BLE001 - who tells of faults must not be one
+        except Exception:  # noqa: BLE001 - reporting a fault must not cause another
             return type(error).__name__
 
     def _take(self, error: Exception, place: Widget | None) -> str:
@@ -127,28 +119,24 @@ class Faults:
         return words
 
     def _put_right(self, words: str, failed: Widget | None, frames: list[FrameType]) -> None:
-        """See that the next frame can be drawn."""
+        """Make sure that the next frame can be drawn."""
         panel, screen = _panel_of(failed), _not_drawn(frames)
         hidden = panel is not None and not panel.failed
         if panel is not None:
             panel.show_fault(words)
         if screen is not None and (hidden or not self._give_up(screen, frames)):
-            # Textual lays nothing out again by itself after it has failed to.
+            # Textual does not repeat a layout by itself after one has failed.
             size = self._app.size
             self._app.set_timer(RETRY_S, lambda: screen.post_message(Resize(size, size)))
 
     def _is_news(self, cause: BaseException, frames: list[FrameType]) -> bool:
         where = f"{frames[-1].f_code.co_filename}:{frames[-1].f_lineno}" if frames else ""
         key, now_s = (type(cause), where), monotonic()
-        told = self._told.get(key)
-        if told is None:
-            self._told[key] = Told(now_s)
-            return len(self._told) <= MOST_TOLD
-        told.again += 1
-        if now_s - told.at_s < TOLD_AGAIN_S:
+        is_new = key not in self._told
+        if not is_new and now_s - self._told[key] < TOLD_AGAIN_S:
             return False
-        told.at_s = now_s
-        return True
+        self._told[key] = now_s
+        return not is_new or len(self._told) <= MOST_TOLD
 
     def _tell(self, words: str, cause: BaseException) -> None:
         if self._journal is not None:
@@ -156,7 +144,7 @@ class Faults:
         self._app.notify(words, severity="error", timeout=15, markup=False)
 
     def _give_up(self, screen: Screen[object], frames: list[FrameType]) -> bool:
-        """Show what can be drawn in place of a screen that cannot, if it has been tried enough."""
+        """Show the substitute for a screen that cannot be drawn, after enough attempts."""
         now_s = monotonic()
         before = self._undrawn.get(screen, [])
         undrawn = [*(at for at in before if now_s - at < UNDRAWN_WITHIN_S), now_s]
@@ -178,9 +166,9 @@ class Faults:
 
 
 def bear(widget: Widget, error: Exception) -> str:
-    """Tell what has failed in `widget`, and return what is to be shown there.
+    """Report a failure in `widget`, and return the text to be shown in its place.
 
-    Raises it where nobody isolates faults.
+    Raises the exception where faults are not isolated.
     """
     faults = faults_of(widget.app)
     if faults is None:
@@ -189,13 +177,13 @@ def bear(widget: Widget, error: Exception) -> str:
 
 
 def faults_of(app: App[object]) -> Faults | None:
-    """Return who takes the faults of an app; None for one that is not Deck's."""
+    """Return the fault handler of an app; None for one that is not Deck's."""
     faults = getattr(app, "faults", None)
     return faults if isinstance(faults, Faults) else None
 
 
 def words_of(cause: BaseException, place: Widget | None) -> str:
-    """Say where something has failed, and by what."""
+    """Say what failed, and where."""
     said = plain(str(cause), 200)
     kind = f"{type(cause).__name__}: {said}" if said else type(cause).__name__
     words = _("{place} has failed ({kind}). The rest goes on.")
@@ -213,13 +201,13 @@ def _name_of(place: Widget | None) -> str:
 
 
 def _panel_of(place: Widget | None) -> Failing | None:
-    """Return the panel that a widget is in, itself perhaps."""
+    """Return the panel that contains a widget, which may be the widget itself."""
     nodes = () if place is None else place.ancestors_with_self
     return next((node for node in nodes if isinstance(node, Failing)), None)
 
 
 def _cause(error: BaseException) -> BaseException:
-    """Return what failed in a worker, or the exception itself."""
+    """Return the cause of a worker's failure, or the exception itself."""
     inner = getattr(error, "error", None)
     return inner if isinstance(inner, BaseException) else error
 
@@ -232,13 +220,13 @@ def _frames(error: BaseException) -> Iterator[FrameType]:
 
 
 def _innermost(frames: list[FrameType]) -> Widget | None:
-    """Return the widget whose method was the last to be called."""
+    """Return the widget whose method was called last."""
     selves = (frame.f_locals.get("self") for frame in reversed(frames))
     return next((node for node in selves if isinstance(node, Widget)), None)
 
 
 def _not_drawn(frames: list[FrameType]) -> Screen[object] | None:
-    """Return the screen that could not be drawn, or made, because of this."""
+    """Return the screen that could not be drawn, or created, because of this."""
     for frame in frames:
         node, method = frame.f_locals.get("self"), frame.f_code.co_name
         if isinstance(node, Screen) and method in LAYING_OUT | COMPOSING:

@@ -1,4 +1,4 @@
-"""The palette's contents: what can be done on any screen, found by its name in either language."""
+"""The entries of the palette: actions of all screens, found by their names in either language."""
 
 from __future__ import annotations
 
@@ -45,16 +45,16 @@ Actions = tuple[type[Action[Any]], ...]
 Run = Callable[[], Awaitable[None] | None]
 
 HERE, IMPOSSIBLE, ELSEWHERE = 4.0, 2.0, 1.0
-"""By how much a name counts more where it can be done at once."""
+"""Weights of a match: actions that are possible here rank first."""
 IN_A_SENTENCE = 0.1
-"""What a word counts that stands in the sentence about an action, not in its name."""
+"""Weight of a match in the sentence about an action rather than in its name."""
 WORD = 4
-"""How many letters are looked for in sentences: fewer stand in most of them."""
+"""Sentences are searched only for words of this length: most contain any shorter one."""
 
 
 @dataclass(frozen=True)
 class ActionPlace:
-    """Where actions are: a screen, or what one of its actions opens there."""
+    """Where actions are available: a screen, or a dialog that one of its actions opens."""
 
     show: type[ShowScreen]
     actions: Actions
@@ -62,7 +62,7 @@ class ActionPlace:
 
     @property
     def name(self) -> str:
-        """How it is called in the language spoken now."""
+        """Its name in the current language."""
         words = [self.show.title, *([self.opener.title] if self.opener else [])]
         return " › ".join(map(_, words))
 
@@ -78,27 +78,27 @@ PLACES = (
     ActionPlace(ShowFlow, FLOW_ACTIONS),
     ActionPlace(ShowDevices, DEVICES_ACTIONS),
 )
-"""Every screen of a session, told without importing any of them: that would hold the keys up."""
+"""Every screen of a session, listed without importing any of them: that would delay keys."""
 
 
 @dataclass(frozen=True)
 class PaletteEntry:
-    """One thing that the palette offers."""
+    """One entry of the palette."""
 
     title: str
-    """As it is shown, in the language spoken now."""
+    """The title as shown, in the current language."""
     names: tuple[str, ...]
-    """What it is found by."""
+    """The texts that it is found by."""
     sentence: str
     run: Run
     about: tuple[str, ...] = ()
     """The sentence in every language."""
     weight: float = HERE
     offered: bool = True
-    """Whether it is shown before anything is typed."""
+    """Whether it is shown before the user types anything."""
 
     def score(self, matcher: Matcher) -> float:
-        """Return how well it is called what is looked for; 0 if it is not."""
+        """Return how well it matches the query; 0 if it does not."""
         found = max(map(matcher.match, (self.title, *self.names)))
         if found > 0:
             return found * self.weight
@@ -107,7 +107,7 @@ class PaletteEntry:
         return IN_A_SENTENCE * self.weight if told else 0.0
 
     def shown(self, matcher: Matcher) -> str:
-        """Return the title, with the name that was found behind it if it is another one."""
+        """Return the title, followed by the matching name if that is a different one."""
         if matcher.match(self.title) > 0:
             return self.title
         best = max(self.names, key=matcher.match)
@@ -115,7 +115,7 @@ class PaletteEntry:
 
 
 def entries(app: App[Any], front: Screen[Any]) -> Iterable[PaletteEntry]:
-    """Yield what can be done now, then what is impossible in `front` now, or is done elsewhere."""
+    """Yield what can be done now, then what is disabled in `front` or belongs to other screens."""
     yield from _possible(front)
     yield from _possible(app)
     for code, name in NAMES.items():
@@ -174,7 +174,7 @@ def _elsewhere(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> 
 
 
 async def _go(app: App[Any], place: ActionPlace, action: type[Action[Any]]) -> None:
-    """Bring the screen of an action to the front, and there do it if nothing can go wrong."""
+    """Bring the screen of an action to the front, and run the action there if that is safe."""
     if not host_of(app).feed.opened:
         told = _("{title} is on the screen {place}: open a lesson first.")
         _tell(app, told.format(title=_(action.title), place=place.name))
@@ -189,7 +189,7 @@ async def _arrive(app: App[Any], place: ActionPlace, action: type[Action[Any]]) 
         return
     first = place.opener or action
     possible = bool(first.possible(front))
-    # A switch that stands the other way round would do the opposite of what was chosen.
+    # A toggle that is already switched would do the opposite of what was chosen.
     if possible and first.from_elsewhere and first.label(front) == first.title:
         await first.run(front)
         if first is action:
@@ -200,16 +200,16 @@ async def _arrive(app: App[Any], place: ActionPlace, action: type[Action[Any]]) 
 
 
 class Commands(Provider):
-    """Offers what can be done, and says where."""
+    """Offers the actions, and says where each of them is."""
 
     async def discover(self) -> Hits:
-        """Yield what is offered before anything is typed."""
+        """Yield what is offered before the user types anything."""
         for entry in entries(self.app, self.screen):
             if entry.offered:
                 yield DiscoveryHit(entry.title, entry.run, help=entry.sentence)
 
     async def search(self, query: str) -> Hits:
-        """Yield what is called something like `query`, or say that nothing is."""
+        """Yield entries that match `query`, or say that there are none."""
         matcher = self.matcher(query)
         found = False
         for entry in entries(self.app, self.screen):
@@ -219,4 +219,4 @@ class Commands(Provider):
                 shown = matcher.highlight(entry.shown(matcher))
                 yield Hit(score, shown, entry.run, help=entry.sentence)
         if not found:
-            yield Hit(0.01, _("Nothing has that name."), lambda: None)
+            yield Hit(0.01, _("Nothing found."), lambda: None)

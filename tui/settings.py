@@ -1,4 +1,4 @@
-"""What outlasts a run: theme, language, keys, and the last lesson, in a small JSON file.
+"""Settings that outlast a run: theme, language, keys and last lesson, in a small JSON file.
 
 `$XDG_CONFIG_HOME/deck/settings.json`, by default under `~/.config`::
 
@@ -18,33 +18,33 @@ from text.os_words import os_reason
 
 
 class SettingsError(Exception):
-    """The file cannot be used; the text names the place and the fix."""
+    """The file cannot be used; the text says where the problem is and how to fix it."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What the user has set; empty where nothing is."""
+    """The user's settings; unset ones are empty."""
 
     theme: str = ""
     language: str = ""
     keys: dict[str, str] = field(default_factory=dict)
-    """Binding id to keys, comma-separated."""
+    """Maps a binding id to its keys, comma-separated."""
     lesson: str = ""
     """Name of the profile that was opened last."""
 
 
 def settings_path() -> Path:
-    """Return where the settings are, or would be."""
+    """Return the path of the settings file, which need not exist."""
     return user_config_path("deck") / "settings.json"
 
 
 def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[str]]) -> Settings:
-    """Read the settings; none if there is no file.
+    """Read the settings; they are empty if there is no file.
 
-    `actions` are asked for only if keys are settled: it takes every screen to know them all.
+    `actions` is called only if keys are set, because it has to import every screen.
 
     Raises:
-        SettingsError: if it is no JSON, or something in it is unknown.
+        SettingsError: if it is not valid JSON, or something in it is unknown.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -65,7 +65,7 @@ def load(path: Path, themes: Collection[str], actions: Callable[[], Collection[s
 
 
 def save(path: Path, settings: Settings) -> None:
-    """Write the settings, whole or not at all; a disk that refuses is no reason to stop."""
+    """Write the settings atomically; a disk error is not a reason to stop."""
     import json
 
     raw = {name: value for name, value in vars(settings).items() if value}
@@ -79,7 +79,7 @@ def save(path: Path, settings: Settings) -> None:
 
 
 def _unreadable(error: OSError | UnicodeDecodeError) -> str:
-    """Return why the text of the file cannot be had, and the mend."""
+    """Return why the file cannot be read as text, and how to fix that."""
     if isinstance(error, UnicodeDecodeError):
         words = _("is not UTF-8: byte 0x{byte:02x}").format(byte=error.object[error.start])
         return f"{words} ({_('save the file as UTF-8')})"
@@ -96,7 +96,7 @@ def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collect
     for name, value in raw.items():
         if name not in Settings.__dataclass_fields__:
             known = ", ".join(Settings.__dataclass_fields__)
-            return _("unknown setting {name!r}; there are: {known}").format(name=name, known=known)
+            return _("unknown setting {name!r}; available: {known}").format(name=name, known=known)
         if name == "keys":
             found = _keys_problem(value, actions())
             if found:
@@ -108,7 +108,7 @@ def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collect
                 )
         elif value not in (known_values := sorted(themes if name == "theme" else LANGUAGES)):
             known = ", ".join(known_values)
-            return _("{name}: no {value!r}; there are: {known}").format(
+            return _("{name}: unknown value {value!r}; available: {known}").format(
                 name=name, value=value, known=known
             )
     return ""
@@ -120,7 +120,7 @@ def _keys_problem(value: object, actions: Collection[str]) -> str:
     for action, keys in value.items():
         if action not in actions:
             known = ", ".join(sorted(actions))
-            return _("keys: no action {name!r}; there are: {known}").format(
+            return _("keys: unknown action {name!r}; available: {known}").format(
                 name=action, known=known
             )
         if not isinstance(keys, str) or not keys.strip():

@@ -9,7 +9,7 @@ from typing import Any
 
 from textual.pilot import Pilot
 
-from tests.tui.recorded import RecordedPad
+from tests.tui.recorded import RecordedOpener
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
 from tui.session.requests import OpenRequest
@@ -19,13 +19,13 @@ LESSON_9 = OpenRequest(Path("profiles/09-brain.yaml"))
 
 @asynccontextmanager
 async def opened(
-    pad: RecordedPad | None = None,
+    opener: RecordedOpener | None = None,
     screen: str = "deck",
     size: tuple[int, int] = (120, 40),
     order: OpenRequest = LESSON_9,
 ) -> AsyncIterator[tuple[DeckApp, Pilot[Any]]]:
     """Run the app until the recorded session, or the picker, is on the screen."""
-    app = DeckApp(pad or RecordedPad(), order, screen)
+    app = DeckApp(opener or RecordedOpener(), order, screen)
     async with app.run_test(size=size) as pilot:
         await settle(pilot)
         yield app, pilot

@@ -10,7 +10,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent, StraysEvent
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Stray
@@ -32,6 +32,9 @@ from tests.tui.recorded_lesson import (
 from tui.session.ports import SessionLink
 from tui.session.requests import Lesson, OpenRequest
 
+if TYPE_CHECKING:
+    from graph.replay.replay import Replay
+
 __all__ = [
     "LESSONS",
     "LINES",
@@ -41,7 +44,7 @@ __all__ = [
     "SESSION",
     "TOPICS",
     "RecordedGraph",
-    "RecordedPad",
+    "RecordedOpener",
     "RecordedSession",
     "joints",
     "lesson_samples",
@@ -121,7 +124,7 @@ class RecordedSession:
 
 
 @dataclass
-class RecordedPad:
+class RecordedOpener:
     """Opens the recorded session, whatever is ordered."""
 
     link: RecordedSession = field(default_factory=RecordedSession)
@@ -133,6 +136,8 @@ class RecordedPad:
     refusal: Exception | None = None
     """Set: opening fails by this."""
     orders: list[OpenRequest] = field(default_factory=list)
+    replay: Replay | None = None
+    """What is played in place of a robot."""
 
     async def lessons(self) -> list[Lesson]:
         return self.known

@@ -15,7 +15,7 @@ from robot.wire import pico as wire_pico
 from robot.wire import tfluna as wire_tfluna
 from robot.wire.pico import Drive, Telemetry
 from robot.wire.tfluna import TofFrame
-from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, RecordedSession
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_lesson import TOPICS, lesson_update, sample, topic
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def frames(name: str, lines: Iterable[FrameLine]) -> Sample:
     return sample(f"/{name}/frames", _STRING, {"data": encode(list(lines))})
 
 
-def of_chassis(count: int = 8) -> Sample:
+def of_chassis(count: int = 8, language: str = "en") -> Sample:
     """Drive lines out, telemetry in, and what noise makes of them."""
     chunks: list[Chunk] = []
     for at in range(count):
@@ -114,7 +114,7 @@ def of_chassis(count: int = 8) -> Sample:
         if at == 4:
             line = b"\xff\x00" + line.replace(b"3300", b"3301")
         chunks.append(Chunk(AT_S - 0.99 + at / 50, "in", line))
-    return frames("chassis", FrameBatcher(PicoReader, "en").tell(chunks, AT_S))
+    return frames("chassis", FrameBatcher(PicoReader, language).tell(chunks, AT_S))
 
 
 def of_sonar(*metres: float, language: str = "en") -> Sample:
@@ -138,10 +138,10 @@ def update(*samples: Sample, publishers: tuple[str, ...] = tuple(PORTS)) -> Grap
     return lesson_update(time_s=AT_S, topics=rows, samples=together)
 
 
-def pad(*samples: Sample) -> RecordedPad:
+def with_drivers(*samples: Sample) -> RecordedOpener:
     """Drivers at work, that have said this."""
     session = RecordedSession(nodes=_nodes(), lines=())
-    return RecordedPad(session, RecordedGraph(update(*(samples or STATUSES))))
+    return RecordedOpener(session, RecordedGraph(update(*(samples or STATUSES))))
 
 
 def _nodes() -> dict[str, NodeStatus]:

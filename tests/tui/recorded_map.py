@@ -14,6 +14,7 @@ from robot.motion.odometry import Pose
 from robot.world.grid import grid_of
 from robot.world.world import SimulatedSonar, Wheels, World
 from tests.tui.recorded_lesson import NOW_S, SESSION, lesson_update, sample, topic
+from tests.unit.random_driver import let_pass
 
 GRID, POSE = "nav_msgs/msg/OccupancyGrid", "geometry_msgs/msg/PoseStamped"
 ODOMETRY, FLOAT = "nav_msgs/msg/Odometry", "std_msgs/msg/Float32"
@@ -82,7 +83,7 @@ def driven() -> tuple[World, tuple[Pose, ...]]:
         speeds = wheel_speeds(0.3, steering)
         world.asked = Wheels(speeds.left_m_s / radius, speeds.right_m_s / radius, steering)
         for _tenth in range(round(10 * seconds)):
-            world.advance(0.1)
+            let_pass(world, 0.1)
             path.append(world.pose)
     return world, tuple(path)
 

@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 
 from graph.replay.replay import Replay
 from launcher.status import SessionInfo
-from tests.tui.recorded import RecordedPad
+from tests.tui.recorded import RecordedOpener
 from tests.tui.snapshots import settle
 from tui.app import DeckApp
 from tui.lifecycle.opener import LiveOpener
@@ -21,7 +21,7 @@ from tui.session.requests import Lesson, OpenRequest, ReplayRequest
 
 
 @dataclass
-class BagPad(LiveOpener):
+class BagOpener(LiveOpener):
     """Opens a bag as the real one does, and makes it stand still from the beginning."""
 
     position_s: float = 0.0
@@ -33,7 +33,7 @@ class BagPad(LiveOpener):
 
     async def open(self, order: OpenRequest) -> SessionLink:
         link = await super().open(order)
-        replay = self._replay
+        replay = self.replay
         assert replay is not None
         self.opened.append(replay)
         if self.paused:
@@ -43,7 +43,7 @@ class BagPad(LiveOpener):
         return link
 
     async def lessons(self) -> list[Lesson]:
-        return await RecordedPad().lessons()
+        return await RecordedOpener().lessons()
 
     async def running(self) -> list[SessionInfo]:
         return []
@@ -57,9 +57,9 @@ async def replayed(
     **settings: Any,
 ) -> AsyncIterator[tuple[DeckApp, Pilot[Any], Replay]]:
     """Run the app until the bag is on the screen."""
-    pad = BagPad(**settings)
-    app = DeckApp(pad, OpenRequest(replay=ReplayRequest(bag)), screen)
+    opener = BagOpener(**settings)
+    app = DeckApp(opener, OpenRequest(replay=ReplayRequest(bag)), screen)
     async with app.run_test(size=size) as pilot:
         await settle(pilot)
-        yield app, pilot, pad.opened[0]
+        yield app, pilot, opener.opened[0]
         await app.feed.disconnect()

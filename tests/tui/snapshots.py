@@ -23,9 +23,11 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
-from tests.tui.recorded import RecordedPad
+from tests.tui.recorded import RecordedOpener
+from tests.waiting import until
 from text.i18n import set_language
 from tui.app import DeckApp
+from tui.dialogs.dialog import Dialog
 from tui.picker.screen import PickerScreen
 from tui.session.requests import OpenRequest
 from tui.widgets.rows import Rows
@@ -42,11 +44,11 @@ class Look:
     size: tuple[int, int]
     language: str
 
-    def app(self, screen: str = "deck", pad: RecordedPad | None = None) -> DeckApp:
+    def app(self, screen: str = "deck", opener: RecordedOpener | None = None) -> DeckApp:
         """Return an app with the recorded lesson 9 opened, that will show `screen`."""
         set_language(self.language)
         order = OpenRequest() if screen == "picker" else OpenRequest(Path("profiles/09-brain.yaml"))
-        return DeckApp(pad or RecordedPad(), order, screen)
+        return DeckApp(opener or RecordedOpener(), order, screen)
 
     @staticmethod
     async def settle(pilot: Pilot[Any]) -> None:
@@ -55,21 +57,20 @@ class Look:
 
 
 async def settle(pilot: Pilot[Any]) -> None:
-    """Wait until the recorded session, or the picker, is there and every message is handled."""
+    """Wait until the recorded session, the picker or a question is there and all is handled."""
     app = pilot.app
-    for _round in range(500):
-        await pilot.pause(0.01)
-        if isinstance(app, DeckApp) and (app.feed.update is not None or _lists(app)):
-            break
+    assert isinstance(app, DeckApp)
+    await pilot.pause()
+    await until(lambda: app._exit or app.feed.update or _asks(app), "what was recorded")
     for _round in range(3):
         await pilot.pause()
 
 
-def _lists(app: DeckApp) -> bool:
-    """Whether the picker is in front and has its lessons."""
-    return isinstance(app.screen, PickerScreen) and any(
-        rows.chosen for rows in app.screen.query(Rows)
-    )
+def _asks(app: DeckApp) -> bool:
+    """Whether a dialog is in front, or the picker with its lessons."""
+    if isinstance(app.screen, PickerScreen):
+        return any(rows.chosen for rows in app.screen.query(Rows))
+    return isinstance(app.screen, Dialog)
 
 
 def _looks(chosen: Sequence[tuple[tuple[int, int], str]]) -> pytest.MarkDecorator:

@@ -1,4 +1,4 @@
-"""What can be done in the composer."""
+"""The actions of the composer."""
 
 from __future__ import annotations
 
@@ -14,41 +14,41 @@ if TYPE_CHECKING:
 
 
 class ComposerTarget(Protocol):
-    """What these actions need of the composer."""
+    """The part of the composer that its actions use."""
 
     @property
     def feed(self) -> Feed:
-        """What runs."""
+        """The session."""
 
     @property
     def problems(self) -> Sequence[object]:
-        """What is wrong with the JSON."""
+        """The problems in the JSON."""
 
     def send(self, *, anyway: bool = False) -> None:
-        """Send the JSON, `anyway` though it is wrong."""
+        """Send the JSON; with `anyway` even if it is invalid."""
 
     def choose_template(self) -> None:
-        """Ask which example to begin with."""
+        """Ask for an example to start from."""
 
     def recall(self, *, older: bool) -> None:
-        """Take the JSON that was sent before this one, or after it."""
+        """Recall the JSON that was sent before this one, or after it."""
 
     def go_to_next_problem(self) -> None:
-        """Put the cursor to the next problem."""
+        """Move the cursor to the next problem."""
 
 
 class ComposerAction(Action[ComposerTarget]):
-    """Something that the composer does; it comes before what the editor would take the key for."""
+    """An action of the composer; its key takes precedence over the editor's."""
 
     priority = True
 
 
 class _SendAction(ComposerAction):
-    """Something that needs a robot; without one the screen tells why nothing is sent."""
+    """An action that needs a robot; without one the screen says why nothing is sent."""
 
     @classmethod
     def shown(cls, target: ComposerTarget) -> bool:
-        """Not beside a recording."""
+        """Not in a replay."""
         return target.feed.replay is None
 
 
@@ -64,7 +64,7 @@ class Send(_SendAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Send what is valid."""
+        """Send it if it is valid."""
         target.send()
 
 
@@ -79,12 +79,12 @@ class SendAnyway(_SendAction):
 
     @classmethod
     def possible(cls, target: ComposerTarget) -> bool | None:
-        """Only what is wrong."""
+        """Only if the JSON is invalid."""
         return bool(target.problems)
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Send it as it is."""
+        """Send it unchanged."""
         target.send(anyway=True)
 
 
@@ -101,12 +101,12 @@ class Templates(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Choose one."""
+        """Open the dialog."""
         target.choose_template()
 
 
 class OlderSent(ComposerAction):
-    """What was sent before."""
+    """Recall the text sent before this one."""
 
     id = "composer.older"
     key = "alt+up,ctrl+up"
@@ -116,12 +116,12 @@ class OlderSent(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Recall it."""
+        """Recall the older text."""
         target.recall(older=True)
 
 
 class NewerSent(ComposerAction):
-    """Back towards what was being written."""
+    """Go back towards the text being written."""
 
     id = "composer.newer"
     key = "alt+down,ctrl+down"
@@ -130,7 +130,7 @@ class NewerSent(ComposerAction):
 
     @classmethod
     async def run(cls, target: ComposerTarget) -> None:
-        """Recall it."""
+        """Recall the newer text."""
         target.recall(older=False)
 
 
@@ -140,12 +140,12 @@ class NextProblem(ComposerAction):
     id = "composer.next_problem"
     key = "ctrl+n"
     title = N_("Next problem")
-    tooltip = N_("Put the cursor where the next thing is wrong.")
+    tooltip = N_("Move the cursor to the next problem.")
     from_elsewhere = True
 
     @classmethod
     def possible(cls, target: ComposerTarget) -> bool | None:
-        """Only if something is."""
+        """Only if there is one."""
         return bool(target.problems)
 
     @classmethod

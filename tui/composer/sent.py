@@ -1,7 +1,7 @@
-"""What was sent from the composer, kept across sessions so that it can be recalled.
+"""Texts that were sent from the composer, kept across sessions so that they can be recalled.
 
 `$XDG_STATE_HOME/deck/composer.json`, by default under `~/.local/state`: a JSON list of texts, the
-newest last. Losing it harms nobody: a broken file is as good as none, a full disk is passed over.
+newest last. Losing it does no harm: a broken file counts as missing, and a full disk is ignored.
 """
 
 from __future__ import annotations
@@ -17,35 +17,30 @@ LONGEST = 64 * 1024
 
 
 def sent_path() -> Path:
-    """Return where the texts are kept."""
+    """Return the path of the file."""
     return user_state_path("deck") / "composer.json"
 
 
 class Sent:
-    """Texts that were sent, and a walk through them from the newest to the oldest."""
+    """The sent texts, and a position that moves through them from the newest to the oldest."""
 
     def __init__(self, path: Path) -> None:
-        """Read what is kept at `path`."""
+        """Read the texts kept at `path`."""
         self._path = path
         self._texts = _read(path)
         self._at = len(self._texts)
         self._draft = ""
-        """What stood in the editor when the walk began."""
-
-    @property
-    def texts(self) -> tuple[str, ...]:
-        """The texts, the newest last."""
-        return tuple(self._texts)
+        """The text in the editor when the walk began."""
 
     def add(self, text: str) -> None:
-        """Keep a text that was sent; sent before, it is the newest now."""
+        """Add a text that was sent; one that was sent before becomes the newest."""
         if len(text) <= LONGEST:
             self._texts = [*(old for old in self._texts if old != text), text][-KEPT:]
             _write(self._path, self._texts)
         self._at = len(self._texts)
 
     def older(self, current: str) -> str | None:
-        """The text before, None at the oldest; `current` is what the editor holds."""
+        """The previous text, None at the oldest; `current` is the text in the editor."""
         if self._at == 0:
             return None
         if self._at == len(self._texts):
@@ -54,7 +49,7 @@ class Sent:
         return self._texts[self._at]
 
     def newer(self) -> str | None:
-        """The text after, at last the one the walk began with; None beyond it."""
+        """The next text, and after the newest the one the walk started from; then None."""
         if self._at >= len(self._texts):
             return None
         self._at += 1

@@ -1,4 +1,4 @@
-"""What can be done on the Deck; each letter also under its Cyrillic key."""
+"""The actions of the Deck; each letter also works as the Cyrillic letter on the same key."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from launcher.status import NodeState
 from text.i18n import N_, _
 from text.plain import plain
 from tui.actions.action import Action
+from tui.actions.keys import WRITE_COMMAND
 
 if TYPE_CHECKING:
     from textual.notifications import SeverityLevel
@@ -22,11 +23,11 @@ RUNS = frozenset({NodeState.STARTING, NodeState.READY, NodeState.RUNNING})
 
 
 class DeckTarget(Protocol):
-    """What these actions need of the Deck."""
+    """The part of the Deck that its actions use."""
 
     @property
     def feed(self) -> Feed:
-        """What runs."""
+        """The session."""
 
     @property
     def chosen_node(self) -> str:
@@ -34,78 +35,78 @@ class DeckTarget(Protocol):
 
     @property
     def chosen_state(self) -> NodeState | None:
-        """Where the chosen node is in its life."""
+        """The state of the chosen node."""
 
     @property
     def log_filter(self) -> LogFilter:
-        """Which lines of the log are shown."""
+        """The filter of the log."""
 
     @property
     def pages(self) -> int:
-        """How many pages of panels there are."""
+        """Number of pages of panels."""
 
     @property
     def driven(self) -> bool:
         """Whether a node takes commands in words."""
 
     def ask(self, what: str, *names: str) -> Worker[None]:
-        """Ask the session to do this with these nodes, all if none is named."""
+        """Request this of these nodes, or of all if none is named."""
 
     def filter_log(self, chosen: LogFilter) -> None:
-        """Show these lines."""
+        """Apply a filter to the log."""
 
     def hear_all(self) -> None:
-        """Let every node be heard, at every severity."""
+        """Show the log of every node, at every severity."""
 
     def turn_page(self) -> None:
-        """Show the panels that had no room."""
+        """Show the next page of panels."""
 
     def write_command(self) -> None:
-        """Go to the command line."""
+        """Focus the command line."""
 
     def notify(
         self, message: str, *, severity: SeverityLevel = "information", markup: bool = True
     ) -> None:
-        """Tell something in a corner."""
+        """Show a notification."""
 
 
 class DeckAction(Action[DeckTarget]):
-    """Something on the Deck."""
+    """An action of the Deck."""
 
 
 class _OfNode(DeckAction):
-    """Something about the chosen node."""
+    """An action on the chosen node."""
 
     @classmethod
     def possible(cls, target: DeckTarget) -> bool | None:
-        """Only with a node chosen, in a session that has any of its own: a recording has none."""
+        """Only with a node chosen, in a session with nodes of its own; a recording has none."""
         if target.feed.watching or not target.feed.nodes:
             return False
         return True if target.chosen_node else None
 
 
 class _AskNode(_OfNode):
-    """Ask the supervisor to do something with the chosen node."""
+    """Asks the supervisor to do something with the chosen node."""
 
     asked: ClassVar[str]
     done: ClassVar[frozenset[NodeState]] = frozenset()
-    """States in which there is nothing of it to do."""
+    """States in which the request would change nothing."""
 
     @classmethod
     def possible(cls, target: DeckTarget) -> bool | None:
-        """Not when the session is over, and not what is done already."""
+        """Not after the session has ended, and not if the node is already in that state."""
         if target.feed.link is None or target.chosen_state in cls.done:
             return False
         return super().possible(target)
 
     @classmethod
     def shown(cls, target: DeckTarget) -> bool:
-        """Not of a node that Deck has not started: there the key says so."""
+        """Not for a node that Deck did not start; there the key explains why."""
         return target.chosen_node not in target.feed.outside.now
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Ask; what others have started is theirs."""
+        """Send the request; nodes that others have started are left alone."""
         name = target.chosen_node
         if name in target.feed.outside.now:
             words = _("{name} was not started by Deck: stop and restart it where it was started")
@@ -115,7 +116,7 @@ class _AskNode(_OfNode):
 
 
 class StartNode(_AskNode):
-    """Start one."""
+    """Start one node."""
 
     id = "node.start"
     key = "s,ы"
@@ -128,7 +129,7 @@ class StartNode(_AskNode):
 
 
 class StopNode(_AskNode):
-    """Stop one."""
+    """Stop one node."""
 
     id = "node.stop"
     key = "x,ч"
@@ -141,7 +142,7 @@ class StopNode(_AskNode):
 
 
 class RestartNode(_AskNode):
-    """Restart one."""
+    """Restart one node."""
 
     id = "node.restart"
     key = "r,к"
@@ -152,23 +153,23 @@ class RestartNode(_AskNode):
 
 
 class _AskAll(DeckAction):
-    """Ask the supervisor to do something with all nodes."""
+    """Asks the supervisor to do something with all nodes."""
 
     asked: ClassVar[str]
 
     @classmethod
     def possible(cls, target: DeckTarget) -> bool | None:
-        """Only where there are nodes that Deck has started."""
+        """Only if there are nodes that Deck has started."""
         return target.feed.link is not None and bool(target.feed.nodes)
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Ask."""
+        """Send the request."""
         target.ask(cls.asked)
 
 
 class StartAll(_AskAll):
-    """Start all."""
+    """Start all nodes."""
 
     id = "nodes.start"
     key = "S,Ы"
@@ -178,7 +179,7 @@ class StartAll(_AskAll):
 
 
 class StopAll(_AskAll):
-    """Stop all."""
+    """Stop all nodes."""
 
     id = "nodes.stop"
     key = "X,Ч"
@@ -188,7 +189,7 @@ class StopAll(_AskAll):
 
 
 class RestartAll(_AskAll):
-    """Restart all."""
+    """Restart all nodes."""
 
     id = "nodes.restart"
     key = "R,К"
@@ -198,7 +199,7 @@ class RestartAll(_AskAll):
 
 
 class MuteChosenNode(_OfNode):
-    """Leave out one node's lines."""
+    """Hide the log lines of one node."""
 
     id = "log.mute"
     key = "m,ь"
@@ -209,12 +210,12 @@ class MuteChosenNode(_OfNode):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Mute it, or not."""
+        """Mute it, or unmute it."""
         target.filter_log(target.log_filter.toggled(target.chosen_node))
 
 
 class HearOnly(_OfNode):
-    """Leave out all others."""
+    """Hide the log lines of all other nodes."""
 
     id = "log.only"
     key = "o,щ"
@@ -225,12 +226,12 @@ class HearOnly(_OfNode):
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Listen to it alone, or not."""
+        """Show only this node, or the others again."""
         target.filter_log(target.log_filter.alone(target.chosen_node))
 
 
 class RaiseLogSeverity(DeckAction):
-    """Leave out the least severe lines."""
+    """Hide the least severe lines."""
 
     id = "log.severity"
     key = "u,г"
@@ -246,7 +247,7 @@ class RaiseLogSeverity(DeckAction):
 
 
 class HearAllNodes(DeckAction):
-    """Leave out nothing."""
+    """Show all lines."""
 
     id = "log.all"
     key = "a,ф"
@@ -274,7 +275,7 @@ class TurnPage(DeckAction):
 
     @classmethod
     def possible(cls, target: DeckTarget) -> bool | None:
-        """Only if there are any."""
+        """Only if there is more than one page."""
         return target.pages > 1
 
     @classmethod
@@ -284,10 +285,10 @@ class TurnPage(DeckAction):
 
 
 class WriteCommand(DeckAction):
-    """Speak to the robot."""
+    """Type a command to the robot."""
 
-    id = "deck.command"
-    key = "c,с"
+    id = WRITE_COMMAND.id
+    key = WRITE_COMMAND.key
     title = N_("Command")
     tooltip = N_("Write a word to /ai_command: forward, left, right, back, stop. Escape leaves.")
     footer = True
@@ -296,12 +297,12 @@ class WriteCommand(DeckAction):
 
     @classmethod
     def possible(cls, target: DeckTarget) -> bool | None:
-        """Only where a node takes such words."""
+        """Only where a node takes such commands."""
         return target.driven
 
     @classmethod
     async def run(cls, target: DeckTarget) -> None:
-        """Go to the field."""
+        """Focus the field."""
         target.write_command()
 
 

@@ -1,8 +1,7 @@
-"""The line on which a person says to /ai_command what an AI would say."""
+"""The line in which a person types what an AI would publish on /ai_command."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import Binding, BindingType
@@ -25,7 +24,7 @@ LONGEST = 200
 
 
 def words_in_order(code: str) -> list[str]:
-    """The words of the language spoken first, then those of the other."""
+    """The words of the current language first, then those of the other."""
     return [word for key in sorted(WORDS, key=lambda key: key != code) for word in WORDS[key]]
 
 
@@ -33,11 +32,11 @@ class WordSuggester(Suggester):
     """Completes a word of either language."""
 
     def __init__(self) -> None:
-        """Words are few: nothing is cached, so that the language may change."""
+        """Disable caching: there are few words, and the language may change."""
         super().__init__(use_cache=False, case_sensitive=True)
 
     async def get_suggestion(self, value: str) -> str | None:
-        """The first word that begins with what is written, in any case, ё as е."""
+        """The first word that starts with the text typed so far; case is ignored, ё counts as е."""
         start = value.casefold().replace("ё", "е")
         for word in words_in_order(language()) if start else ():
             if word.startswith(start):
@@ -48,8 +47,8 @@ class WordSuggester(Suggester):
 class CommandLine(Vertical):
     """A text field with the words the robot knows; Enter posts `CommandSent`.
 
-    A word it does not know is warned of while it is written, and sent all the same: the node that
-    listens will say what it thinks of it.
+    It warns of an unknown word while it is typed, but sends it all the same: the node that listens
+    will report what it makes of it.
     """
 
     DEFAULT_CSS = """
@@ -68,10 +67,10 @@ class CommandLine(Vertical):
     ]
 
     class CommandSent(Message):
-        """A command is to be published."""
+        """A command to be published."""
 
         def __init__(self, line: CommandLine, text: str) -> None:
-            """Carry the text as it was written, without blanks around it."""
+            """Carry the text without surrounding blanks."""
             super().__init__()
             self.line, self.text = line, text
 
@@ -81,7 +80,7 @@ class CommandLine(Vertical):
             return self.line
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Begin empty, nobody known to listen."""
+        """Start empty, with no listener known."""
         super().__init__(id=id, classes=classes)
         self._listeners: int | None = None
         self._said: list[str] = []
@@ -89,12 +88,12 @@ class CommandLine(Vertical):
         self._draft = ""
 
     def compose(self) -> ComposeResult:
-        """The field and a remark."""
+        """The field and a remark below it."""
         yield Field(compact=True, suggester=WordSuggester(), max_length=LONGEST)
         yield Static("", markup=False)
 
     def on_mount(self) -> None:
-        """Say which words there are."""
+        """Show which words there are."""
         self.words_changed()
 
     @property
@@ -104,24 +103,19 @@ class CommandLine(Vertical):
 
     @property
     def remark(self) -> str:
-        """What is said about the text, or about who listens."""
+        """The remark about the text, or about the listeners."""
         return self._remark()[0]
 
     def show_listeners(self, count: int) -> None:
-        """Tell how many nodes listen to the commands."""
+        """Show how many nodes listen for commands."""
         if count != self._listeners:
             self._listeners = count
             self._show_remark()
 
     def words_changed(self) -> None:
-        """Speak the language of the moment."""
+        """Redraw in the current language."""
         self.field.placeholder = ", ".join(WORDS[language()])
         self._show_remark()
-
-    def known(self, texts: Iterable[str]) -> None:
-        """Put earlier commands into the history, oldest first."""
-        self._said = list(texts)[-KEPT:]
-        self._at = len(self._said)
 
     def action_recall(self, step: int) -> None:
         """Bring back an earlier (-1) or later (1) command."""
@@ -136,12 +130,12 @@ class CommandLine(Vertical):
         self.field.cursor_position = len(text)
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Say what the robot will think of it."""
+        """Show what the robot will make of the text."""
         event.stop()
         self._show_remark()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Send it, remember it."""
+        """Send the command and add it to the history."""
         event.stop()
         text = event.value.strip()
         if not text:
@@ -154,7 +148,7 @@ class CommandLine(Vertical):
         self.post_message(self.CommandSent(self, text))
 
     def _remark(self) -> tuple[str, bool]:
-        """The words, and whether they are a warning."""
+        """The text of the remark, and whether it is a warning."""
         text = self.field.value.strip()
         if self._listeners == 0:
             return _("nobody listens to /ai_command: start ai_driver"), True

@@ -1,4 +1,4 @@
-"""The lesson at work: its nodes, the panels that its profile names, and the log."""
+"""The running lesson: its nodes, the panels that its profile names, and the log."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from launcher.status import NodeState, Severity
 from robot.topics import AI_COMMAND
 from text.i18n import N_, _, said
 from text.plain import plain
+from text.sentences import reason_of
 from tui.actions import bindings
 from tui.deck.actions import DECK_ACTIONS
 from tui.deck.command_line import CommandLine
@@ -55,7 +56,7 @@ COMMANDS_TYPE = "std_msgs/msg/String"
 
 
 class LessonDeck(DeckScreen):
-    """Nodes above the log, panels at the right; on a small terminal panels beside the log."""
+    """Nodes above the log, panels on the right; on a small terminal panels beside the log."""
 
     tab: ClassVar[str] = "deck"
     about: ClassVar[str] = N_(
@@ -96,9 +97,9 @@ class LessonDeck(DeckScreen):
     """
 
     _cut: tuple[str, str] = ("", "")
-    """Name and state of the chosen node where the table has no room for all of it."""
+    """Name and state of the chosen node, if the table cannot show them in full."""
     _offered_for: NodeState | None = None
-    """The state of the chosen node by which its keys are offered."""
+    """The state of the chosen node for which its keys were last updated."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -106,7 +107,7 @@ class LessonDeck(DeckScreen):
         self._dock = TeleopDock(self, self.focus_usual)
 
     def compose_body(self) -> ComposeResult:
-        """The nodes above the log; panels come with the session."""
+        """The nodes above the log; the session adds the panels."""
         yield Static(id="small", markup=False)
         yield Static(id="watched", markup=False)
         with Container(id="board"):
@@ -117,11 +118,11 @@ class LessonDeck(DeckScreen):
                 yield LogPane(LogView(file_of=self.feed.log_file))
                 yield CommandLine(id="command")
 
-    # What the actions do
+    # Actions
 
     @property
     def table(self) -> NodesTable:
-        """The nodes."""
+        """The table of nodes."""
         return self.query_one(NodesTable)
 
     @property
@@ -138,33 +139,32 @@ class LessonDeck(DeckScreen):
 
     @property
     def chosen_state(self) -> NodeState | None:
-        """Where the chosen node is in its life, None without one or of one of others."""
+        """The state of the chosen node; None without one, or if Deck did not start it."""
         node = self.feed.nodes.get(self.chosen_node)
         return None if node is None else node.state
 
     @work(group="ask")
     async def ask(self, what: str, *names: str) -> None:
-        """Ask the session to `start`, `stop` or `restart` these nodes, all if none is named."""
+        """Ask the session to `start`, `stop` or `restart` these nodes, or all if none is named."""
         if self.feed.link is None:
             return
         try:
             await getattr(self.feed.link, what)(*names)
         except LauncherError as error:
-            words = said(error.args[0]) if error.args else str(error)
-            self.notify(plain(words), severity="error", markup=False)
+            self.notify(plain(said(reason_of(error))), severity="error", markup=False)
 
     @property
     def log_filter(self) -> LogFilter:
-        """Which lines are shown."""
+        """The filter of the log."""
         return self.pane.view.log_filter
 
     def filter_log(self, chosen: LogFilter) -> None:
-        """Show these lines."""
+        """Apply a filter to the log."""
         self.pane.view.log_filter = chosen
         self._show_nodes()
 
     def hear_all(self) -> None:
-        """Let every node be heard, at every severity."""
+        """Show the log of every node, at every severity."""
         self.filter_log(replace(self.log_filter.all_nodes(), minimum=Severity.DEBUG))
 
     @property
@@ -178,11 +178,11 @@ class LessonDeck(DeckScreen):
         return any(node.command == DRIVER for node in self.feed.nodes.values())
 
     def write_command(self) -> None:
-        """Go to the command line, at once: what is typed next belongs there."""
+        """Focus the command line at once, so that it receives the next key."""
         self.set_focus(self.query_one(CommandLine).field)
 
     def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
-        """Say it to the driver."""
+        """Publish it for the driver."""
         if self.feed.graph is None:
             return
         sent = self.feed.graph.publish(AI_COMMAND, COMMANDS_TYPE, {"data": message.text})
@@ -191,77 +191,77 @@ class LessonDeck(DeckScreen):
     def _tell_if_lost(self, sent: Future[int]) -> None:
         error = None if sent.cancelled() else sent.exception()
         if isinstance(error, Exception):
-            # The first frame does without.
+            # Not needed for the first frame.
             from tui.yaml_form.words import reason_words
 
             self.notify(reason_words(error), severity="error", markup=False)
 
     def focus_usual(self) -> None:
-        """Go to the nodes."""
+        """Focus the nodes."""
         self.table.focus()
 
     def action_leave_field(self) -> None:
-        """Back to the nodes."""
+        """Go back to the nodes."""
         self.focus_usual()
 
     @property
     def panels(self) -> Sequence[Panel]:
-        """All panels that are there, shown or not."""
+        """All panels, shown or not."""
         return self._panels.all
 
     @property
     def pages(self) -> int:
-        """How many pages of panels there are."""
+        """Number of pages of panels."""
         return self._panels.pages
 
     def turn_page(self) -> None:
-        """Show the panels that had no room."""
+        """Show the next page of panels."""
         self._panels.turn_page()
 
     async def open_teleop(self) -> None:
-        """Drive by keys."""
+        """Open the panel for driving with keys."""
         await self._dock.open()
 
     async def on_teleop_panel_closed(self) -> None:
-        """Drive no more."""
+        """Close the panel for driving with keys."""
         await self._dock.close()
 
     def more_keys(self) -> Iterable[tuple[str, Sequence[type[Action[Any]]]]]:
-        """The keys that drive."""
+        """The keys for driving."""
         yield _("Keys while driving"), TELEOP_ACTIONS
 
-    # What is shown
+    # Display
 
     def watch_topics(self) -> set[str]:
-        """What the panels show."""
+        """The topics that the panels show."""
         return self._panels.watched() | self._dock.topics
 
     def keep_topics(self) -> set[str]:
-        """What has a history in a panel."""
+        """The topics whose history a panel shows."""
         return self._panels.kept()
 
     def follow_topics(self) -> set[str]:
-        """What the panels must not miss."""
+        """The topics of which the panels need every message."""
         return self._panels.followed()
 
     def on_mount(self) -> None:
-        """Begin at the nodes."""
+        """Focus the nodes."""
         self.table.focus()
 
     def on_resize(self, event: Resize) -> None:
-        """Leave the panels out where there is no room for them."""
+        """Hide the panels if they do not fit."""
         self._panels.measure_room(*event.size)
         self._lay_out(event.size.height)
 
     @on(SessionChanged)
     async def _session_changed(self, message: SessionChanged) -> None:
-        """Bring what belongs to the session; without one there is nothing to drive."""
+        """Create what belongs to the session; without one there is nothing to drive."""
         await self._bring_panels()
         if message.ended or self.feed.link is None:
             await self._dock.close()
 
     async def _bring_panels(self) -> None:
-        """Bring the panels of the session; one that has ended keeps what it showed."""
+        """Create the panels of the session; those of one that has ended keep what they showed."""
         session = self.feed.session
         if session is None:
             return
@@ -275,7 +275,7 @@ class LessonDeck(DeckScreen):
         self.topics_changed()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Show the nodes as they are."""
+        """Show the new states of the nodes."""
         self.set_class(self.driven, "-driven")
         self.pane.view.know_nodes(message.nodes)
         self._show_nodes()
@@ -289,7 +289,7 @@ class LessonDeck(DeckScreen):
         self.pane.view.append(message.lines, message.skipped)
 
     async def on_graph_changed(self, message: GraphChanged) -> None:
-        """Feed the panels; a dead graph is told where they are."""
+        """Update the panels; if ROS fails, say so in their place."""
         if message.update.error:
             self.notify(said(message.update.error), severity="error", markup=False)
             return
@@ -309,16 +309,16 @@ class LessonDeck(DeckScreen):
         self._dock.take(message.update)
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """A stop is also the end of what the keys asked for; other news of the gate are not."""
+        """A stop also ends what the keys asked for; other changes of the gate do not."""
         if message.emergency.engaged:
             self._dock.release()
 
     def on_screen_suspend(self) -> None:
-        """Another screen, or a dialog, has the keys."""
+        """Another screen, or a dialog, now receives the keys."""
         self._dock.release()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Draw anew."""
+        """Redraw in the current language."""
         del message
         self.pane.words_changed()
         self._show_nodes()
@@ -327,18 +327,18 @@ class LessonDeck(DeckScreen):
         self._dock.words_changed()
 
     def on_rows_highlighted(self, message: Rows.Highlighted) -> None:
-        """Other keys are possible now."""
+        """Update the possible keys."""
         message.stop()
         self.refresh_bindings()
 
     def on_nodes_table_cut(self, message: NodesTable.Cut) -> None:
-        """Show below the table what it has no room for."""
+        """Show below the table the text that does not fit in it."""
         message.stop()
         self._cut = (message.node, message.facts)
         self._lay_out(self.size.height)
 
     def on_rows_opened(self, message: Rows.Opened) -> None:
-        """Listen to the node that was opened, alone."""
+        """Show only the log of the opened node."""
         message.stop()
         self.filter_log(self.log_filter.alone(message.key))
 
@@ -349,7 +349,7 @@ class LessonDeck(DeckScreen):
         self.table.show_nodes(nodes, muted, outside)
 
     def _lay_out(self, height: int) -> None:
-        """Give the table of nodes the rows it needs, but never most of them."""
+        """Give the table of nodes the rows it needs, but not too much of the screen."""
         if self.feed.replay is not None or self.feed.watching:
             self.query_one("#board").styles.grid_rows = "1fr"
             return
@@ -358,7 +358,7 @@ class LessonDeck(DeckScreen):
         self.query_one("#board").styles.grid_rows = f"{rows} 1fr"
 
     def _lay_out_head(self, most: int) -> int:
-        """Give what the table has cut its lines, and return how many."""
+        """Reserve lines for the text that the table has cut, and return how many."""
         head = self.query_one(NameHead)
         head.display = any(self._cut)
         if not head.display:

@@ -1,4 +1,4 @@
-"""What can be done on the Devices screen; each letter also under its Cyrillic key."""
+"""The actions of the Devices screen; each letter also works as the Cyrillic one on its key."""
 
 from __future__ import annotations
 
@@ -24,56 +24,56 @@ if TYPE_CHECKING:
 
 
 class DevicesTarget(ShowsLines, Protocol):
-    """What these actions need of the screen of devices."""
+    """The part of the Devices screen that its actions use."""
 
     frames: FrameRows
 
     @property
     def chosen(self) -> Device | None:
-        """The driver that is looked at."""
+        """The chosen driver."""
 
     @property
     def only_bad(self) -> bool:
-        """Whether good frames are left out."""
+        """Whether good frames are hidden."""
 
     @property
     def simulated(self) -> tuple[str, str] | None:
-        """The simulated robot's node and which line of it is chosen."""
+        """The simulated robot's node, and which of its serial lines is chosen."""
 
     def next_way(self) -> None:
-        """Show both ways, then in, then out."""
+        """Switch between both directions, in, and out."""
 
     def toggle_bad(self) -> None:
-        """Show noise and bad frames only, or all."""
+        """Show only noise and bad frames, or all."""
 
     def toggle_hex(self) -> None:
-        """Show bytes that are text in hex, or as text."""
+        """Show readable bytes in hex, or as text."""
 
     def clear_frames(self) -> None:
-        """Forget all frames."""
+        """Discard all frames."""
 
     def switch_trouble(self, trouble: SimulatedTrouble) -> object:
-        """Make this trouble of the chosen device, or mend it."""
+        """Cause this trouble on the chosen device, or clear it."""
 
 
 class DevicesAction(Action[DevicesTarget]):
-    """Something about the frames of the chosen port."""
+    """An action on the frames of the chosen port."""
 
     @classmethod
     def possible(cls, target: DevicesTarget) -> bool | None:
-        """Only with a driver to look at."""
+        """Only with a driver chosen."""
         return bool(target.chosen)
 
 
 class PauseFrames(PauseLines[DevicesTarget], DevicesAction):
-    """Stand still, or follow."""
+    """Pause, or follow the newest frame."""
 
     id = "devices.pause"
     tooltip = N_("Pause while frames come in, or follow the newest again.")
 
 
 class OneWay(DevicesAction):
-    """Both ways, or one."""
+    """Show both directions, or one."""
 
     id = "devices.way"
     key = "b,и"
@@ -84,12 +84,12 @@ class OneWay(DevicesAction):
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Take the next of the three."""
+        """Switch to the next of the three."""
         target.next_way()
 
 
 class OnlyBad(DevicesAction):
-    """Only bad frames and noise, or everything."""
+    """Show only bad frames and noise, or everything."""
 
     id = "devices.bad"
     key = "f,а"
@@ -101,17 +101,17 @@ class OnlyBad(DevicesAction):
 
     @classmethod
     def label(cls, target: DevicesTarget) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return N_("All frames") if target.only_bad else cls.title
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Do the other of the two."""
+        """Switch to the other one."""
         target.toggle_bad()
 
 
 class Hex(DevicesAction):
-    """Hex, or text."""
+    """Show bytes in hex, or as text."""
 
     id = "devices.hex"
     key = "v,м"
@@ -123,23 +123,23 @@ class Hex(DevicesAction):
 
     @classmethod
     def label(cls, target: DevicesTarget) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return N_("Text") if target.frames.as_hex else cls.title
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Do the other of the two."""
+        """Switch to the other one."""
         target.toggle_hex()
 
 
 class FoldFrames(FoldLines[DevicesTarget], DevicesAction):
-    """Fold long lines, or not."""
+    """Wrap long lines, or not."""
 
     id = "devices.fold"
 
 
 class ClearFrames(DevicesAction):
-    """Forget the frames so far."""
+    """Discard the frames so far."""
 
     id = "devices.clear"
     key = "d,в"
@@ -150,12 +150,12 @@ class ClearFrames(DevicesAction):
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Forget them."""
+        """Discard them."""
         target.clear_frames()
 
 
 class SearchFrames(SearchLines[DevicesTarget], DevicesAction):
-    """Search."""
+    """Search the frames."""
 
     id = "devices.search"
     means = "find"
@@ -163,7 +163,7 @@ class SearchFrames(SearchLines[DevicesTarget], DevicesAction):
 
 
 class NextFrame(NextLine[DevicesTarget], DevicesAction):
-    """The next found frame."""
+    """Go to the next match."""
 
     id = "devices.next"
     means = "next"
@@ -171,7 +171,7 @@ class NextFrame(NextLine[DevicesTarget], DevicesAction):
 
 
 class PreviousFrame(PreviousLine[DevicesTarget], DevicesAction):
-    """The previous found frame."""
+    """Go to the previous match."""
 
     id = "devices.previous"
     means = "previous"
@@ -179,7 +179,7 @@ class PreviousFrame(PreviousLine[DevicesTarget], DevicesAction):
 
 
 class CopyFrames(CopyLines[DevicesTarget], DevicesAction):
-    """Copy the frames chosen."""
+    """Copy the chosen frames."""
 
     id = "devices.copy"
 
@@ -192,60 +192,62 @@ class SaveFrames(SaveLines[DevicesTarget], DevicesAction):
 
 
 class _MakeTrouble(DevicesAction):
-    """Trouble of the chosen device, or no more of it: only a simulated one can have it made."""
+    """Causes or clears trouble on the chosen device; only a simulated one allows that."""
 
     trouble: ClassVar[SimulatedTrouble]
 
     @classmethod
     def possible(cls, target: DevicesTarget) -> bool | None:
-        """Only with a device of the simulated robot, that may have it."""
+        """Only with a device of the simulated robot that can have this trouble."""
         found = target.simulated
         return found is not None and found[1] in cls.trouble.devices
 
     @classmethod
     async def run(cls, target: DevicesTarget) -> None:
-        """Make it, or mend it."""
+        """Cause it, or clear it."""
         target.switch_trouble(cls.trouble)
 
 
 class Unplug(_MakeTrouble):
-    """No connection."""
+    """Cut the connection."""
 
     id = "devices.unplug"
     key = "U,Г"
     title = N_("Pull cable")
-    tooltip = N_("Simulated robot: pull the cable of the chosen device; again: plug it in.")
+    tooltip = N_("Simulated robot: pull the cable of the chosen device; press again to plug it in.")
     footer = True
     trouble = UNPLUGGED
 
 
 class Noise(_MakeTrouble):
-    """Bytes that nobody sent."""
+    """Add bytes that nobody sent."""
 
     id = "devices.noise"
     key = "Z,Я"
     title = N_("Noise")
-    tooltip = N_("Simulated robot: noise on the line of the chosen device; again: none.")
+    tooltip = N_("Simulated robot: noise on the line of the chosen device; press again to end it.")
     trouble = NOISE
 
 
 class Silence(_MakeTrouble):
-    """Connected, and nothing comes."""
+    """Stay connected, but send nothing."""
 
     id = "devices.silence"
     key = "H,Р"
     title = N_("Silence")
-    tooltip = N_("Simulated robot: the chosen device says nothing; again: it speaks.")
+    tooltip = N_("Simulated robot: silence the chosen device; press again to end that.")
     trouble = SILENCE
 
 
 class LowBattery(_MakeTrouble):
-    """Too little voltage."""
+    """Lower the battery voltage."""
 
     id = "devices.battery"
     key = "B,И"
     title = N_("Low battery")
-    tooltip = N_("Simulated robot: the battery of Pico and servos is weak; again: it is charged.")
+    tooltip = N_(
+        "Simulated robot: the battery of Pico and servos is weak; press again to charge it."
+    )
     trouble = BATTERY
 
 

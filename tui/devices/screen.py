@@ -1,4 +1,4 @@
-"""Every driver, what it is connected to, and what goes over the port of the chosen one."""
+"""Every driver, what it is connected to, and the traffic on the port of the chosen one."""
 
 from __future__ import annotations
 
@@ -33,18 +33,19 @@ if TYPE_CHECKING:
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 _LOOK_EVERY_S = 0.5
-"""How often ages are counted anew, whether or not anything comes."""
+"""How often ages are updated, whether or not anything arrives."""
 
 
 class DevicesScreen(DeckScreen):
-    """Drivers above, the whole of the chosen one, its frames below."""
+    """Drivers above, the full report of the chosen one, its frames below."""
 
     tab: ClassVar[str] = "devices"
     about: ClassVar[str] = N_(
-        "Every driver that says on /diagnostics how it is: the port, connected since when, bytes a "
-        "second, errors so far and now. Below is what goes over the port of the chosen one, with "
-        "the bytes: ~ marks noise, ✗ a frame whose check failed. It is asked for only while it is "
-        "shown. The arrow keys choose a driver or, after Tab, lines, with Shift several."
+        "Every driver that reports its state on /diagnostics: its port, since when it is "
+        "connected, bytes a second, errors in total and now. Below is the traffic on the port of "
+        "the chosen driver, with the bytes: ~ marks noise, ✗ a frame whose check failed. Frames "
+        "are requested only while they are shown. The arrow keys choose a driver or, after Tab, "
+        "lines, several with Shift."
     )
     BINDINGS: ClassVar = bindings(*DEVICES_ACTIONS)
     DEFAULT_CSS = """
@@ -62,13 +63,13 @@ class DevicesScreen(DeckScreen):
         self._book = DeviceBook()
         self._update: GraphUpdate | None = None
         self._topic: str | None = None
-        """Where the frames of the chosen driver come from."""
+        """Topic with the frames of the chosen driver."""
         self._shown_name = ""
         self._lessons: tuple[str, ...] | None = None
-        """In which there are drivers; None until somebody wants to know."""
+        """Lessons with drivers; None until they are needed."""
 
     def compose_body(self) -> ComposeResult:
-        """The table, the chosen one in words, its frames; or why there is none of it."""
+        """The table, the report of the chosen driver, and its frames or why there are none."""
         yield Static(id="devices-empty", markup=False)
         yield DevicesTable()
         yield Static(id="devices-chosen", markup=False)
@@ -76,7 +77,7 @@ class DevicesScreen(DeckScreen):
 
     @property
     def table(self) -> DevicesTable:
-        """The drivers."""
+        """The table of drivers."""
         return self.query_one(DevicesTable)
 
     @property
@@ -86,33 +87,33 @@ class DevicesScreen(DeckScreen):
 
     @property
     def chosen(self) -> Device | None:
-        """The driver that is looked at."""
+        """The chosen driver."""
         return self._book.get(self.table.chosen) if self.is_mounted else None
 
     @property
     def only_bad(self) -> bool:
-        """Whether good frames are left out."""
+        """Whether good frames are hidden."""
         return self.pane.view.log_filter.minimum is not Severity.DEBUG
 
     def follow_topics(self) -> set[str]:
-        """What every driver says, and the frames of the chosen one; nothing behind another."""
+        """The reports of every driver, and the frames of the chosen one; nothing while hidden."""
         if self.feed.front is not self:
             return set()
         return {DIAGNOSTICS} if self._topic is None else {DIAGNOSTICS, self._topic}
 
     def on_mount(self) -> None:
-        """Begin in the table."""
+        """Focus the table."""
         self._name_lines()
         self.set_interval(_LOOK_EVERY_S, self._look)
         self._look()
 
     def on_screen_resume(self) -> None:
-        """Nobody has listened while another screen was in front."""
+        """Excuse the drivers: nobody was listening while another screen was in front."""
         self._book.excuse(clock.now())
         self._look()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Another session begins with no drivers; of one that has ended they stay."""
+        """Start a new session without drivers; keep those of a session that has ended."""
         del message
         session = self.feed.session
         if session is not None:
@@ -122,12 +123,12 @@ class DevicesScreen(DeckScreen):
         self._look()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Drivers may be on their way."""
+        """Update the words for when there is no driver yet."""
         del message
         self._look()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Take what drivers say, and the frames."""
+        """Take in the reports and the frames."""
         self._update = message.update
         samples = message.update.samples
         self._book.take(samples.get(DIAGNOSTICS, ()))
@@ -136,7 +137,7 @@ class DevicesScreen(DeckScreen):
             self._take_frames(samples.get(self._topic, ()))
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Say everything anew."""
+        """Redraw all texts."""
         del message
         self._show_way(None)
         self._lay_frames()
@@ -144,7 +145,7 @@ class DevicesScreen(DeckScreen):
         self._look()
 
     def on_resize(self) -> None:
-        """Another width has other columns."""
+        """Fit the columns to the new width."""
         self.call_after_refresh(self._look)
 
     @on(DevicesTable.Highlighted)
@@ -161,13 +162,13 @@ class DevicesScreen(DeckScreen):
         self.refresh_bindings()
 
     def key_escape(self) -> None:
-        """Back to the drivers."""
+        """Go back to the drivers."""
         self.table.focus()
 
-    # What the actions do
+    # Actions
 
     def next_way(self) -> None:
-        """Show both ways, then in, then out."""
+        """Switch between both directions, in, and out."""
         ways = [None, *(_(word) for word in WAYS.values())]
         self._show_way(ways[(ways.index(self.pane.view.log_filter.only) + 1) % len(ways)])
 
@@ -175,30 +176,30 @@ class DevicesScreen(DeckScreen):
         self.pane.view.log_filter = replace(self.pane.view.log_filter, only=way)
 
     def toggle_bad(self) -> None:
-        """Show noise and bad frames only, or all."""
+        """Show only noise and bad frames, or all."""
         minimum = Severity.DEBUG if self.only_bad else Severity.WARN
         self.pane.view.log_filter = replace(self.pane.view.log_filter, minimum=minimum)
         self.refresh_bindings()
 
     def toggle_hex(self) -> None:
-        """Show bytes that are text in hex, or as text."""
+        """Show readable bytes in hex, or as text."""
         self.frames.as_hex = not self.frames.as_hex
         self._lay_frames()
         self.refresh_bindings()
 
     def clear_frames(self) -> None:
-        """Forget all frames."""
+        """Discard all frames."""
         self.frames.clear()
         self.pane.view.clear()
 
     @property
     def simulated(self) -> tuple[str, str] | None:
-        """The simulated robot's node and which line of it is chosen; None beside a real device."""
+        """The simulated robot's node and the chosen one of its lines; None for a real device."""
         return device_trouble.simulated(self.chosen, self.feed)
 
     @work(group="trouble")
     async def switch_trouble(self, trouble: device_trouble.SimulatedTrouble) -> None:
-        """Make this trouble of the chosen device, or mend it, and tell which."""
+        """Cause this trouble on the chosen device or clear it, and say which."""
         found, graph = self.simulated, self.feed.graph
         if found is None or graph is None:
             return
@@ -206,7 +207,7 @@ class DevicesScreen(DeckScreen):
         told = _(trouble.told if made else trouble.over).format(device=found[1])
         self.notify(error or told, severity="error" if error else "information", markup=False)
 
-    # What is shown
+    # Display
 
     def _take_frames(self, samples: Iterable[Sample]) -> None:
         fresh = [
@@ -223,13 +224,13 @@ class DevicesScreen(DeckScreen):
         self.pane.view.replace_lines(self.frames.lines())
 
     def _name_lines(self) -> None:
-        """Say what the lines are in the language spoken now."""
+        """Name the lines in the current language."""
         self.pane.view.minimum_words = _("only noise and bad frames")
         self.pane.view.know_nodes(_(way) for way in WAYS.values())
         self.pane.words_changed()
 
     def _look(self) -> None:
-        """Show things as they are now."""
+        """Show the current state."""
         if not self.is_mounted or self.feed.front is not self:
             return
         devices = self._book.devices

@@ -1,4 +1,4 @@
-"""Trouble that the simulated robot can be given: parameters of its node, as `ros2 param` sets them.
+"""Trouble that the simulated robot can have: parameters of its node, set as `ros2 param` does.
 
 The values are those of `nodes.mock_robot`.
 """
@@ -19,26 +19,26 @@ if TYPE_CHECKING:
 
 ROBOT = "nodes.mock_robot"
 LINES = frozenset({"pico", "tof_front", "tof_rear", "lsc16"})
-"""Its pseudo-terminals, and the parameters with the trouble of each."""
+"""Its pseudo-terminals, and the parameters for the trouble of each."""
 POWERED = frozenset({"pico", "lsc16"})
-"""Those that measure the battery."""
+"""The devices that measure the battery."""
 _REAL = PurePosixPath("/dev")
 
 
 @dataclass(frozen=True)
 class SimulatedTrouble:
-    """A parameter's value while there is this trouble, and without it."""
+    """The values of a parameter with and without the trouble."""
 
     wrong: str | float
     fine: str | float
     told: str
     """Sentence with {device}, marked by `N_`."""
     over: str
-    """Another, for when it is mended: of this trouble only, for there may be others."""
+    """The same for when it is cleared; it names only this trouble, as there may be others."""
     parameter: str = ""
-    """Empty: the one that is called like the device."""
+    """Empty: the parameter named after the device."""
     devices: frozenset[str] = LINES
-    """Which may have it."""
+    """Devices that can have it."""
 
 
 UNPLUGGED = SimulatedTrouble(
@@ -51,7 +51,7 @@ NOISE = SimulatedTrouble(
 )
 SILENCE = SimulatedTrouble(
     *("silent", "fine"),
-    *(N_("{device}: it says nothing any more."), N_("{device}: it speaks again.")),
+    *(N_("{device}: it has gone silent."), N_("{device}: it sends data again.")),
 )
 BATTERY = SimulatedTrouble(
     *(5.8, 7.4),
@@ -61,9 +61,9 @@ BATTERY = SimulatedTrouble(
 
 
 def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
-    """Return the full name of the simulated robot's node, and which line of it the device is.
+    """Return the full name of the simulated robot's node, and which of its lines the device is.
 
-    None for a device that is not simulated, and while the robot is not to be seen.
+    None for a device that is not simulated, and while the robot is not in the graph.
     """
     if device is None or feed.graph is None or feed.replay is not None or feed.update is None:
         return None
@@ -78,7 +78,7 @@ def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
 async def switch(
     graph: GraphLink, node: str, device: str, trouble: SimulatedTrouble
 ) -> tuple[bool, str]:
-    """Make the trouble, or mend it if it is there; return whether it is there, or why not."""
+    """Cause the trouble, or clear it; return whether it is present now, or why that failed."""
     name = trouble.parameter or device
     read = await asyncio.wrap_future(graph.parameters(node))
     now = next((row.value for row in read.parameters if row.name == name), None)

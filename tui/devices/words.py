@@ -1,4 +1,4 @@
-"""What the Devices screen says in sentences: the chosen driver, and why there is nothing."""
+"""The sentences of the Devices screen: about the chosen driver, and why nothing is shown."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from tui.session.feed import Feed
 
 DRIVERS = frozenset({"nodes.chassis", "nodes.tof_sonar", "nodes.camera", "nodes.audio"})
-"""Nodes that tell on /diagnostics how they are, whatever their parameters."""
+"""Nodes that report on /diagnostics, whatever their parameters."""
 HEAD = "nodes.head_controller"
-"""So does this one, if it has a port."""
+"""Reports as well, if it has a port."""
 
 
 def whole(device: Device, now_s: float, width: int) -> str:
-    """Message, and below it as many figures as fit into one line of so many cells."""
+    """Return the message, and below it as many figures as fit into one line of `width` cells."""
     word = state(device, now_s).text
     lines = [f"{plain(device.name)} · {word} · {device.message}", ""]
     for figure in _figures(device):
@@ -58,7 +58,7 @@ def _figures(device: Device) -> list[str]:
 
 
 def no_frames(device: Device, topic: str | None, now_s: float) -> str:
-    """Why no frame of this driver has come, and what to do."""
+    """Say why no frame of this driver has arrived, and what to do."""
     name = plain(device.name)
     age_s = device.age_s(now_s)
     if age_s > STALE_S:
@@ -68,18 +68,18 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
         return words.format(name=name, seconds=elapsed(age_s))
     if topic is None:
         words = _(
-            "{name} tells how it is, but publishes no {topic}: it has no serial port, or it is "
-            "another kind of driver."
+            "{name} reports its state, but does not publish {topic}: it has no serial port, or it "
+            "is not one of Deck's drivers."
         )
         return words.format(name=name, topic=f"…/{name}/frames")
     if device.connected is False:
         return _("Nothing is connected, so nothing comes. The driver tries again by itself.")
-    words = _("Listening on {topic}: within a second comes what goes over the port, if anything.")
+    words = _("Listening on {topic}: traffic on the port, if any, appears within a second.")
     return words.format(topic=topic)
 
 
 def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> list[str]:
-    """Why there is no driver at all, and what to do."""
+    """Say why there is no driver at all, and what to do."""
     if feed.session is None:
         return [_("no lesson is running")]
     if update is not None and update.error:

@@ -1,4 +1,4 @@
-"""The emergency stop at work: shown at once, sent, and what is done if nobody listens."""
+"""The emergency stop in action: shown at once, published, and backed up if nobody listens."""
 
 from __future__ import annotations
 
@@ -24,36 +24,36 @@ if TYPE_CHECKING:
 
 SENT_WITHIN_S = 2.0
 AGAIN_S = 1.0
-"""So often a release is said again to nodes that hold still."""
+"""Interval at which a release is repeated for nodes that still hold."""
 INSIST_S = 10.0
-"""And for so long: a node that takes longer is for a person to look at."""
+"""For how long it is repeated: a node that takes longer needs a person to look at it."""
 ENDED = frozenset({"exited", "failed"})
 WHY_S = 20.0
-"""How long it is told what else the stop has ended, and why."""
+"""How long a notification says what else the stop has ended, and why."""
 
 
 class EmergencyControl:
-    """Engages and releases; its `state` is what the banner shows."""
+    """Engages and releases the stop; the banner shows its `state`."""
 
     def __init__(self, app: App[Any], feed: Feed, changed: Callable[[], None]) -> None:
-        """Act on the session of `feed`, and tell of it in `app`; `changed` shows the state anew."""
+        """Act on the session of `feed`, notify in `app`, and call `changed` on every change."""
         self._app = app
         self._feed = feed
         self._changed = changed
         self.state = Emergency()
         self._released_s = self._said_s = 0.0
-        """When a release was first and last said from here, unix time."""
+        """When a release was first and last published from here, Unix time."""
 
     def engage(self) -> None:
-        """Stop the wheels: said on the topic, or by stopping the nodes if nobody hears."""
-        # On its way before anything is drawn, or waits for its turn.
+        """Stop the wheels: publish the stop, or stop the nodes if nobody listens."""
+        # Published before anything is drawn or queued.
         sent = self._publish(engaged=True)
         self._end_publications()
         self._set(self.state.pressed(clock.now()))
         self._app.run_worker(self._stop(sent), group="emergency")
 
     def release(self) -> None:
-        """Let the wheels turn again, and nothing turn them by itself."""
+        """Let the wheels turn again, but let nothing start them automatically."""
         ended = self.state.ended
         self._end_publications()
         self._released_s = clock.now()
@@ -63,13 +63,13 @@ class EmergencyControl:
             self._app.run_worker(self._start_again(ended), group="emergency")
 
     def see(self, update: GraphUpdate) -> None:
-        """Take in what others have done, and insist on a release that a node has not heard."""
+        """Take in what others have done, and repeat a release that a node has not received."""
         before, state = self.state, self.state.seen(update)
         if state.engaged != before.engaged:
             self._end_publications()
         self._set(state)
         if before.engaged and not state.engaged and not state.ours and self._feed.replay is None:
-            words = _("Another has released the emergency stop: the wheels may turn.")
+            words = _("The emergency stop was released elsewhere: the wheels may turn.")
             self._app.notify(words, severity="warning", timeout=WHY_S, markup=False)
         now_s = clock.now()
         said_in_vain = any(
@@ -83,19 +83,19 @@ class EmergencyControl:
         self._app.run_worker(self._reached(self._publish(engaged=False)), group="emergency")
 
     def forget(self) -> None:
-        """Start anew with another session."""
+        """Reset for another session."""
         self._set(Emergency())
 
     def prepare(self) -> None:
-        """Have the publisher made, so that the first word goes out at once."""
+        """Create the publisher, so that the first message goes out at once."""
         graph = self._feed.graph
         if graph is not None:
             prepared = graph.prepare_publisher(EMERGENCY_STOP, emergency.TOPIC_TYPE, latched=True)
-            # If it cannot be made, publishing will say so.
+            # If it cannot be created, publishing reports that.
             prepared.add_done_callback(lambda future: future.cancelled() or future.exception())
 
     async def _stop(self, sent: Future[int] | None) -> None:
-        """Where the stop cannot have reached anybody, stop all nodes as well."""
+        """Stop all nodes as well if the message cannot have reached anybody."""
         feed = self._feed
         reached = listeners(feed.update) > 0
         sending = asyncio.ensure_future(self._reached(sent))
@@ -105,14 +105,14 @@ class EmergencyControl:
         reason = emergency.NOT_OURS if feed.watching else unheard
         ending = [name for name, node in feed.nodes.items() if node.state.value not in ENDED]
         self._set(self.state.fallen_back(reason, tuple(ending)))
-        # The title has room for it on wide terminals only, and forgets it with the release.
+        # The title has room for it only on wide terminals, and drops it after the release.
         self._app.notify(_(reason), severity="error", timeout=WHY_S, markup=False)
         if feed.link is not None:
             await feed.link.stop()
         await sending
 
     async def _start_again(self, ended: tuple[str, ...]) -> None:
-        """Start the nodes that were stopped in place of the wheels, as they were."""
+        """Restart the nodes that were stopped instead of the wheels."""
         feed = self._feed
         names = [name for name in ended if name in feed.nodes]
         if feed.link is None or not names:
@@ -123,7 +123,7 @@ class EmergencyControl:
         await feed.link.start(*names)
 
     def _publish(self, *, engaged: bool) -> Future[int] | None:
-        """Publish the latched word; None without a graph."""
+        """Publish the latched message; None without a graph."""
         graph = self._feed.graph
         if graph is None:
             return None
@@ -131,9 +131,9 @@ class EmergencyControl:
         return graph.publish(EMERGENCY_STOP, emergency.TOPIC_TYPE, message, latched=True)
 
     def _end_publications(self) -> None:
-        """Publish nothing at a rate any more: it would drive as soon as the stop is released.
+        """Stop all periodic publishing: it would drive the robot as soon as the stop is released.
 
-        That is why what was begun during the stop ends, too, whoever releases it.
+        This includes what was started during the stop, whoever releases it.
         """
         feed = self._feed
         if feed.graph is None:
@@ -147,12 +147,12 @@ class EmergencyControl:
             self._app.notify(told, severity="warning", timeout=WHY_S, markup=False)
 
     async def _reached(self, sent: Future[int] | None) -> bool:
-        """Return whether ROS took it."""
+        """Return whether ROS accepted it."""
         if sent is None:
             return False
         try:
             await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
-        except Exception:  # noqa: BLE001 - whatever it was, the nodes are stopped in its place
+        except Exception:  # noqa: BLE001 - after any failure the nodes are stopped instead
             return False
         return True
 
@@ -164,5 +164,5 @@ class EmergencyControl:
 
 
 def _unheard(update: GraphUpdate | None) -> str:
-    """Return why nobody can have heard it."""
+    """Return why nobody can have received it."""
     return emergency.NO_GRAPH if update is None or update.error else emergency.NO_LISTENER

@@ -1,4 +1,4 @@
-"""What can be done on the Flow screen; each letter also under its Cyrillic key."""
+"""The actions of the Flow screen; each letter also works as the Cyrillic one on its key."""
 
 from __future__ import annotations
 
@@ -12,59 +12,59 @@ if TYPE_CHECKING:
 
 
 class FlowTarget(Protocol):
-    """What these actions need of the screen of the flow."""
+    """The part of the Flow screen that its actions use."""
 
     @property
     def chosen_step(self) -> FlowStep | None:
         """The step at the cursor."""
 
     paused: bool
-    """Whether what comes is held back."""
+    """Whether new steps are held back."""
 
     def neighbour(self, step: int) -> Chain | None:
-        """Return the chain so many places below the chosen one."""
+        """Return the chain this many places below the chosen one."""
 
     def go(self, step: int) -> None:
         """Go to that chain."""
 
     def toggle_pause(self) -> None:
-        """Hold back what comes, or show it."""
+        """Pause, or resume."""
 
     def toggle_lane(self, lane: Lane) -> None:
-        """Hide who is in this lane, or show them."""
+        """Hide the steps of this lane, or show them."""
 
     def show_all(self) -> None:
-        """Hide nobody."""
+        """Hide nothing."""
 
     def toggle_logs(self) -> None:
-        """Show other nodes' logs, or hide them."""
+        """Show the logs of other nodes, or hide them."""
 
     def toggle_scale(self) -> None:
-        """Draw the time by its logarithm, or as it is."""
+        """Switch between a logarithmic and a linear time axis."""
 
     def copy_chain(self) -> None:
         """Copy the chosen chain."""
 
 
 class FlowAction(Action[FlowTarget]):
-    """Something about the timeline."""
+    """An action on the timeline."""
 
     from_elsewhere = True
 
 
 class _Chosen(FlowAction):
-    """Something about the chosen step."""
+    """An action on the chosen step."""
 
     from_elsewhere = False
 
     @classmethod
     def possible(cls, target: FlowTarget) -> bool | None:
-        """Only with a step to choose."""
+        """Only if a step is chosen."""
         return True if target.chosen_step else None
 
 
 class OlderChain(FlowAction):
-    """The utterance before."""
+    """Go to the previous utterance."""
 
     id = "flow.older"
     key = "n,т"
@@ -85,7 +85,7 @@ class OlderChain(FlowAction):
 
 
 class NewerChain(FlowAction):
-    """The utterance after."""
+    """Go to the next utterance."""
 
     id = "flow.newer"
     key = "N,Т"
@@ -105,7 +105,7 @@ class NewerChain(FlowAction):
 
 
 class PauseFlow(FlowAction):
-    """Hold the timeline still."""
+    """Pause the timeline."""
 
     id = "flow.pause"
     key = "p,з"
@@ -115,34 +115,34 @@ class PauseFlow(FlowAction):
 
     @classmethod
     def label(cls, target: FlowTarget) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return N_("Resume") if target.paused else cls.title
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Do the other of the two."""
+        """Pause, or resume."""
         target.toggle_pause()
 
 
 class HideLane(_Chosen):
-    """Leave out what the chosen step belongs to."""
+    """Hide the lane of the chosen step."""
 
     id = "flow.hide"
     key = "m,ь"
     title = N_("Hide")
     means = "leave out"
-    tooltip = N_("Leave out all steps of the chosen one's kind: microphone, brain, wheels...")
+    tooltip = N_("Hide all steps of the same kind as the chosen one: microphone, brain, wheels...")
     footer = True
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Leave them out."""
+        """Hide it."""
         if target.chosen_step:
             target.toggle_lane(target.chosen_step.lane)
 
 
 class ShowAllLanes(FlowAction):
-    """Everything that takes part."""
+    """Show every lane."""
 
     id = "flow.all"
     key = "a,ф"
@@ -158,7 +158,7 @@ class ShowAllLanes(FlowAction):
 
 
 class OtherLogs(FlowAction):
-    """What the other nodes wrote into their logs meanwhile."""
+    """Show the log lines of other nodes."""
 
     id = "flow.logs"
     key = "u,г"
@@ -169,28 +169,28 @@ class OtherLogs(FlowAction):
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Show or hide it."""
+        """Show them, or hide them."""
         target.toggle_logs()
 
 
 class ChangeTimeScale(FlowAction):
-    """A linear axis, or one that spreads the beginning."""
+    """A linear time axis, or one that stretches the beginning."""
 
     id = "flow.scale"
     key = "z,я"
     title = N_("Scale")
     means = "time span"
-    tooltip = N_("Let the axis of time spread the first milliseconds, or be even.")
+    tooltip = N_("Stretch the first milliseconds on the time axis, or make it linear.")
     footer = True
 
     @classmethod
     async def run(cls, target: FlowTarget) -> None:
-        """Take the other one."""
+        """Switch to the other one."""
         target.toggle_scale()
 
 
 class CopyChain(_Chosen):
-    """The utterance for the clipboard."""
+    """Copy the utterance to the clipboard."""
 
     id = "flow.copy"
     key = "y,н"

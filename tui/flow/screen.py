@@ -1,4 +1,4 @@
-"""One timeline across nodes: what followed from a word that was said, and after how long."""
+"""One timeline across nodes: what followed from an utterance, and after how long."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from textual.widgets import Static
 from text.i18n import N_, _, ngettext
 from text.plain import plain
 from tui import clock
-from tui.actions import bindings
-from tui.deck.actions import WriteCommand
+from tui.actions import WRITE_COMMAND, bindings
 from tui.flow import words
 from tui.flow.actions import FLOW_ACTIONS
 from tui.flow.book import FlowBook
@@ -35,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class FlowScreen(DeckScreen):
-    """Who takes part, the chains, and the whole of the chosen step."""
+    """The lanes, the chains, and the full text of the chosen step."""
 
     tab: ClassVar[str] = "flow"
     about: ClassVar[str] = N_(
@@ -66,10 +65,10 @@ class FlowScreen(DeckScreen):
         self._folded: set[float] = set()
         self._logarithmic = True
         self._held: tuple[Chain, ...] = ()
-        """What is shown while paused."""
+        """The chains shown while paused."""
         self._update: GraphUpdate | None = None
         self._since_s: float | None = None
-        """Unix time, a recording's own in a replay, before which nothing was collected."""
+        """Unix time (of the recording in a replay) before which nothing was collected."""
 
     def compose_body(self) -> ComposeResult:
         """Lanes above, the timeline, the chosen step below."""
@@ -85,19 +84,19 @@ class FlowScreen(DeckScreen):
 
     @property
     def chains(self) -> Sequence[Chain]:
-        """What is shown, newest first."""
+        """The chains shown, newest first."""
         return self._held if self.paused else tuple(reversed(self._book.chains))
 
     @property
     def chosen_chain(self) -> Chain | None:
-        """The chain of the cursor."""
+        """The chain at the cursor."""
         key = self.view.chosen if self.is_mounted else None
         found = (one for one in self.chains if key is not None and one.start_s == key[0])
         return next(found, None)
 
     @property
     def chosen_step(self) -> FlowStep | None:
-        """The step at the cursor; its first where that is a headline."""
+        """The step at the cursor; the first one of the chain if that is a headline."""
         chain = self.chosen_chain
         if chain is None or self.view.chosen is None:
             return None
@@ -106,15 +105,15 @@ class FlowScreen(DeckScreen):
         return shown[number] if number < len(shown) else None
 
     def follow_topics(self) -> set[str]:
-        """Everything that may take part, once this screen has been opened."""
+        """All topics that may take part, once this screen has been opened."""
         return set(TOPICS)
 
     def on_mount(self) -> None:
-        """Begin at the newest."""
+        """Start at the newest chain."""
         self._show()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Another session begins with an empty timeline; one that has ended keeps it."""
+        """Start a new session with an empty timeline; keep the one of a session that has ended."""
         del message
         if self.feed.session is not None:
             self._book.clear()
@@ -124,12 +123,12 @@ class FlowScreen(DeckScreen):
             self._show()
 
     def on_log_arrived(self, message: LogArrived) -> None:
-        """Take what nodes wrote."""
+        """Add log lines."""
         programs = {name: node.command for name, node in self.feed.nodes.items()}
         self._take(log_steps(message.lines, programs))
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Take what came on the topics."""
+        """Add messages."""
         self._update = message.update
         self._note_since(message.update)
         said_by = {
@@ -143,13 +142,13 @@ class FlowScreen(DeckScreen):
     def _note_since(self, update: GraphUpdate) -> None:
         came = [one.received_s for topic in TOPICS for one in update.samples.get(topic, ())[:1]]
         since_s = min(came, default=math.inf)
-        # Earlier than before: a recording was turned back.
+        # Time went back: somebody jumped back in a recording.
         if since_s < (math.inf if self._since_s is None else self._since_s):
             self._since_s = since_s
             self._say_lanes()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Say everything anew."""
+        """Redraw all texts."""
         del message
         self._show()
 
@@ -166,10 +165,10 @@ class FlowScreen(DeckScreen):
             self.view.choose((chain.start_s, -1))
             self._show()
 
-    # What the actions do
+    # Actions
 
     def neighbour(self, step: int) -> Chain | None:
-        """The chain so many places below the chosen one."""
+        """The chain this many places below the chosen one."""
         chains, chosen = list(self.chains), self.chosen_chain
         if chosen is None:
             return None
@@ -183,13 +182,13 @@ class FlowScreen(DeckScreen):
             self.view.choose((chain.start_s, -1))
 
     def toggle_pause(self) -> None:
-        """Hold the timeline still, or go on."""
+        """Pause, or resume."""
         self._held = () if self.paused else tuple(reversed(self._book.chains))
         self.paused = not self.paused
         self._show()
 
     def toggle_lane(self, lane: Lane) -> None:
-        """Show or hide what belongs to it."""
+        """Show the steps of this lane, or hide them."""
         self._hidden ^= {lane}
         self._show()
 
@@ -202,17 +201,17 @@ class FlowScreen(DeckScreen):
         self.toggle_lane(Lane.LOG)
 
     def show_all(self) -> None:
-        """Hide nothing but the logs of other nodes."""
+        """Hide only the logs of other nodes."""
         self._hidden = {Lane.LOG}
         self._show()
 
     def toggle_scale(self) -> None:
-        """Spread the beginning, or do not."""
+        """Switch between a logarithmic and a linear time axis."""
         self._logarithmic = not self._logarithmic
         self._show()
 
     def copy_chain(self) -> None:
-        """Copy the chosen chain as lines of text."""
+        """Copy the chosen chain as text."""
         chain = self.chosen_chain
         if chain is None:
             return
@@ -227,10 +226,10 @@ class FlowScreen(DeckScreen):
         told = ngettext("Copied {n} step", "Copied {n} steps", count).format(n=count)
         self.notify(told, markup=False)
 
-    # What is shown
+    # Display
 
     def _take(self, steps: Sequence[FlowStep]) -> bool:
-        """Put steps into their chains; whether anything shown has changed."""
+        """Add steps to their chains; return whether anything visible has changed."""
         if not steps or not self._book.add(steps):
             return False
         if self.paused:
@@ -292,7 +291,7 @@ class FlowScreen(DeckScreen):
         if empty:
             rows = () if self._update is None else self._update.topics
             there = {row.name for row in rows if row.publishers or row.subscribers}
-            key, recorded = self.deck.keys_of(WriteCommand)[0], self.feed.replay is not None
+            key, recorded = self.deck.keys_of(WRITE_COMMAND)[0], self.feed.replay is not None
             note.update("\n".join(words.nothing_yet(there, key, recorded=recorded)))
 
     def _say_step(self) -> None:

@@ -1,6 +1,6 @@
-"""What screens, dialogs and actions need of the app that shows them.
+"""The part of the app that screens, dialogs and actions may use.
 
-They ask `host_of` for it and import no `tui.app`; the app fits by its shape.
+They get it from `host_of` and do not import `tui.app`; the app matches it structurally.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from textual.dom import DOMNode
     from textual.notifications import SeverityLevel
 
-    from tui.actions import Action
+    from tui.actions import Action, Keys
     from tui.emergency.control import EmergencyControl
     from tui.recording.recording import Recording
     from tui.session.feed import Feed
@@ -22,47 +22,47 @@ if TYPE_CHECKING:
 
 
 class SessionDoor(Protocol):
-    """The way into a session and out of it."""
+    """Opens and closes sessions."""
 
     request: OpenRequest
-    """What every request has: hardware, overrides, domain; and what was named to begin with."""
+    """Hardware, overrides and domain for every request, and the profile named at the start."""
 
     @property
     def opener(self) -> SessionOpener:
-        """Lists what can be opened, and opens it."""
+        """Lists the sessions that can be opened, and opens them."""
 
     @property
     def opening(self) -> str:
-        """What is being opened, empty if nothing is."""
+        """Name of the session that is being opened, empty if there is none."""
 
     @property
     def last_lesson(self) -> str:
-        """The profile that was started last, where the list of lessons begins."""
+        """The profile that was started last, where the list of lessons starts."""
 
     def open(self, request: OpenRequest) -> None:
-        """Start or attach to a session and show it until it ends."""
+        """Start or attach to a session, and show it until it ends."""
 
     def close(self) -> None:
-        """Stop the nodes that this screen has started, or let go of the others; then pick anew."""
+        """Stop the nodes that this screen started, or detach from others; then show the picker."""
 
     def leave(self, code: int = 0) -> None:
-        """Stop what this screen has started, and end with `code`; asked again, at once."""
+        """Stop what this screen has started, and exit with `code`; if asked again, exit at once."""
 
     def end_of_others(self) -> None:
-        """Stop a session that was started elsewhere, if a person says so once more."""
+        """Stop a session that was started elsewhere, after the user confirms."""
 
     def stop_now(self) -> None:
-        """Skip the waiting for nodes that do not end by themselves."""
+        """Stop waiting for nodes that do not end by themselves."""
 
     def tell_damage(self, words: str) -> None:
-        """Say that something in the recording cannot be read, when that is first come to."""
+        """Report that part of the recording cannot be read, when playback first gets there."""
 
 
 class KeyNames(Protocol):
-    """Knows by which keys things are done."""
+    """Knows which keys run which actions."""
 
-    def keys_of(self, action: type[Action[Any]]) -> list[str]:
-        """Return how the keys of `action` are written, those of the user's keymap."""
+    def keys_of(self, action: type[Action[Any]] | Keys) -> list[str]:
+        """Return how the keys of `action` are written, following the user's keymap."""
 
 
 class Host(KeyNames, Protocol):
@@ -74,47 +74,47 @@ class Host(KeyNames, Protocol):
 
     @property
     def sessions(self) -> SessionDoor:
-        """The way into a session and out of it."""
+        """Opens and closes sessions."""
 
     @property
     def emergency(self) -> EmergencyControl:
-        """The emergency stop: engaged and released here; its `state` is what is shown."""
+        """The emergency stop: engaged and released here; its `state` is shown."""
 
     @property
     def recording(self) -> Recording:
-        """What is recorded of the session."""
+        """The recording of the session."""
 
     @property
     def strangers(self) -> Strangers:
-        """Who publishes what only the gate and the differential should."""
+        """Publishers on topics that only the gate and the differential should publish."""
 
     @property
     def stall_detector(self) -> KeyStallDetector:
-        """Knows for how long the screen has stood still."""
+        """Knows for how long the screen was stalled."""
 
     async def show_screen(self, name: str) -> None:
         """Bring the screen of this name to the front."""
 
     def show_help(self) -> None:
-        """Explain the screen in front."""
+        """Open the help page of the screen in front."""
 
     def show_palette(self) -> None:
         """Open the palette."""
 
     def replay_changed(self) -> None:
-        """Show at once where the recording is now."""
+        """Show at once the new position in the recording."""
 
     def speak(self, code: str) -> None:
-        """Speak this language from now on."""
+        """Switch to this language."""
 
     def switch_language(self) -> None:
-        """Speak the next language."""
+        """Switch to the next language."""
 
     def next_theme(self) -> None:
-        """Take the next theme."""
+        """Switch to the next theme."""
 
     def redraw(self) -> None:
-        """Draw everything anew."""
+        """Redraw everything."""
 
     def notify(
         self,
@@ -125,7 +125,7 @@ class Host(KeyNames, Protocol):
         timeout: float | None = None,
         markup: bool = False,
     ) -> None:
-        """Tell something in a corner."""
+        """Show a notification."""
 
 
 def host_of(node: DOMNode) -> Host:

@@ -1,4 +1,4 @@
-"""An action: its goal form, its goals, Deck's own and those of others, and their cancelling."""
+"""An action: its goal form, its goals, those of Deck and those of others, and cancelling them."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import asyncio
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.content import Content
-from textual.message import Message
 
 from graph.data import Goal, GoalStatus, SeenGoal
 from text.figures import figure
 from text.i18n import N_, _, ngettext, said
 from text.plain import plain
+from text.sentences import reason_of
 from tui.actions import Action, bindings
 from tui.dialogs.dialog import Dialog
 from tui.graph.ask import AskPane
@@ -39,54 +39,45 @@ STATES = {
     GoalStatus.ABORTED: ("✗", N_("aborted"), "bad"),
     GoalStatus.FAILED: ("✗", N_("lost"), "bad"),
 }
-"""Status to sign, word and meaning: never the colour alone."""
+"""Maps a status to sign, word and meaning: colour is never the only indication."""
 SHORT_ID = 8
-"""Digits of an id that are shown: two goals of one action hardly ever share them."""
+"""Number of digits of an id that are shown; two goals of one action hardly ever share them."""
 
 
 class ActionPane(AskPane):
-    """Sends goals; feedback and result come with the updates of the graph."""
-
-    class CancelWanted(Message):
-        """A goal of another client is to be cancelled, if whoever wants it is sure."""
-
-        def __init__(self, goal: SeenGoal, state: str) -> None:
-            super().__init__()
-            self.goal = goal
-            self.state = state
-            """How it stands, in the language spoken now."""
+    """Sends goals; feedback and result arrive with the updates of the graph."""
 
     submit_title: ClassVar[str] = N_("Send goal")
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._sent_newest: int | None = None
-        """To be chosen when an update of the graph has it."""
+        """To be chosen once an update of the graph contains it."""
 
     @property
     def goals(self) -> Sequence[Goal]:
-        """Those of the action that is shown, the newest first."""
+        """Deck's goals of the action that is shown, the newest first."""
         update = self.graph_now
         goals = () if update is None else update.goals
         return [goal for goal in reversed(goals) if goal.action == self.name_shown]
 
     @property
     def of_others(self) -> Sequence[SeenGoal]:
-        """Those that others have sent, the newest first."""
+        """The goals that others have sent, the newest first."""
         update = self.graph_now
         goals = () if update is None else update.seen_goals
         return [goal for goal in reversed(goals) if goal.action == self.name_shown]
 
     @property
     def chosen(self) -> Goal | SeenGoal | None:
-        """The chosen one."""
+        """The chosen goal."""
         wanted = self.asked_rows.chosen
         goals: list[Goal | SeenGoal] = [*self.goals, *self.of_others]
         return next((goal for goal in goals if _key(goal) == wanted), None)
 
     @property
     def row(self) -> ActionRow | None:
-        """The action as it is in the graph now."""
+        """The current row of the action in the graph."""
         update = self.graph_now
         actions = () if update is None else update.actions
         return next((row for row in actions if row.name == self.name_shown), None)
@@ -96,7 +87,7 @@ class ActionPane(AskPane):
         return () if self.row is None else self.row.type_names
 
     def links(self) -> Sequence[Row]:
-        """Return its type, who serves it, and who sends it goals."""
+        """Return its type, its servers, and the nodes that send it goals."""
         row = self.row
         if row is None:
             return [heading(_("It has left the graph."))]
@@ -107,14 +98,14 @@ class ActionPane(AskPane):
         ]
 
     def asked(self) -> tuple[Sequence[Column], Sequence[Row]]:
-        """Return the goals: Deck's own, below them those of others."""
+        """Return the goals: Deck's own, and below them those of others."""
         return (
             (Column("", 8), Column("", 13), Column("", 8), Column("")),
             [*map(_own_row, self.goals), *map(_other_row, self.of_others)],
         )
 
     def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
-        """Return the chosen goal's result, or its newest feedback."""
+        """Return the result of the chosen goal, or its newest feedback."""
         goal = self.chosen
         if goal is None:
             return (
@@ -148,9 +139,8 @@ class ActionPane(AskPane):
     async def _sent(self, future: Future[int]) -> None:
         try:
             number = await asyncio.wrap_future(future)
-        except Exception as error:  # noqa: BLE001 - whatever it was, it is told
-            reason = said(getattr(error, "words", str(error)))
-            self.warn(_("Not sent: {reason}").format(reason=reason))
+        except Exception as error:  # noqa: BLE001 - any failure is reported
+            self.warn(_("Not sent: {reason}").format(reason=said(reason_of(error))))
             return
         self._sent_newest = number
         self.redraw()
@@ -164,35 +154,40 @@ class ActionPane(AskPane):
 
     @property
     def can_cancel(self) -> bool:
-        """Whether any goal has not ended."""
+        """Whether any goal is still active."""
         return self._to_cancel is not None
 
     @property
     def _to_cancel(self) -> Goal | SeenGoal | None:
-        """The chosen goal; if that one has ended, the newest that has not, Deck's own first."""
+        """The chosen goal; if that one has ended, the newest active one, preferring Deck's own."""
         goals: list[Goal | SeenGoal | None] = [self.chosen, *self.goals, *self.of_others]
         return next((goal for goal in goals if goal is not None and not goal.ended), None)
 
     @property
     def is_waiting(self) -> bool:
-        """Updates of the graph count the seconds."""
+        """Never: updates of the graph already refresh the elapsed times."""
         return False
 
     def cancel(self) -> None:
-        """Cancel a goal; one of another client only after a question."""
+        """Cancel a goal; one of another client only after confirmation."""
         graph, goal = self.deck.feed.graph, self._to_cancel
         if isinstance(goal, SeenGoal):
-            self.post_message(self.CancelWanted(goal, _words(goal)))
+            self.app.push_screen(CancelGoalScreen(goal, _words(goal)), self._cancel_of_others)
         elif graph is not None and goal is not None:
             graph.cancel_goal(goal.number)
 
+    def _cancel_of_others(self, goal: SeenGoal | None) -> None:
+        graph = self.deck.feed.graph
+        if graph is not None and goal is not None:
+            graph.cancel_seen_goal(goal.action, goal.goal_id)
+
     @property
     def can_forget(self) -> bool:
-        """Whether a goal of Deck's own is chosen."""
+        """Whether one of Deck's own goals is chosen."""
         return isinstance(self.chosen, Goal)
 
     def forget(self) -> None:
-        """Take the chosen goal off the list."""
+        """Remove the chosen goal from the list."""
         graph, goal = self.deck.feed.graph, self.chosen
         if graph is not None and isinstance(goal, Goal):
             graph.forget_goal(goal.number)
@@ -203,7 +198,7 @@ def _key(goal: Goal | SeenGoal) -> str:
 
 
 def _name(goal: Goal | SeenGoal) -> str:
-    """Return what it is called: the number by which Deck has sent it, or how its id begins."""
+    """Return the goal's label: Deck's number for it, or the beginning of its id."""
     return f"#{goal.number}" if isinstance(goal, Goal) else goal.goal_id[:SHORT_ID]
 
 
@@ -235,7 +230,7 @@ def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
 
 
 class CancelGoal(Action["CancelGoalScreen"]):
-    """Ask its server to."""
+    """Ask the server to cancel it."""
 
     id = "cancel_goal.cancel"
     key = "enter"
@@ -251,7 +246,7 @@ class CancelGoal(Action["CancelGoalScreen"]):
 
 
 class LeaveGoal(Action["CancelGoalScreen"]):
-    """Let it go on."""
+    """Let the goal continue."""
 
     id = "cancel_goal.leave"
     key = "escape"
@@ -267,12 +262,12 @@ class LeaveGoal(Action["CancelGoalScreen"]):
 
 
 class CancelGoalScreen(Dialog["SeenGoal | None"]):
-    """Answers with the goal if it is to be cancelled."""
+    """Returns the goal if it is to be cancelled."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(CancelGoal, LeaveGoal)
 
     def __init__(self, goal: SeenGoal, state: str) -> None:
-        """Ask about `goal`, of which the list says `state`."""
+        """Ask about `goal`, whose state in the list is `state`."""
         super().__init__()
         self.goal = goal
         self._state = state
@@ -282,7 +277,7 @@ class CancelGoalScreen(Dialog["SeenGoal | None"]):
         return _("Cancel a goal of another client?")
 
     def words(self) -> Content:
-        """Say which, and what it does."""
+        """Say which goal it is, and its state."""
         lines = [
             Content.styled(plain(self.goal.action, LONGEST), "bold"),
             Content(f"{self.goal.goal_id}  {self._state}"),

@@ -1,4 +1,4 @@
-"""What can be done on the screen of the graph; each letter also under its Cyrillic key."""
+"""The actions of the Graph screen; each letter also works as the Cyrillic one on its key."""
 
 from __future__ import annotations
 
@@ -14,70 +14,64 @@ if TYPE_CHECKING:
 
 
 class GraphTarget(Protocol):
-    """What these actions need of the screen of the graph."""
+    """The part of the Graph screen that its actions use."""
 
     @property
     def feed(self) -> Feed:
-        """What runs."""
+        """The session."""
 
     @property
     def ask_pane(self) -> AskPane | None:
-        """The detail in front, if something can be asked there."""
+        """The current detail, if it has a form."""
 
     @property
     def node_pane(self) -> NodePane | None:
-        """The detail in front, if it is a node's."""
+        """The current detail, if it is that of a node."""
 
     @property
     def shows_pane(self) -> bool:
-        """Whether the detail is seen."""
+        """Whether the detail is visible."""
 
     @property
     def shows_parameters(self) -> bool:
-        """Whether parameters are in front."""
+        """Whether parameters are shown."""
 
     @property
     def is_in_list(self) -> bool:
-        """Whether keys go to the list of names."""
+        """Whether the list of names has the focus."""
 
     @property
     def is_typing(self) -> bool:
-        """Whether letters go into a text."""
+        """Whether letters are typed into a text field."""
 
     @property
     def draws(self) -> bool:
-        """Whether the drawing is in front."""
+        """Whether the map is shown."""
 
     def focus_filter(self) -> None:
-        """Put the cursor into the filter."""
+        """Focus the filter."""
 
     def list_next(self, by: int) -> None:
-        """List the kind that stands so many tabs to the right."""
+        """List the kind this many tabs to the right."""
 
     def toggle_map(self) -> None:
-        """Draw the graph around the chosen node, or list it again."""
+        """Show the map around the chosen node, or the list."""
 
     def toggle_everything(self) -> None:
-        """Show or hide what ROS itself needs."""
-
-    def save_parameters(self) -> None:
-        """Ask for a file, and write the node's parameters into it."""
-
-    def load_parameters(self) -> None:
-        """Ask for a file, and set what it has for the node."""
+        """Show or hide what belongs to ROS itself."""
 
     def go_back(self) -> None:
-        """Go back to where the newest link was followed, else to the list."""
+        """Go back to where the last link was followed, otherwise to the list."""
 
 
 class GraphAction(Action[GraphTarget]):
-    """Something that the screen of the graph does."""
+    """An action of the Graph screen."""
 
 
 class FillIn(GraphAction):
-    """Into the form, past the names above it that lead elsewhere.
+    """Go into the form, past the names above it that are links.
 
-    First, so that the footer of a small terminal has room for it.
+    Listed first, so that the footer of a small terminal has room for it.
     """
 
     id = "graph.fill_in"
@@ -94,18 +88,18 @@ class FillIn(GraphAction):
 
     @classmethod
     def shown(cls, target: GraphTarget) -> bool:
-        """Not in the room of what cancels, while something is under way."""
+        """Not while a request is in progress, which needs the room for its cancel key."""
         return target.ask_pane is not None and not target.ask_pane.can_cancel
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Go to its first line."""
+        """Focus its first line."""
         if target.ask_pane is not None:
             target.ask_pane.first().focus()
 
 
 class FilterNames(GraphAction):
-    """Narrow the list down."""
+    """Filter the list."""
 
     id = "graph.filter"
     key = "slash,ctrl+f"
@@ -118,17 +112,17 @@ class FilterNames(GraphAction):
 
     @classmethod
     def possible(cls, target: GraphTarget) -> bool | None:
-        """Not where a slash is a slash."""
+        """Not in a text field, where a slash is typed."""
         return not target.is_typing
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Put the cursor into the filter."""
+        """Focus the filter."""
         target.focus_filter()
 
 
 class NextKind(GraphAction):
-    """Services after nodes, and so on."""
+    """Switch from nodes to services, and so on."""
 
     id = "graph.next"
     key = "right"
@@ -143,7 +137,7 @@ class NextKind(GraphAction):
 
 
 class PreviousKind(GraphAction):
-    """The other way round."""
+    """Switch in the other direction."""
 
     id = "graph.previous"
     key = "left"
@@ -158,7 +152,7 @@ class PreviousKind(GraphAction):
 
 
 class ShowMap(GraphAction):
-    """The graph drawn."""
+    """Show the map."""
 
     id = "graph.map"
     key = "M,Ь"
@@ -169,17 +163,17 @@ class ShowMap(GraphAction):
 
     @classmethod
     def label(cls, target: GraphTarget) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return N_("List") if target.draws else cls.title
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Draw or list."""
+        """Show the map or the list."""
         target.toggle_map()
 
 
 class ShowParameters(GraphAction):
-    """The node's parameters."""
+    """Show the node's parameters."""
 
     id = "graph.calls.parameters"
     key = "E,У"
@@ -190,7 +184,7 @@ class ShowParameters(GraphAction):
 
     @classmethod
     def possible(cls, target: GraphTarget) -> bool | None:
-        """Only of a node, which a recording is not."""
+        """Only for a node, and not in a recording."""
         if target.feed.replay is not None:
             return False
         return target.node_pane is not None and target.shows_pane
@@ -203,7 +197,7 @@ class ShowParameters(GraphAction):
 
 
 class ParametersAction(GraphAction):
-    """Something that is done with the parameters that are shown."""
+    """An action on the parameters that are shown."""
 
     footer = True
 
@@ -214,7 +208,7 @@ class ParametersAction(GraphAction):
 
 
 class SaveParameters(ParametersAction):
-    """Into a file."""
+    """Save them to a file."""
 
     id = "graph.save"
     key = "W,Ц"
@@ -225,11 +219,12 @@ class SaveParameters(ParametersAction):
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
         """Ask for a file."""
-        target.save_parameters()
+        if target.node_pane is not None:
+            target.node_pane.save_parameters()
 
 
 class LoadParameters(ParametersAction):
-    """From a file."""
+    """Load them from a file."""
 
     id = "graph.load"
     key = "O,Щ"
@@ -239,11 +234,12 @@ class LoadParameters(ParametersAction):
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
         """Ask for a file."""
-        target.load_parameters()
+        if target.node_pane is not None:
+            target.node_pane.load_parameters()
 
 
 class SubmitRequest(GraphAction):
-    """The call, or the goal, from wherever the focus is."""
+    """Send the call or the goal, wherever the focus is."""
 
     id = "graph.ask"
     key = "ctrl+s"
@@ -254,23 +250,23 @@ class SubmitRequest(GraphAction):
 
     @classmethod
     def possible(cls, target: GraphTarget) -> bool | None:
-        """Only where a form is seen: what it asks for may turn wheels."""
+        """Only where a form is visible: the request may turn wheels."""
         return target.ask_pane is not None and target.shows_pane
 
     @classmethod
     def label(cls, target: GraphTarget) -> str:
-        """By what would be asked."""
+        """Named after what would be sent."""
         return cls.title if target.ask_pane is None else target.ask_pane.submit_title
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Ask."""
+        """Send it."""
         if target.ask_pane is not None:
             target.ask_pane.form.submit()
 
 
 class CancelRequest(GraphAction):
-    """What is under way."""
+    """Cancel the request in progress."""
 
     id = "graph.cancel"
     key = "f12,x,ч"
@@ -282,7 +278,7 @@ class CancelRequest(GraphAction):
 
     @classmethod
     def possible(cls, target: GraphTarget) -> bool | None:
-        """Only while something is under way."""
+        """Only while a request is in progress."""
         return target.ask_pane is not None and target.ask_pane.can_cancel
 
     @classmethod
@@ -293,29 +289,29 @@ class CancelRequest(GraphAction):
 
 
 class ForgetGoal(GraphAction):
-    """Off the list."""
+    """Remove a goal from the list."""
 
     id = "graph.forget"
     key = "delete,d,в"
     title = N_("Forget")
     means = "clear"
-    tooltip = N_("Take the chosen goal off the list; one that has not ended is cancelled.")
+    tooltip = N_("Remove the chosen goal from the list; one that has not ended is cancelled.")
 
     @classmethod
     def possible(cls, target: GraphTarget) -> bool | None:
-        """Only of an action whose goals are seen."""
+        """Only for an action whose goals are visible."""
         pane = target.ask_pane
         return pane is not None and pane.can_forget and target.shows_pane
 
     @classmethod
     async def run(cls, target: GraphTarget) -> None:
-        """Forget it."""
+        """Remove it."""
         if target.ask_pane is not None:
             target.ask_pane.forget()
 
 
 class ShowEverything(GraphAction):
-    """What ROS itself needs."""
+    """Show what belongs to ROS itself."""
 
     id = "graph.housekeeping"
     key = "a,ф"
@@ -332,7 +328,7 @@ class ShowEverything(GraphAction):
 
 
 class GoBack(GraphAction):
-    """To where one came from."""
+    """Go back to the previous place."""
 
     id = "graph.back"
     key = "escape,backspace"

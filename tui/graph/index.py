@@ -1,4 +1,4 @@
-"""The graph by kinds: what is listed, which words find it, and why nothing is."""
+"""The graph by kind: what is listed, how it is searched, and why a list is empty."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ class GraphEntry(NamedTuple):
 
     name: str
     detail: str = ""
-    """Its type, or for a type how many things have it."""
+    """Its type, or for a type the number of its users."""
     housekeeping: bool = False
 
 
 class GraphIndex:
-    """All there is of each kind, and what of it is listed."""
+    """Everything of each kind, and which of it is listed."""
 
     def __init__(self) -> None:
         self.everything = False
-        """Whether ROS's own things are listed."""
+        """Whether what belongs to ROS itself is listed."""
         self.listed: dict[GraphKind, list[GraphEntry]] = {}
-        """All there is of each kind."""
+        """Everything of each kind."""
         self._installed: tuple[str, ...] = ()
-        """Every type there is on this computer, once somebody has asked for all."""
+        """Every type installed on this computer, once it has been requested."""
 
     def take(self, update: GraphUpdate | None) -> None:
-        """List what is in this graph from now on."""
+        """Use this graph from now on."""
         self.listed = {kind: entries(update, kind, self._installed) for kind in LISTED}
 
     async def find_installed(self) -> None:
-        """Find the types that are installed, though nobody uses them, for the next `take`."""
+        """Find installed types that nobody uses, for the next `take`."""
         from graph.messages.browse import interfaces
 
         self._installed = await asyncio.to_thread(interfaces)
@@ -55,11 +55,11 @@ class GraphIndex:
         return self.listed.get(kind, [])
 
     def fitting(self, kind: GraphKind, words: str = "") -> list[GraphEntry]:
-        """Return what is listed of a kind by these words."""
+        """Return what is listed of a kind for a filter with these words."""
         return chosen_of(self.all_of(kind), words, everything=self.everything)
 
     def reveal(self, place: GraphPlace, words: str) -> bool:
-        """See that a place is listed; return whether it is by these words too."""
+        """Make sure that a place is listed; return whether it also matches these words."""
         entry = next((one for one in self.all_of(place.kind) if one.name == place.name), None)
         if entry is None:
             return False
@@ -86,7 +86,7 @@ def entries(
 
 
 def chosen_of(listed: Iterable[GraphEntry], words: str, *, everything: bool) -> list[GraphEntry]:
-    """Return those that have all the words, without ROS's own unless `everything` is wanted."""
+    """Return the entries that contain all the words, without ROS's own unless `everything`."""
     parts = words.casefold().split()
     return [
         entry
@@ -97,7 +97,7 @@ def chosen_of(listed: Iterable[GraphEntry], words: str, *, everything: bool) -> 
 
 
 def users_of(update: GraphUpdate | None, type_name: str) -> dict[GraphKind, list[str]]:
-    """Return the names of what is of this type, by kind."""
+    """Return the names of everything that uses this type, by kind."""
     if update is None:
         return {}
     rows: dict[GraphKind, Sequence[Typed]] = {
@@ -129,12 +129,12 @@ def _types(update: GraphUpdate, installed: Iterable[str]) -> list[GraphEntry]:
 def why_empty(
     feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str
 ) -> tuple[str, str]:
-    """Return headline and way out for a list that shows none of `listed`."""
+    """Return headline and advice for a list that shows none of `listed`."""
     update = feed.update
     if feed.link is None:
         return _("no lesson is running"), ""
     if update is None:
-        return _("the graph is being looked at"), _("Nodes are starting.")
+        return _("reading the graph"), _("Nodes are starting.")
     if update.error:
         return feed.blind, said(update.error)
     if any(not entry.housekeeping for entry in listed):

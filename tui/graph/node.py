@@ -1,16 +1,20 @@
-"""A node: which process it is, whom it talks to, and its parameters when they are asked for."""
+"""A node: its process, its connections, and on request its parameters."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
+from textual import on
+
 from text.i18n import _
+from tui.graph import parameter_changes
 from tui.graph.links import GraphLinks, heading, link, short
 from tui.graph.neighbours import neighbours, node_called
 from tui.graph.pane import EmptyNotice, GraphPane
 from tui.graph.parameters import GraphParameters
 from tui.widgets.name_head import NameHead
 from tui.widgets.node_words import memory, percent, state_words, why
+from tui.widgets.rows import Rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class NodePane(GraphPane):
-    """Links above, parameters below once they are wanted."""
+    """Links above, and parameters below if they were requested."""
 
     DEFAULT_CSS: ClassVar[str] = """
     NodePane {
@@ -48,7 +52,7 @@ class NodePane(GraphPane):
 
     @property
     def links(self) -> GraphLinks:
-        """What leads away from the node."""
+        """The links to the node's connections."""
         return self.query_one(GraphLinks)
 
     @property
@@ -58,11 +62,11 @@ class NodePane(GraphPane):
 
     @property
     def shows_parameters(self) -> bool:
-        """Whether they are wanted."""
+        """Whether they were requested."""
         return self.has_class("-parameters")
 
     def show_name(self, name: str) -> None:
-        """Show another node; its parameters are read if those of the one before were shown."""
+        """Show another node; read its parameters if those of the previous one were shown."""
         another = name != self.name_shown
         super().show_name(name)
         if another:
@@ -71,7 +75,7 @@ class NodePane(GraphPane):
                 self._read()
 
     def toggle_parameters(self) -> None:
-        """Show the parameters, read anew, or hide them."""
+        """Show the parameters, after reading them again, or hide them."""
         self.toggle_class("-parameters")
         if self.shows_parameters:
             self._read()
@@ -80,19 +84,31 @@ class NodePane(GraphPane):
             self.links.focus()
         self.screen.refresh_bindings()
 
+    def save_parameters(self) -> None:
+        """Ask for a file, and save the parameters to it."""
+        parameter_changes.save(self.app, self.parameters)
+
+    def load_parameters(self) -> None:
+        """Ask for a file, and set the parameters that it has for this node."""
+        parameter_changes.load(self.app, self.parameters)
+
+    @on(Rows.Opened, "#graph-parameters")
+    def _edit(self) -> None:
+        parameter_changes.edit(self.app, self.parameters)
+
     def _read(self) -> None:
         self.parameters.read(self.name_shown)
         self.redraw()
 
     def redraw(self) -> None:
-        """Show the node as it is now."""
+        """Show the current state of the node."""
         if not self.name_shown or not self.is_mounted:
             return
         update = self.graph_now
         node = node_called(update, self.name_shown)
         status = status_of(self.name_shown, self.deck.feed.nodes)
         if status and not status.state.alive and self.name_shown in self.deck.feed.outside.now:
-            # What runs is somebody's own in its place.
+            # Somebody else's node of that name runs in its place.
             status = None
         self.query_one(NameHead).show(self.name_shown, process_words(status))
         if self.shows_parameters:
@@ -112,12 +128,12 @@ class NodePane(GraphPane):
             )
 
     def relabel(self) -> None:
-        """Say everything anew."""
+        """Redraw in the current language."""
         self.parameters.redraw()
         self.redraw()
 
     def first(self) -> Widget:
-        """The parameters if they are all there is to be seen, else the links."""
+        """Return the parameters if nothing else is visible, otherwise the links."""
         return self.links if self.links.display else self.parameters.table
 
 
@@ -128,7 +144,7 @@ def _gone_words(ours: bool) -> str:
 
 
 def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[Row]:
-    """Return a section for each thing that the node does."""
+    """Return a section for each kind of connection that the node has."""
     around = neighbours(update, node, everything=everything)
     sections: tuple[tuple[str, str, tuple[Way, ...], str], ...] = (
         ("says", _("Publishes"), around.said, "→"),
@@ -147,18 +163,18 @@ def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[R
 
 
 def _with(way: Way, arrow: str) -> str:
-    """Return who is at the other end; of a topic nobody there is worth a word."""
+    """Return who is at the other end; for a topic, say so if there is nobody."""
     names = ", ".join(short(name) for name in way.nodes)
     return f"{arrow} {names}" if names else _("nobody")
 
 
 def status_of(name: str, nodes: Mapping[str, NodeStatus]) -> NodeStatus | None:
-    """Return the process of a node of this full name, if Deck has started one that is called so."""
+    """Return the status of the node with this full name, if Deck has started one."""
     return nodes.get(name.removeprefix("/")) or nodes.get(name.rpartition("/")[2])
 
 
 def process_words(status: NodeStatus | None) -> str:
-    """Return which process of ours a node is, and what it costs."""
+    """Return which of Deck's processes a node is, and the resources it uses."""
     if status is None:
         return _("not started by Deck")
     sign, word, _meaning = state_words(status)

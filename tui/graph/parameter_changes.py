@@ -1,4 +1,4 @@
-"""Changing the parameters of a node: one in a dialog, many from a file."""
+"""Changing the parameters of a node: one in a dialog, or many from a file."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
 LONGEST_REMARK = 1000
 
 Take = Callable[[str], Awaitable[str]]
-"""Does what is to be done with the file; returns what went wrong, or nothing."""
+"""Does the work with the file; returns what went wrong, empty if nothing did."""
 
 
 class PathDialog(Dialog[str]):
-    """Answers with the path, empty if none was taken; stays open while the file is refused."""
+    """Returns the path, empty if none was given; stays open while the file is refused."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", show=False)]
     DEFAULT_CSS: ClassVar[str] = """
@@ -47,17 +47,17 @@ class PathDialog(Dialog[str]):
     """
 
     def __init__(self, title: str, words: str, path: str, take: Take) -> None:
-        """Ask with an answer to begin with."""
+        """Ask for a path, with `path` as the default."""
         super().__init__()
         self._title, self._words, self._path, self._take = title, words, path, take
         self._busy = False
 
     def title_words(self) -> str:
-        """Tell what is to be done."""
+        """Return what is about to be done."""
         return self._title
 
     def words(self) -> Content:
-        """Tell what the file holds."""
+        """Return what the file contains."""
         return Content(self._words)
 
     def compose(self) -> ComposeResult:
@@ -69,17 +69,17 @@ class PathDialog(Dialog[str]):
             yield Static(id="path-keys", markup=False)
 
     def on_mount(self) -> None:
-        """Begin in the field."""
+        """Focus the field."""
         self.query_one(Input).focus()
         self._remark("")
 
     def redraw(self) -> None:
-        """Show the texts in the language spoken now."""
+        """Redraw in the current language."""
         super().redraw()
         self.query_one("#path-keys", Static).update(_("Enter goes on, Escape leaves"))
 
     def action_leave(self) -> None:
-        """Do nothing."""
+        """Close without doing anything."""
         self.dismiss("")
 
     @on(Input.Changed)
@@ -110,11 +110,11 @@ class PathDialog(Dialog[str]):
 
 LONGEST = 400
 SHOWN = 3
-"""Refusals that are told one by one."""
+"""Number of refusals that are reported individually."""
 
 
 def edit(app: App[Any], table: GraphParameters) -> None:
-    """Ask for another value of the chosen parameter."""
+    """Ask for a new value of the chosen parameter."""
     row = table.chosen
     if row is not None:
         apply = partial(_apply, app, table, row)
@@ -122,7 +122,7 @@ def edit(app: App[Any], table: GraphParameters) -> None:
 
 
 def save(app: App[Any], table: GraphParameters) -> None:
-    """Ask for a file, and write all parameters into it."""
+    """Ask for a file, and save all parameters to it."""
     if not table.rows:
         app.notify(_("There are no parameters to save."), severity="warning", markup=False)
         return
@@ -139,7 +139,7 @@ def save(app: App[Any], table: GraphParameters) -> None:
 
 
 def load(app: App[Any], table: GraphParameters) -> None:
-    """Ask for a file, and set what it has for this node."""
+    """Ask for a file, and set the parameters that it has for this node."""
     if not table.node:
         return
     words = _("A file of `ros2 param dump`. What it has for {node} is set.")
@@ -158,7 +158,7 @@ async def _apply(app: App[Any], table: GraphParameters, row: ParameterRow, value
 
 
 async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value]) -> str:
-    """Set them, read the node anew; return what was refused and why."""
+    """Set them and read the node again; return what was refused and why."""
     graph, node = host_of(app).feed.graph, table.node
     if graph is None:
         return _("no lesson is running")
@@ -175,7 +175,7 @@ async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value
 
 
 class _Saving:
-    """Writes a file, and one that is there only when its name is given once more."""
+    """Saves to a file, and overwrites an existing one only if its name is entered twice."""
 
     def __init__(self, node: str, rows: tuple[ParameterRow, ...]) -> None:
         self._node, self._rows = node, rows
@@ -189,7 +189,7 @@ class _Saving:
             await asyncio.to_thread(save_file, _full(path), self._node, self._rows, replace=replace)
         except FileExistsError:
             self._refused = path
-            return _("There is such a file: Enter again overwrites it.")
+            return _("The file already exists: press Enter again to overwrite it.")
         except OSError as error:
             return _not_opened(path, error)
         return ""
@@ -207,7 +207,7 @@ async def _load(app: App[Any], table: GraphParameters, path: str) -> str:
         return f"{path}:{error.line}:{error.column}: {said(error.message)}"
     if not values:
         return _("{path} has no parameters for {node}").format(path=path, node=table.node)
-    # What can only be read was in the file because it was saved with the rest.
+    # Read-only parameters are in the file because they were saved with the others.
     fixed = {row.name: row.value for row in table.rows if row.read_only}
     wanted = {name: value for name, value in values.items() if fixed.get(name) != value}
     refusal = await _set(app, table, wanted) if wanted else ""

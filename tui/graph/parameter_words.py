@@ -1,4 +1,4 @@
-"""A parameter in words: its value as one types it, and what it may be."""
+"""A parameter in words: its value as typed, and its allowed values."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ UNITS = (
     N_("deg/s"),
 )  # fmt: skip
 MEASURE = re.compile(r"(?P<least>\S+) \.\. (?P<greatest>\S+)(?: (?P<unit>\S+))?")
-"""How Deck's own nodes write a range into their constraints."""
+"""The notation of Deck's own nodes for a range in their constraints."""
 
 
 def typed(value: Value | None) -> str:
-    """Return a value as one would type it: a text as it is, a list with commas in brackets.
+    """Return a value as one would type it: a text unchanged, a list with commas in brackets.
 
-    A text that shows not all of itself is in double quotes, with escapes; `meant` takes them away.
+    A text with invisible parts is in double quotes, with escapes; `meant` reverses that.
     """
     if value is None:
         return ""
@@ -42,13 +42,13 @@ def typed(value: Value | None) -> str:
 
 
 def meant(text: str) -> str:
-    """Return the text that was typed: what is between double quotes, else all of it."""
+    """Return the text that was meant: what is between double quotes, otherwise all of it."""
     between = unquoted(text)
     return text if between is None else between
 
 
 def value_text(value: Value | None) -> str:
-    """Return a value for one line of a table, harmless."""
+    """Return a value as one line of a table, with control characters made harmless."""
     return _("not set") if value is None else plain(typed(value), LONGEST)
 
 
@@ -61,9 +61,10 @@ def allowed_words(row: ParameterRow) -> str:
         least, greatest = _number(row.least), _number(row.greatest)
         words = f"{least}…{greatest}"
         told = MEASURE.fullmatch(constraints)
-        if told is not None and (told["least"], told["greatest"]) == (least, greatest):
-            # The same once more, with its unit.
+        if told and _same(told["least"], least) and _same(told["greatest"], greatest):
+            # The constraints only repeat the range, with all its digits and its unit.
             unit, constraints = told["unit"] or "", ""
+            words = plain(f"{told['least']}…{told['greatest']}", LONGEST)
             words = f"{words} {_(unit) if unit in UNITS else plain(unit, LONGEST)}".rstrip()
         parts.append(words)
     if row.step:
@@ -75,6 +76,13 @@ def allowed_words(row: ParameterRow) -> str:
 
 def _number(value: float) -> str:
     return f"{value:g}"
+
+
+def _same(told: str, number: str) -> bool:
+    try:
+        return _number(float(told)) == number
+    except ValueError:
+        return False
 
 
 def _items(value: Value) -> list[Value]:

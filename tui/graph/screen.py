@@ -1,4 +1,4 @@
-"""Nodes, services, actions and types: who talks to whom, and what can be asked of them."""
+"""Nodes, services, actions and types: who talks to whom, with calls, goals and parameters."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from textual.widgets import Input, Static, TextArea
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
-from tui.graph import parameter_changes
-from tui.graph.action import ActionPane, CancelGoalScreen
 from tui.graph.actions import GRAPH_ACTIONS, ShowEverything
 from tui.graph.ask import AskPane
 from tui.graph.detail import GraphDetail
@@ -31,21 +29,21 @@ from tui.widgets.rows import Rows
 if TYPE_CHECKING:
     from textual.app import ComposeResult
 
-    from graph.data import GraphUpdate, SeenGoal
+    from graph.data import GraphUpdate
     from tui.graph.index import GraphEntry
     from tui.graph.pane import GraphPane
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 
 
 class ShowsTopic(Protocol):
-    """What the graph needs of the screen of topics."""
+    """The part of the Topics screen that the graph uses."""
 
     def show_topic(self, topic: str) -> None:
-        """Choose a topic, though a filter or an option had hidden it."""
+        """Choose a topic, even if a filter or an option hides it."""
 
 
 class GraphScreen(DeckScreen):
-    """Kinds and filter above a list and the detail of the chosen one, or above the drawing."""
+    """Kinds and filter above a list and the detail of the chosen entry, or above the map."""
 
     tab: ClassVar[str] = "graph"
     about: ClassVar[str] = N_(
@@ -55,7 +53,7 @@ class GraphScreen(DeckScreen):
     )
     BINDINGS: ClassVar = [
         *bindings(*GRAPH_ACTIONS),
-        # An action on Tab takes away what every screen does with it where the action cannot be.
+        # Where an action on Tab is disabled, it would also block the usual effect of that key.
         Binding("tab", "app.focus_next", show=False),
     ]
 
@@ -92,7 +90,7 @@ class GraphScreen(DeckScreen):
         self.index = GraphIndex()
         self._detail = GraphDetail()
         self._goals_of: set[str] = set()
-        """Whose goals were asked for."""
+        """Actions whose goals were requested."""
 
     def compose_body(self) -> ComposeResult:
         """Kinds and filter above list and detail."""
@@ -105,7 +103,7 @@ class GraphScreen(DeckScreen):
             yield self._detail
         yield GraphMap()
 
-    # What is in front
+    # State
 
     @property
     def names(self) -> GraphList:
@@ -114,59 +112,59 @@ class GraphScreen(DeckScreen):
 
     @property
     def is_typing(self) -> bool:
-        """Whether letters go into a text."""
+        """Whether letters are typed into a text field."""
         return isinstance(self.focused, (Input, TextArea))
 
     @property
     def filter(self) -> Input:
-        """Where the words of the filter are typed."""
+        """The input of the filter."""
         return self.query_one("#graph-filter", Input)
 
     @property
     def map(self) -> GraphMap:
-        """The drawing."""
+        """The map."""
         return self.query_one(GraphMap)
 
     @property
     def draws(self) -> bool:
-        """Whether the drawing is in front."""
+        """Whether the map is shown."""
         return self.has_class("-map")
 
     @property
     def pane(self) -> GraphPane | None:
-        """The detail in front."""
+        """The current detail."""
         return self._detail.pane_of(self.history.here)
 
     @property
     def shows_pane(self) -> bool:
-        """Whether the detail is seen: neither the map nor an empty list is in its place."""
+        """Whether the detail is visible, rather than the map or an empty list."""
         return self.pane is not None and self.pane.display and not self.draws
 
     @property
     def node_pane(self) -> NodePane | None:
-        """The detail in front, if it is a node's."""
+        """The current detail, if it is that of a node."""
         pane = self.pane
         return pane if isinstance(pane, NodePane) else None
 
     @property
     def is_settling(self) -> bool:
-        """Whether what belongs to the chosen place is still to be loaded."""
+        """Whether the content of the chosen place is still to be loaded."""
         return self.pane is not None and self.pane.is_settling
 
     @property
     def shows_parameters(self) -> bool:
-        """Whether parameters are in front."""
+        """Whether parameters are shown."""
         pane = self.node_pane
         return pane is not None and pane.shows_parameters and self.shows_pane
 
     @property
     def is_in_list(self) -> bool:
-        """Whether keys go to the list of names."""
+        """Whether the list of names has the focus."""
         return self.focused is self.names
 
     @property
     def ask_pane(self) -> AskPane | None:
-        """The detail in front, if something can be asked there."""
+        """The current detail, if it has a form."""
         pane = self.pane
         return pane if isinstance(pane, AskPane) else None
 
@@ -176,10 +174,10 @@ class GraphScreen(DeckScreen):
         return {here.name} if here is not None and here.kind is GraphKind.ACTION else set()
 
     def follow_topics(self) -> set[str]:
-        """Return where nodes tell that a parameter has changed, shown now or in a moment."""
+        """Return the topic that reports changes of parameters, even before they are shown."""
         return {PARAMETER_EVENTS}
 
-    # What is shown
+    # Display
 
     def take(self, update: GraphUpdate | None) -> None:
         """Show this graph from now on."""
@@ -187,7 +185,7 @@ class GraphScreen(DeckScreen):
         self.redraw()
 
     def redraw(self) -> None:
-        """Show list and detail as things stand."""
+        """Show list and detail in their current state."""
         if not self.is_mounted:
             return
         kind, words = self.history.kind, self.filter.value
@@ -223,34 +221,34 @@ class GraphScreen(DeckScreen):
         if words != count.content:
             count.update(words)
 
-    # What happens
+    # Message handlers
 
     def on_mount(self) -> None:
-        """Begin in the list."""
+        """Focus the list."""
         self.names.focus()
         self.redraw()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show who is there now, and parameters that somebody has changed."""
+        """Show the current graph, and parameters that somebody has changed."""
         self.take(message.update)
         if self.node_pane is not None and self.node_pane.shows_parameters:
             self.node_pane.parameters.hear(message.update.samples.get(PARAMETER_EVENTS, ()))
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Show what processes have become."""
-        super().on_status_changed(message)
+        """Show the new states of the processes."""
+        del message
         if self.pane is not None:
             self.pane.redraw()
 
     def on_session_changed(self, message: SessionChanged) -> None:
         """Forget the graph of a session that has ended."""
-        super().on_session_changed(message)
+        del message
         self.history.forget()
         self.take(None)
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Say everything anew."""
-        super().on_language_changed(message)
+        """Redraw all texts."""
+        del message
         self._detail.relabel()
         self.redraw()
 
@@ -274,11 +272,6 @@ class GraphScreen(DeckScreen):
         if place is not None:
             await self.go(place)
 
-    @on(Rows.Opened, "#graph-parameters")
-    def _edited(self) -> None:
-        if self.node_pane is not None:
-            parameter_changes.edit(self.app, self.node_pane.parameters)
-
     @on(GraphTypeTree.TypeWanted)
     async def _type_wanted(self, message: GraphTypeTree.TypeWanted) -> None:
         await self.go(GraphPlace(GraphKind.TYPE, message.type_name))
@@ -288,14 +281,6 @@ class GraphScreen(DeckScreen):
         if message.place.kind is not GraphKind.NODE:
             self.remove_class("-map")
         await self.go(message.place)
-
-    @on(ActionPane.CancelWanted)
-    def _cancel_wanted(self, message: ActionPane.CancelWanted) -> None:
-        self.app.push_screen(CancelGoalScreen(message.goal, message.state), self._cancel)
-
-    def _cancel(self, goal: SeenGoal | None) -> None:
-        if goal is not None and self.feed.graph is not None:
-            self.feed.graph.cancel_seen_goal(goal.action, goal.goal_id)
 
     @on(GraphTabs.Selected)
     def _selected(self, message: GraphTabs.Selected) -> None:
@@ -309,10 +294,10 @@ class GraphScreen(DeckScreen):
     def _filter_done(self) -> None:
         self.names.focus()
 
-    # What is done
+    # Actions
 
     async def go(self, place: GraphPlace) -> None:
-        """Go where a link leads: here, or to the screen of topics."""
+        """Follow a link: here, or to the Topics screen."""
         if place.kind is GraphKind.TOPIC:
             await self._go_to_topic(place.name)
             return
@@ -324,7 +309,7 @@ class GraphScreen(DeckScreen):
         cast("ShowsTopic", self.app.get_screen("topics")).show_topic(topic)
 
     def go_back(self) -> None:
-        """Go back to where the newest link was followed, else to the list."""
+        """Go back to where the last link was followed, otherwise to the list."""
         in_list = self.focused is self.names
         if self.focused is self.filter or (in_list and self.filter.value):
             self.filter.value = ""
@@ -340,7 +325,7 @@ class GraphScreen(DeckScreen):
             self._arrive()
 
     def _arrive(self) -> None:
-        """Show the chosen place, though a filter or the lack of `everything` had hidden it."""
+        """Show the chosen place, even if a filter or the lack of `everything` hides it."""
         here = self.history.here
         if here is not None and not self.index.reveal(here, self.filter.value):
             self.filter.value = ""
@@ -349,7 +334,7 @@ class GraphScreen(DeckScreen):
         self.refresh_bindings()
 
     def toggle_map(self) -> None:
-        """Draw the graph around the chosen node, or list it again."""
+        """Show the map around the chosen node, or the list."""
         self.toggle_class("-map")
         if self.draws:
             middle = middle_of(self.feed.update, self.history.here)
@@ -366,7 +351,7 @@ class GraphScreen(DeckScreen):
         self.refresh_bindings()
 
     def list_next(self, by: int) -> None:
-        """List the kind that stands so many tabs to the right; left of a detail is the list."""
+        """List the kind this many tabs to the right; left of a detail is the list."""
         if self.focused not in {self.names, None}:
             if by < 0:
                 self.names.focus()
@@ -375,27 +360,17 @@ class GraphScreen(DeckScreen):
         self.list_kind(LISTED[at % len(LISTED)])
 
     def focus_filter(self) -> None:
-        """Put the cursor into the filter."""
+        """Focus the filter."""
         self.set_focus(self.filter)
 
     def toggle_everything(self) -> None:
-        """Show or hide what ROS itself needs."""
+        """Show or hide what belongs to ROS itself."""
         self.index.everything = not self.index.everything
         if self.index.everything:
-            # It reads the directories of all packages.
+            # This reads the directories of all packages.
             self.run_worker(self._find_installed(), group="load", exit_on_error=False)
         self.redraw()
 
     async def _find_installed(self) -> None:
         await self.index.find_installed()
         self.take(self.feed.update)
-
-    def save_parameters(self) -> None:
-        """Ask for a file, and write the node's parameters into it."""
-        if self.node_pane is not None:
-            parameter_changes.save(self.app, self.node_pane.parameters)
-
-    def load_parameters(self) -> None:
-        """Ask for a file, and set what it has for the node."""
-        if self.node_pane is not None:
-            parameter_changes.load(self.app, self.node_pane.parameters)

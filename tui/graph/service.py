@@ -1,4 +1,4 @@
-"""A service: its form and time-out, its answers with their times, and the calls of this session."""
+"""A service: its form and time-out, its answers with their durations, and this session's calls."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from graph.data import CallResult
 from text.figures import figure
 from text.i18n import N_, _, decimal, said
 from text.plain import plain
+from text.sentences import reason_of
 from tui.clock import time_of_day
 from tui.graph.actions import CancelRequest
 from tui.graph.ask import AskPane, now_s
@@ -39,7 +40,7 @@ LEAST_S, MOST_S = 0.1, 3600.0
 
 
 class CallTimeout(Horizontal):
-    """A field for seconds, and beside it what they may be if they are none."""
+    """A field for seconds, with the allowed range beside it if the value is invalid."""
 
     DEFAULT_CSS = """
     CallTimeout {
@@ -59,12 +60,12 @@ class CallTimeout(Horizontal):
 
     @property
     def field(self) -> Field:
-        """Where they are typed."""
+        """The input field."""
         return self.query_one(Field)
 
     @property
     def seconds(self) -> float | None:
-        """The seconds that stand there; None if nobody can wait so long."""
+        """The seconds entered; None if that is not an allowed time-out."""
         try:
             typed_s = float(self.field.value.strip().replace(",", "."))
         except ValueError:
@@ -72,7 +73,7 @@ class CallTimeout(Horizontal):
         return typed_s if math.isfinite(typed_s) and LEAST_S <= typed_s <= MOST_S else None
 
     def relabel(self) -> None:
-        """Say everything in the language spoken now."""
+        """Redraw in the current language."""
         self.query_one(".timeout-label", Static).update(_("Wait for the answer"))
         self.query_one(".timeout-unit", Static).update(_("s"))
         limits = {"least": decimal(f"{LEAST_S:g}"), "greatest": f"{MOST_S:g}"}
@@ -80,7 +81,7 @@ class CallTimeout(Horizontal):
         self.query_one(".timeout-bad", Static).update(wrong)
 
     def on_mount(self) -> None:
-        """Say what it is."""
+        """Show the texts."""
         self.relabel()
 
     @on(Input.Changed)
@@ -90,7 +91,7 @@ class CallTimeout(Horizontal):
 
 
 MOST_CALLS = 50
-"""Of one service that are kept."""
+"""Calls of one service that are kept."""
 
 
 @dataclass
@@ -104,16 +105,16 @@ class ServiceCall:
     result: CallResult | None = None
     given_up: bool = False
     late: bool = False
-    """Whether its answer came after somebody was told that there is none."""
+    """Whether its answer came after the time-out was shown."""
 
     @property
     def waits(self) -> bool:
-        """Whether its answer is still awaited."""
+        """Whether its answer is still pending."""
         return self.result is None and not self.given_up
 
 
 class ServicePane(AskPane):
-    """Calls a service; the screen goes on while it waits."""
+    """Calls a service; the screen stays usable while it waits."""
 
     submit_title: ClassVar[str] = N_("Call")
 
@@ -122,43 +123,43 @@ class ServicePane(AskPane):
         self._calls: dict[str, list[ServiceCall]] = {}
         self._number = 0
         self._timeouts: dict[str, str] = {}
-        """Service to what stood in its field for the time-out."""
+        """Maps a service to the text in its time-out field."""
 
     def compose_more(self) -> ComposeResult:
-        """Below the form: how long an answer is waited for."""
+        """Below the form: how long to wait for an answer."""
         yield CallTimeout()
 
     @property
     def timeout(self) -> CallTimeout:
-        """How long an answer is waited for."""
+        """The field for the time-out."""
         return self.query_one(CallTimeout)
 
     def show_name(self, name: str) -> None:
-        """Show another one, with its own time-out."""
+        """Show another service, with its own time-out."""
         if name != self.name_shown:
             self._timeouts[self.name_shown] = self.timeout.field.value
             self.timeout.field.value = self._timeouts.get(name, USUAL_S)
         super().show_name(name)
 
     def relabel(self) -> None:
-        """Say everything anew."""
+        """Redraw in the current language."""
         super().relabel()
         self.timeout.relabel()
 
     @property
     def calls(self) -> Sequence[ServiceCall]:
-        """Those of the service that is shown, the newest first."""
+        """The calls of the service that is shown, the newest first."""
         return self._calls.get(self.name_shown, [])
 
     @property
     def chosen(self) -> ServiceCall | None:
-        """The chosen one."""
+        """The chosen call."""
         wanted = self.asked_rows.chosen
         return next((call for call in self.calls if str(call.number) == wanted), None)
 
     @property
     def row(self) -> ServiceRow | None:
-        """The service as it is in the graph now."""
+        """The current row of the service in the graph."""
         update = self.graph_now
         services = () if update is None else update.services
         return next((row for row in services if row.name == self.name_shown), None)
@@ -168,7 +169,7 @@ class ServicePane(AskPane):
         return () if self.row is None else self.row.type_names
 
     def links(self) -> Sequence[Row]:
-        """Return its type, who serves it, and who calls it."""
+        """Return its type, its servers and its clients."""
         row, update = self.row, self.graph_now
         if row is None or update is None:
             return [heading(_("It has left the graph."))]
@@ -190,7 +191,7 @@ class ServicePane(AskPane):
         )
 
     def answer(self) -> tuple[str, str, Mapping[str, Any] | tuple[str, str]]:
-        """Return what the chosen call has brought."""
+        """Return the answer to the chosen call."""
         call = self.chosen
         if call is None:
             key = self.submit_key
@@ -268,11 +269,11 @@ class ServicePane(AskPane):
 
     @property
     def can_cancel(self) -> bool:
-        """Whether a call is under way."""
+        """Whether a call is in progress."""
         return any(call.waits for call in self.calls)
 
     def cancel(self) -> None:
-        """Wait no longer for the newest call."""
+        """Stop waiting for the newest call."""
         call = next((call for call in self.calls if call.waits), None)
         if call is not None:
             call.given_up = True
@@ -282,9 +283,8 @@ class ServicePane(AskPane):
 async def _outcome(call: ServiceCall, name: str, future: Future[CallResult]) -> CallResult:
     try:
         return await asyncio.wrap_future(future)
-    except Exception as error:  # noqa: BLE001 - whatever it was, it is told
-        why = getattr(error, "words", "") or str(error) or type(error).__name__
-        return CallResult(name, False, None, why, now_s() - call.asked_s)
+    except Exception as error:  # noqa: BLE001 - any failure is reported
+        return CallResult(name, False, None, reason_of(error), now_s() - call.asked_s)
 
 
 def _answer_title(call: ServiceCall, result: CallResult) -> str:
@@ -308,7 +308,7 @@ def _sign(call: ServiceCall) -> Cell:
 
 
 def _summary(call: ServiceCall) -> str:
-    """Return what was asked and what came, in one line."""
+    """Return the request and the answer in one line."""
     asked = _flat(call.request)
     result = call.result
     if result is None:

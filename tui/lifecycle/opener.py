@@ -1,7 +1,7 @@
-"""Live sessions: the supervisor and the observer behind the two ports of the screen.
+"""Live sessions: the supervisor and the observer behind the screen's two ports.
 
-Nothing of them is imported before the first frame is out, and then on a thread: pydantic and
-rclpy take their time.
+Neither is imported before the first frame has been drawn, and then in a thread: importing pydantic
+and rclpy takes time.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from text.i18n import language
+from tui.lifecycle.replay import replayed
 from tui.panels.registry import PANELS
 from tui.session.requests import Lesson
 from tui.session.watching import watched
@@ -28,26 +29,25 @@ if TYPE_CHECKING:
     from launcher.status import SessionInfo
     from tui.session.ports import GraphLink, SessionLink
     from tui.session.requests import OpenRequest, ReplayRequest
-    from tui.session.watching import NodelessLink
 
 OF_ROS = ("rclpy.node", "rclpy.event_handler", "rclpy.serialization", "sensor_msgs.msg")
-"""What the observer needs in nearly every lesson."""
+"""Modules that the observer needs in nearly every lesson."""
 OF_SCREEN = ("tui.deck.screen", "tui.widgets.half_blocks")
-"""What shows a lesson, besides its panels."""
+"""Modules that show a lesson, besides its panels."""
 
 
 class LiveOpener:
-    """Opens what the launcher has."""
+    """Opens sessions through the launcher."""
 
     def __init__(self) -> None:
         self._starting = asyncio.Lock()
         self._ahead: StartingSupervisor | None = None
-        """Imports what nodes need while a person chooses; it ends with this process."""
-        self._replay: Replay | None = None
-        """The recording that was opened last, if it was one."""
+        """Imports what nodes need while the user chooses; it ends with this process."""
+        self.replay: Replay | None = None
+        """The recording that was opened, if the last session was one."""
 
     async def lessons(self) -> list[Lesson]:
-        """Return every profile there is, broken ones with their error."""
+        """Return all profiles; broken ones have their error."""
         return await asyncio.to_thread(_lessons)
 
     async def running(self) -> list[SessionInfo]:
@@ -58,21 +58,21 @@ class LiveOpener:
         return await asyncio.to_thread(running)
 
     def domain(self, asked: int | None) -> int:
-        """The ROS domain to look at: the one asked for, ROS_DOMAIN_ID, or the user's own."""
+        """The ROS domain to observe: the requested one, ROS_DOMAIN_ID, or the user's own."""
         from launcher.domain.domain import choose_domain
 
         return choose_domain(asked, None, os.environ)
 
     async def prepare(self) -> None:
-        """Import, here and in a supervisor, what is the same for every profile."""
+        """Import, here and in a supervisor, the modules that every profile needs."""
         await self._start_ahead()
         await _imported(
             "launcher.client.client", "launcher.runs.shared_domain", "graph.observer.observer"
         )
-        # Without ROS there is a word for it, later: the nodes' own and the observer's.
+        # If ROS is missing, the nodes and the observer report that later.
         with contextlib.suppress(ImportError):
             await _imported(*OF_ROS)
-        # Once a lesson is chosen the processors are for its nodes.
+        # Done now, because after a lesson is chosen its nodes need the processors.
         await _imported(*OF_SCREEN, *(entry.module for entry in PANELS.values()))
 
     async def _start_ahead(self) -> None:
@@ -83,12 +83,11 @@ class LiveOpener:
                 self._ahead = await asyncio.to_thread(StartingSupervisor)
 
     async def open(self, request: OpenRequest) -> SessionLink:
-        """Start the profile, attach to the session, open the recording, or look at the domain."""
-        self._replay = None
+        """Start the profile, attach to the session, open the recording, or watch the domain."""
+        self.replay = None
         if request.replay is not None:
-            recording = await asyncio.to_thread(_opened_bag, request.replay)
-            self._replay = recording.replay
-            return recording
+            self.replay = await asyncio.to_thread(_opened_bag, request.replay)
+            return replayed(self.replay)
         if request.watch is not None:
             await _imported("graph.observer.observer")
             return watched(*request.watch)
@@ -117,16 +116,16 @@ class LiveOpener:
         )
 
     def observe(self, session: SessionInfo) -> GraphLink:
-        """Return the graph of the session's domain, or the recording that stands for it."""
-        if self._replay is not None:
-            return self._replay
+        """Return the graph of the session's domain, or the recording in its place."""
+        if self.replay is not None:
+            return self.replay
         from graph.observer.observer import Observer
 
         return Observer(session.domain, session.discovery)
 
 
 def _read(path: Path, request: OpenRequest) -> Profile:
-    """Read the profile, and see that nobody else is in its domain."""
+    """Read the profile, and make sure that nobody else is in its domain."""
     from launcher.profile.load import load_profile
     from launcher.runs.shared_domain import refuse_shared_domain
     from launcher.serial_ports import serial_ports
@@ -143,21 +142,19 @@ def _read(path: Path, request: OpenRequest) -> Profile:
     return profile
 
 
-def _opened_bag(request: ReplayRequest) -> NodelessLink:
+def _opened_bag(request: ReplayRequest) -> Replay:
     from graph.bag.errors import BagError
     from graph.replay.replay import Replay
     from launcher.errors import UsageError
-    from tui.lifecycle.replay import replayed
 
     try:
-        replay = Replay(request.bag, rate=request.rate, loop=request.loop, start_s=request.start_s)
+        return Replay(request.bag, rate=request.rate, loop=request.loop, start_s=request.start_s)
     except BagError as error:
         raise UsageError(error.words) from error
-    return replayed(replay)
 
 
 async def _imported(*modules: str) -> None:
-    """Import on a thread, so that the screen answers meanwhile."""
+    """Import in a thread, so that the screen stays responsive."""
     for module in modules:
         await asyncio.to_thread(import_module, module)
 

@@ -1,4 +1,4 @@
-"""A recording as a session: no nodes, and the panels for which it has topics."""
+"""A recording as a session: no nodes, and the panels that its topics can fill."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from graph.replay.replay import Replay
 
 REPLAY = "replay"
-"""What stands in place of the hardware."""
+"""Shown in place of the hardware."""
 
 
 def replayed(replay: Replay) -> NodelessLink:
-    """Return the session of a recording; `replay` is played by whoever observes it."""
+    """Return the session of a recording, which its observer plays."""
     from launcher.status import SessionInfo
 
     bag = replay.bag
@@ -28,4 +28,4 @@ def replayed(replay: Replay) -> NodelessLink:
         panels=panels_for({topic.name for topic in bag.topics}),
         foreground=False,
     )
-    return NodelessLink(session, replay)
+    return NodelessLink(session)

@@ -1,17 +1,19 @@
-"""The session on the screen: opened, refused, closed, left; never more than one."""
+"""The session on the screen: opening it, refusing to, closing it, leaving it; at most one."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.errors import DomainTakenError, LauncherError
 from text.i18n import _, said
 from text.plain import plain
+from text.sentences import reason_of
+from tui.session.messages import LessonOpened
 from tui.session.watching import WATCH
 
 if TYPE_CHECKING:
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class Sessions:
-    """The way into a session and out of it."""
+    """Opens and closes sessions."""
 
     def __init__(
         self,
@@ -42,7 +44,7 @@ class Sessions:
         opener: SessionOpener,
         request: OpenRequest,
     ) -> None:
-        """`opener` lists and opens; a `request` that names nothing is asked for by the picker."""
+        """Start with `opener`, which lists and opens; an empty `request` shows the picker."""
         self._app = app
         self._screens = screens
         self._feed = feed
@@ -51,42 +53,40 @@ class Sessions:
         self._strangers = strangers
         self.opener = opener
         self.request = request
-        """What every request has: hardware, overrides, domain; and what was named to begin with."""
+        """Hardware, overrides and domain for every request, and the profile named at the start."""
         self.picking = not _name_of(request)
-        """Whether the picker is where one comes from, and goes back to."""
+        """Whether sessions are opened from the picker, and closing one returns to it."""
         self.opening = "" if self.picking else _name_of(request)
-        """What is being opened, empty if nothing is."""
+        """Name of the session that is being opened, empty if there is none."""
         self.last_lesson = ""
-        """The profile that was started last, where the list of lessons begins."""
-        self.lesson_opened: Callable[[str], None] = lambda _name: None
-        """Called with the profile that has been started."""
+        """The profile that was started last, where the list of lessons starts."""
         self.parting_words = ""
-        """Said on the terminal after the screen has gone."""
+        """Printed on the terminal after the screen has closed."""
         self._strays_asked: set[Stray] = set()
         self._damaged: Replay | None = None
-        """The recording of which it was told that it is damaged."""
+        """The recording that has been reported as damaged."""
         self._going_back = asyncio.Lock()
-        """Held while the screens of a session that has been closed are taken away."""
+        """Held while the screens of a closed session are being removed."""
         self._leaving = False
         self._stopping: SessionLink | None = None
-        """The session that somebody here has asked to stop."""
+        """The session that is being stopped at the user's request."""
         self._code = 0
 
     def begin(self) -> None:
-        """Open what was named, if anything was."""
+        """Open the requested session, if there is one."""
         if not self.picking:
             self.open(self.request)
 
     def open(self, request: OpenRequest) -> None:
-        """Start or attach to a session and show it until it ends."""
+        """Start or attach to a session, and show it until it ends."""
         self._app.run_worker(self._open(request), exclusive=True, group="session")
 
     def close(self) -> None:
-        """Stop the nodes that this screen has started, or let go of the others; then pick anew."""
+        """Stop the nodes that this screen started, or detach from others; then show the picker."""
         self._app.run_worker(self._close(), exclusive=True, group="leaving")
 
     def leave(self, code: int = 0) -> None:
-        """Stop what this screen has started, and end with `code`; asked again, at once."""
+        """Stop what this screen has started, and exit with `code`; if asked again, exit at once."""
         if self._leaving:
             self.stop_now()
             return
@@ -95,28 +95,28 @@ class Sessions:
         self._app.run_worker(self._leave(), exclusive=True, group="leaving")
 
     def end_of_others(self) -> None:
-        """Stop a session that was started elsewhere, if a person says so once more."""
+        """Stop a session that was started elsewhere, after the user confirms."""
         self._app.run_worker(self._end_of_others(), exclusive=True, group="leaving")
 
     async def ended(self, reason: str) -> None:
-        """Say why the session on the screen is over, unless that was asked for here."""
+        """Say why the session on the screen has ended, unless it was stopped from here."""
         if self._stopping is None:
             words = plain(said(reason), 300)
             self._app.notify(words, severity="warning", timeout=30, markup=False)
         await self.let_go(reason)
 
     async def let_go(self, ended: str = "") -> None:
-        """Let go of the session; stopping it is not done here."""
-        # The recorder has threads of its own, and a bag to be ended in order.
+        """Disconnect from the session without stopping it."""
+        # The recorder has threads of its own, and must close its bag properly.
         await self._recording.end()
         await self._feed.disconnect(ended)
 
     def stop_now(self) -> None:
-        """Skip the waiting for nodes that do not end by themselves."""
+        """Stop waiting for nodes that do not end by themselves."""
         self._app.run_worker(self._stop_now(), group="leaving")
 
     def ask_about(self, found: Sequence[Stray]) -> None:
-        """Offer to stop what an earlier run left behind, once."""
+        """Offer once to stop processes that an earlier run left behind."""
         strays = tuple(stray for stray in found if stray not in self._strays_asked)
         self._strays_asked.update(strays)
         if strays:
@@ -125,7 +125,7 @@ class Sessions:
     async def _open(self, request: OpenRequest) -> None:
         app = self._app
         self.opening = _name_of(request)
-        # The screens of the session before may be on their way out.
+        # The screens of the previous session may still be closing.
         async with self._going_back:
             pass
         opening = asyncio.create_task(self.opener.open(request))
@@ -144,10 +144,10 @@ class Sessions:
             self.opening = ""
         if request.profile is not None:
             self.last_lesson = link.session.name
-            self.lesson_opened(link.session.name)
+            app.post_message(LessonOpened(link.session.name))
         self._emergency.forget()
         self._strangers.forget()
-        self._feed.connect(link, self.opener.observe(link.session))
+        self._feed.connect(link, self.opener.observe(link.session), self.opener.replay)
         if self._feed.replay is not None:
             await self._show_recording(link.session)
         self._emergency.prepare()
@@ -156,7 +156,7 @@ class Sessions:
         app.refresh_bindings()
 
     async def _show_recording(self, session: SessionInfo) -> None:
-        """Begin where there is something to see, and say what is missing of the recording."""
+        """Show a screen with content, and report what is missing in the recording."""
         if not session.panels:
             await self._screens.show("topics")
         replay = self._feed.replay
@@ -164,7 +164,7 @@ class Sessions:
             self._warn(replay.state.cut)
 
     def tell_damage(self, words: str) -> None:
-        """Say that something in the recording cannot be read, when that is first come to."""
+        """Report that part of the recording cannot be read, when playback first gets there."""
         replay = self._feed.replay
         if replay is not None and self._damaged is not replay:
             self._damaged = replay
@@ -174,7 +174,7 @@ class Sessions:
         self._app.notify(plain(said(words), 600), severity="warning", timeout=20, markup=False)
 
     async def _refuse(self, error: LauncherError) -> None:
-        """Say why nothing was opened: where it was picked, or by ending."""
+        """Say why nothing was opened: in the picker, or by exiting."""
         reason = words_of(error)
         if not self.picking or self._leaving:
             self.parting_words = reason
@@ -186,7 +186,7 @@ class Sessions:
         self._app.push_screen(RefusedScreen(reason))
 
     async def _ask_for_domain(self, request: OpenRequest, error: DomainTakenError) -> None:
-        """Offer a domain in which there is no other session."""
+        """Offer a domain without another session."""
         from tui.lifecycle.domain_taken import DomainAnswer, DomainTakenScreen
 
         answer = await self._app.push_screen_wait(DomainTakenScreen(_name_of(request), error))
@@ -217,7 +217,7 @@ class Sessions:
         try:
             await self._end()
         finally:
-            # Whatever failed on the way: who wants to leave does.
+            # Even if something has failed, the user wants to leave.
             self._app.exit(return_code=self._code)
 
     async def _stop_now(self) -> None:
@@ -228,18 +228,18 @@ class Sessions:
         try:
             await link.shutdown(now=True)
         except LauncherError as error:
-            # It hangs; what came of that is worth knowing when there is no screen any more.
+            # The supervisor hangs; the result is still worth knowing after the screen has closed.
             self.parting_words = words_of(error)
 
     async def _back_to_picker(self) -> None:
-        """Go back to the list; the screens of the session go with it."""
+        """Go back to the list, and remove the screens of the session."""
         self.picking = True
         self._feed.close()
         await self._screens.show("picker")
         await self._screens.forget()
 
     async def _end(self) -> None:
-        """Stop the session if it is this screen's own, else let go of it."""
+        """Stop the session if this screen owns it, otherwise detach from it."""
         feed = self._feed
         if feed.link is None or not feed.link.own:
             self._say_what_is_left()
@@ -248,7 +248,7 @@ class Sessions:
         await self._stop(feed.link)
 
     async def _stop(self, link: SessionLink) -> None:
-        """Stop the nodes, with a dialog that shows what is waited for."""
+        """Stop the nodes, with a dialog that shows which are still running."""
         from tui.lifecycle.stopping import StoppingScreen
 
         app, graph = self._app, self._feed.graph
@@ -279,9 +279,9 @@ class Sessions:
                 await self._back_to_picker()
 
     def _say_what_is_left(self) -> None:
-        """Name what goes on when this screen is left, and what ends it."""
+        """Say what keeps running after this screen is left, and how to stop it."""
         feed = self._feed
-        # Whose terminal is gone reads nothing.
+        # With the terminal gone, nobody would read it.
         if not feed.of_others or feed.session is None or not self._leaving or self._code:
             return
         session = feed.session
@@ -293,10 +293,10 @@ class Sessions:
 
 
 def words_of(error: LauncherError) -> str:
-    """Return an error in the language spoken now, every problem of a profile on its line."""
+    """Return an error in the current language, one line for each problem of a profile."""
     problems: Sequence[Any] = getattr(error, "problems", ())
     if not problems:
-        return said(error.args[0]) if error.args else str(error)
+        return said(reason_of(error))
     lines = []
     for problem in problems:
         field = f"{problem.field}: " if problem.field else ""
@@ -307,7 +307,7 @@ def words_of(error: LauncherError) -> str:
 
 def _name_of(request: OpenRequest) -> str:
     if request.replay is not None:
-        # Path.resolve() raises for a link to itself.
+        # Path.resolve() raises an error for a link to itself.
         return Path(os.path.realpath(request.replay.bag)).stem
     if request.watch is not None:
         return WATCH

@@ -1,6 +1,6 @@
-"""What can be done with lines that come in, on each screen that shows some.
+"""The actions of every screen that shows incoming lines.
 
-A screen makes one its own by a subclass with an id, and with other words where it needs them.
+A screen subclasses each one with its own id, and with other texts where it needs them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class ShowsLines(Protocol):
-    """What these actions need of a screen."""
+    """The part of a screen that these actions use."""
 
     @property
     def pane(self) -> LogPane:
@@ -26,7 +26,7 @@ Shown = TypeVar("Shown", bound=ShowsLines)
 
 
 class PauseLines(Action[Shown]):
-    """Stand still, or follow."""
+    """Pause, or follow."""
 
     key = "p,з"
     title = N_("Pause")
@@ -35,17 +35,17 @@ class PauseLines(Action[Shown]):
 
     @classmethod
     def label(cls, target: Shown) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return cls.title if target.pane.view.following else N_("Resume")
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Do the other of the two."""
+        """Pause, or follow."""
         target.pane.view.toggle_following()
 
 
 class SearchLines(Action[Shown]):
-    """Search."""
+    """Search the lines."""
 
     key = "slash,ctrl+f"
     title = N_("Search")
@@ -54,28 +54,28 @@ class SearchLines(Action[Shown]):
 
     @classmethod
     def possible(cls, target: Shown) -> bool | None:
-        """Not where one is asked already: there a slash is a slash."""
+        """Not while text is being entered: there a slash is typed."""
         return super().possible(target) and not target.pane.prompt.kind
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Ask what for."""
+        """Ask for the text."""
         target.pane.search()
 
 
 class FindLine(Action[Shown]):
-    """Go to a line that was found."""
+    """Go to a match."""
 
     step: ClassVar[int]
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Point at it."""
+        """Move the cursor to it."""
         target.pane.find(cls.step)
 
 
 class NextLine(FindLine[Shown]):
-    """The next found line."""
+    """Go to the next match."""
 
     key = "n,т"
     title = N_("Next")
@@ -83,7 +83,7 @@ class NextLine(FindLine[Shown]):
 
 
 class PreviousLine(FindLine[Shown]):
-    """The previous found line."""
+    """Go to the previous match."""
 
     key = "N,Т"
     title = N_("Previous")
@@ -91,7 +91,7 @@ class PreviousLine(FindLine[Shown]):
 
 
 class FoldLines(Action[Shown]):
-    """Fold long lines, or not."""
+    """Wrap long lines, or not."""
 
     key = "w,ц"
     title = N_("Fold")
@@ -101,16 +101,16 @@ class FoldLines(Action[Shown]):
 
     @classmethod
     async def run(cls, target: Shown) -> None:
-        """Do the other of the two."""
+        """Switch to the other."""
         target.pane.view.set_fold(not target.pane.view.fold)
 
 
 class CopyLines(Action[Shown]):
-    """Copy the lines chosen."""
+    """Copy the chosen lines."""
 
     key = "y,н"
     title = N_("Copy")
-    tooltip = N_("Copy the lines chosen to the clipboard of your terminal.")
+    tooltip = N_("Copy the chosen lines to the clipboard of your terminal.")
     footer = True
 
     @classmethod
@@ -124,7 +124,7 @@ class SaveLines(Action[Shown]):
 
     key = "W,Ц"
     title = N_("Write")
-    tooltip = N_("Write the lines chosen, else all shown, to a file.")
+    tooltip = N_("Write the chosen lines, or else all lines shown, to a file.")
     footer = True
 
     @classmethod

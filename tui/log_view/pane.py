@@ -1,6 +1,6 @@
-"""The log with its line of state, and the line in which is asked what to search or where to write.
+"""The log with its status line, and the line that asks what to search for or where to save.
 
-It knows nothing of keys: a screen's actions call `search`, `find`, `copy`, `save` and the rest.
+It knows nothing about keys: a screen's actions call `search`, `find`, `copy`, `save` and the rest.
 """
 
 from __future__ import annotations
@@ -27,32 +27,32 @@ if TYPE_CHECKING:
     from textual.app import ComposeResult
 
 CLIPBOARD_LIMIT = 100_000
-"""Bytes; many terminals drop a longer OSC 52 sequence without a word."""
+"""Bytes; many terminals silently drop a longer OSC 52 sequence."""
 
 
 class LogPane(Vertical, Working):
-    """A `LogView` with all that can be done to it."""
+    """A `LogView` with all operations on it."""
 
     DEFAULT_CSS = "LogPane { height: 1fr; width: 1fr; }"
 
     def __init__(self, view: LogView, *, id: str | None = None) -> None:
-        """Put the state of `view` below it, and between them what is asked about its lines."""
+        """Put the status line below `view`, with the line for questions between them."""
         super().__init__(id=id)
         self.view = view
         self.save_folder = ""
-        """Where files are written unless somebody names another place."""
+        """Where files are saved unless the user gives another folder."""
         self._lines: Sequence[str] = ()
         self._refused: Path | None = None
 
     def compose(self) -> ComposeResult:
-        """The lines, the question, the state."""
+        """The lines, the question, the status."""
         yield self.view
         yield LogPrompt()
         yield LogBar()
 
     @property
     def prompt(self) -> LogPrompt:
-        """Where questions are asked."""
+        """The line for questions."""
         return self.query_one(LogPrompt)
 
     @on(LogView.StateChanged)
@@ -60,28 +60,28 @@ class LogPane(Vertical, Working):
         self.query_one(LogBar).show(self.view)
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         self.view.lay_out()
         self.query_one(LogBar).show(self.view)
 
     def search(self) -> None:
-        """Ask what to search for; what is written is searched for at once."""
+        """Ask what to search for; the search runs as the text is typed."""
         self.prompt.ask("search", _("search:"), self.view.log_filter.search)
 
     def find(self, step: int) -> None:
-        """Go to the next (1) or previous (-1) line found."""
+        """Go to the next (1) or previous (-1) match."""
         if not self.view.log_filter.search:
             self.search()
         elif not self.view.find(step):
             self.app.bell()
 
     def copy(self) -> None:
-        """Copy the lines chosen to the clipboard of the terminal."""
+        """Copy the chosen lines to the clipboard of the terminal."""
         lines = self.view.chosen_lines()
         if lines:
             self._copy(lines)
         else:
-            self.notify(_("Choose lines first: up, down, with Shift several."))
+            self.notify(_("Choose lines first: with up and down, several with Shift."))
 
     def copy_all(self) -> None:
         """Copy all lines shown."""
@@ -97,7 +97,7 @@ class LogPane(Vertical, Working):
         self.notify(words)
 
     def save(self) -> None:
-        """Ask for a file to write to: the lines chosen, if more than one is, else all shown."""
+        """Ask for a file to save to: the chosen lines if there are several, otherwise all shown."""
         chosen = self.view.chosen_lines()
         self._lines = chosen if len(chosen) > 1 else self.view.shown_lines()
         self._refused = None
@@ -120,7 +120,7 @@ class LogPane(Vertical, Working):
             if path:
                 self.run_worker(self._save(home_path(path)), exclusive=True, group="save")
             else:
-                self.prompt.remark(_("Name a file."))
+                self.prompt.remark(_("Enter a file name."))
 
     @on(LogPrompt.Cancelled)
     def _given_up(self, event: LogPrompt.Cancelled) -> None:
@@ -144,7 +144,7 @@ class LogPane(Vertical, Working):
             )
         except FileExistsError:
             self._refused = path
-            self.prompt.remark(_("There is such a file: Enter again overwrites it."))
+            self.prompt.remark(_("The file already exists: press Enter again to overwrite it."))
         except (OSError, ValueError) as error:
             self.prompt.remark(plain(reason(error)))
         else:

@@ -1,4 +1,4 @@
-"""What can be done on the Logs screen; each letter also under its Cyrillic key."""
+"""The actions of the Logs screen; each letter also works as the Cyrillic one on its key."""
 
 from __future__ import annotations
 
@@ -23,37 +23,37 @@ if TYPE_CHECKING:
 
 
 class LogsTarget(ShowsLines, Protocol):
-    """What these actions need of the screen of logs."""
+    """The part of the Logs screen that its actions use."""
 
     @property
     def chosen_node(self) -> str | None:
-        """The node that is meant."""
+        """The node that actions apply to."""
 
     def choose(self, chosen: LogFilter) -> None:
-        """Show these lines."""
+        """Apply a filter."""
 
     def hear_all(self) -> None:
-        """Let every node be heard, at every severity."""
+        """Show every node, at every severity."""
 
     def toggle_nodes(self) -> None:
         """Go to the list of nodes, or back to the lines."""
 
 
 class LogsAction(Action[LogsTarget]):
-    """Something about the log."""
+    """An action on the log."""
 
     from_elsewhere = True
 
 
 class PauseLog(PauseLines[LogsTarget]):
-    """Stand still, or follow."""
+    """Pause, or follow."""
 
     id = "logs.follow"
     tooltip = N_("Pause while lines come in, or follow the newest again.")
 
 
 class SearchLog(SearchLines[LogsTarget]):
-    """Search."""
+    """Search the lines."""
 
     id = "logs.search"
     means = "find"
@@ -62,7 +62,7 @@ class SearchLog(SearchLines[LogsTarget]):
 
 
 class NextInLog(NextLine[LogsTarget]):
-    """The next found line."""
+    """Go to the next match."""
 
     id = "logs.next"
     means = "next"
@@ -70,7 +70,7 @@ class NextInLog(NextLine[LogsTarget]):
 
 
 class PreviousInLog(PreviousLine[LogsTarget]):
-    """The previous found line."""
+    """Go to the previous match."""
 
     id = "logs.previous"
     means = "previous"
@@ -78,7 +78,7 @@ class PreviousInLog(PreviousLine[LogsTarget]):
 
 
 class OnlyFound(LogsAction):
-    """Found lines only, or all."""
+    """Show only matching lines, or all."""
 
     id = "logs.only_found"
     key = "f,а"
@@ -88,18 +88,18 @@ class OnlyFound(LogsAction):
 
     @classmethod
     def possible(cls, target: LogsTarget) -> bool | None:
-        """Only with a text to search for."""
+        """Only with a search text."""
         return True if target.pane.view.log_filter.search else None
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Do the other of the two."""
+        """Switch to the other."""
         chosen = target.pane.view.log_filter
         target.choose(replace(chosen, only_found=not chosen.only_found))
 
 
 class RaiseSeverity(LogsAction):
-    """A higher lowest severity."""
+    """Raise the lowest severity shown."""
 
     id = "logs.severity"
     key = "u,г"
@@ -110,18 +110,18 @@ class RaiseSeverity(LogsAction):
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Take the next one."""
+        """Go to the next one."""
         target.choose(target.pane.view.log_filter.next_minimum())
 
 
 class ShowNodes(LogsAction):
-    """The list of nodes."""
+    """Go to the list of nodes."""
 
     id = "logs.nodes"
     key = "e,у"
     title = N_("Nodes")
     means = "nodes behind it"
-    tooltip = N_("Go to the list of nodes; there Enter mutes one, or lets it be heard.")
+    tooltip = N_("Go to the list of nodes, where Enter mutes or unmutes one.")
     footer = True
 
     @classmethod
@@ -131,13 +131,13 @@ class ShowNodes(LogsAction):
 
 
 class MuteInLog(LogsAction):
-    """Mute a node, or hear it."""
+    """Mute a node, or unmute it."""
 
     id = "logs.mute"
     key = "m,ь"
     title = N_("Mute")
     means = "leave out"
-    tooltip = N_("Mute the node of the chosen line or row, or let it be heard again.")
+    tooltip = N_("Hide the lines of the chosen line's or row's node, or show them again.")
     footer = True
     from_elsewhere = False
 
@@ -148,36 +148,36 @@ class MuteInLog(LogsAction):
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Do the other of the two."""
+        """Switch to the other."""
         if target.chosen_node:
             target.choose(target.pane.view.log_filter.toggled(target.chosen_node))
 
 
 class HearOneInLog(LogsAction):
-    """Mute all but one node."""
+    """Mute all nodes but one."""
 
     id = "logs.alone"
     key = "o,щ"
     title = N_("Only this")
     means = "only this"
-    tooltip = N_("Mute all but the node of the chosen line or row; again: as before.")
+    tooltip = N_("Show only the node of the chosen line or row; press again to undo.")
     footer = True
     from_elsewhere = False
 
     @classmethod
     def possible(cls, target: LogsTarget) -> bool | None:
-        """Only with a node to listen to."""
+        """Only with a node to show."""
         return True if target.chosen_node else None
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Listen to it alone."""
+        """Show only that one."""
         if target.chosen_node:
             target.choose(target.pane.view.log_filter.alone(target.chosen_node))
 
 
 class HearAllInLog(LogsAction):
-    """Hear every node."""
+    """Unmute every node."""
 
     id = "logs.all"
     key = "a,ф"
@@ -187,18 +187,18 @@ class HearAllInLog(LogsAction):
 
     @classmethod
     async def run(cls, target: LogsTarget) -> None:
-        """Mute nobody, leave out nothing."""
+        """Show all lines of all nodes."""
         target.hear_all()
 
 
 class FoldLog(FoldLines[LogsTarget]):
-    """Fold long lines, or not."""
+    """Wrap long lines, or not."""
 
     id = "logs.fold"
 
 
 class CopyLog(CopyLines[LogsTarget]):
-    """Copy the lines chosen."""
+    """Copy the chosen lines."""
 
     id = "logs.copy"
 

@@ -1,4 +1,4 @@
-"""A recording in a few words: how long, how much, and what is wrong with it."""
+"""A recording in a few words: its duration, its size, and what is wrong with it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BETWEEN = " · "
 LONGEST = 300
 KILO = 1000.0
 LOW_S = 300.0
-"""Room for less than this is told of."""
+"""Less remaining time than this is reported."""
 
 
 def size_words(size_bytes: float) -> str:
@@ -35,7 +35,7 @@ def rate_words(bytes_per_s: float) -> str:
 
 
 def is_low(status: RecordingStatus) -> bool:
-    """Tell whether the disk will soon have no more room for it."""
+    """Return whether the disk will soon be full."""
     return status.left_s is not None and status.left_s < LOW_S
 
 
@@ -55,7 +55,7 @@ def length_words(seconds: float) -> str:
 
 
 def progress(status: RecordingStatus) -> str:
-    """Return how far it is, in one line."""
+    """Return the progress in one line."""
     parts = [
         length_words(status.seconds),
         ngettext("{n} message", "{n} messages", status.messages).format(n=status.messages),
@@ -74,7 +74,7 @@ def progress(status: RecordingStatus) -> str:
 
 
 def complaints(status: RecordingStatus) -> Sequence[str]:
-    """Return what is wrong with a recording, a sentence each; none if all is well."""
+    """Return what is wrong with a recording, one sentence each; empty if all is well."""
     found = [plain(said(status.error), LONGEST)] if status.error else []
     if status.dropped:
         words = ngettext(
@@ -86,8 +86,8 @@ def complaints(status: RecordingStatus) -> Sequence[str]:
     on_the_way = status.lost - status.dropped
     if on_the_way:
         words = ngettext(
-            "{n} message was lost before it came here: best effort, or too shallow a queue",
-            "{n} messages were lost before they came here: best effort, or too shallow a queue",
+            "{n} message was lost on the way: best effort, or too short a queue",
+            "{n} messages were lost on the way: best effort, or too short a queue",
             on_the_way,
         )
         found.append(words.format(n=on_the_way))

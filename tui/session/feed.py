@@ -1,7 +1,7 @@
-"""The session and its graph as they are now, told to every screen that has been opened.
+"""The current state of the session and its graph, sent to every screen that has been opened.
 
-Events of the session arrive on the app's own loop, updates of the graph from the observer's
-thread by way of an inbox.
+Events of the session arrive on the app's own loop, updates of the graph come from the observer's
+thread through an inbox.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class GraphReady(Message, bubble=False):
-    """An update of the graph waits in the inbox."""
+    """An update of the graph is waiting in the inbox."""
 
 
 @runtime_checkable
@@ -43,108 +43,105 @@ class SessionScreen(Protocol):
     period_s: float
     """Seconds between two updates of the graph while it is in front."""
     measure_all: bool
-    """Whether the rates of every topic are wanted while it is in front."""
+    """Whether the rates of every topic are needed while it is in front."""
 
     def watch_topics(self) -> set[str]:
-        """Return the topics whose newest message is wanted while it is in front."""
+        """Return the topics whose newest message is needed while it is in front."""
 
     def follow_topics(self) -> set[str]:
-        """Return the topics of which every message is wanted, also while another is in front."""
+        """Return the topics of which every message is needed, even while another is in front."""
 
     def keep_topics(self) -> set[str]:
-        """Return those of the watched topics that are wanted also while another is in front."""
+        """Return the watched topics that are needed even while another is in front."""
 
     def watch_goals(self) -> set[str]:
-        """Return the actions whose goals of others are wanted while it is in front."""
+        """Return the actions whose goals from others are needed while it is in front."""
 
     def show_frame(self) -> None:
-        """Show title, session and emergency stop as they are."""
+        """Show title, session and emergency stop in their current state."""
 
     def post_message(self, message: Message) -> bool:
-        """Take a message."""
+        """Receive a message."""
 
 
 class SessionOwner(Protocol):
-    """Who has opened the session, and lets go of it."""
+    """Opens the session, and disconnects from it."""
 
     def ask_about(self, found: Sequence[Stray]) -> None:
         """Offer to stop what an earlier run left behind."""
 
     async def ended(self, reason: str) -> None:
-        """Let go of a session that is over."""
+        """Disconnect from a session that has ended."""
 
 
 class Feed:
-    """What is known of the session; the only one who tells screens of it."""
+    """What is known about the session; only the feed sends it to screens."""
 
     def __init__(self, app: App[Any], followed: Collection[str], faults: Faults) -> None:
-        """Post to the screens of `app`; `followed`: topics that are wanted whatever is shown."""
+        """Post to the screens of `app`; the `followed` topics are always needed."""
         self._app = app
         self._followed = frozenset(followed)
         self._faults = faults
         self._inbox = GraphInbox(lambda: app.post_message(GraphReady()))
         self._screens: list[SessionScreen] = []
         self.link: SessionLink | None = None
-        """None while nothing runs."""
+        """None while there is no session."""
         self.graph: GraphLink | None = None
+        self.replay: Replay | None = None
+        """The recording that is played in place of a robot, None for a robot."""
         self.update: GraphUpdate | None = None
-        """The newest of the graph; None until the first."""
+        """The newest update of the graph; None before the first."""
         self.history = LogHistory()
         self.outside = Outside()
-        """Nodes of the domain that Deck has not started, beside those it has."""
+        """Nodes in the domain that Deck did not start."""
         self._rosout = RosoutReader()
         self.ended = ""
-        """Why the session before has ended."""
+        """Why the previous session has ended."""
         self._ended_nodes: Mapping[str, NodeStatus] = {}
-        """Its nodes."""
-
-    @property
-    def replay(self) -> Replay | None:
-        """The recording that is played in place of a robot, None for a robot."""
-        return getattr(self.link, "replay", None)
+        """The nodes of that session."""
 
     @property
     def blind(self) -> str:
-        """What to say above the reason why nothing can be seen: ROS is no matter of a replay."""
+        """The headline above the reason why nothing can be seen; a replay does not need ROS."""
         if self.replay is not None:
             return _("The recording cannot be read")
         return _("ROS cannot be observed")
 
     @property
     def watching(self) -> bool:
-        """Whether what runs was started by others, and is only looked at."""
+        """Whether others have started the nodes, and Deck only watches them."""
         return self.link is not None and self.link.session.run_id == WATCH
 
     @property
     def of_others(self) -> bool:
-        """Whether it is a session that somewhere else was started, and can be ended from here."""
+        """Whether the session was started elsewhere, and can be stopped from here."""
         link = self.link
         return link is not None and not (link.own or self.watching or self.replay is not None)
 
     @property
     def session(self) -> SessionInfo | None:
-        """What runs, None while nothing does."""
+        """The session, None if there is none."""
         return None if self.link is None else self.link.session
 
     @property
     def nodes(self) -> Mapping[str, NodeStatus]:
-        """Every node of the session, in the profile's order; of one that has ended, too."""
+        """Every node of the session, in the profile's order; also after the session has ended."""
         return self._ended_nodes if self.link is None else self.link.nodes
 
     @property
     def opened(self) -> bool:
-        """Whether there is a session to be looked at, be it one that has ended."""
+        """Whether a session is shown, even one that has ended."""
         return self.link is not None or bool(self.ended)
 
     @property
     def front(self) -> SessionScreen | None:
-        """The screen of the session that is in front, below any dialog."""
+        """The session screen that is in front, below any dialog."""
         stack = reversed(self._app.screen_stack)
         return next((screen for screen in stack if isinstance(screen, SessionScreen)), None)
 
-    def connect(self, link: SessionLink, graph: GraphLink) -> None:
-        """Show this session from now on."""
-        self.link, self.graph = link, graph
+    def connect(self, link: SessionLink, graph: GraphLink, replay: Replay | None = None) -> None:
+        """Show this session from now on; `replay` if it is a recording."""
+        self.link, self.graph, self.replay = link, graph, replay
         self.update, self.ended, self._ended_nodes = None, "", {}
         self.history.clear()
         self.outside.forget()
@@ -155,9 +152,9 @@ class Feed:
         graph.start(self._inbox.put)
 
     async def disconnect(self, ended: str = "") -> None:
-        """Let go of the session; stopping it is not done here."""
+        """Disconnect from the session without stopping it."""
         link, graph = self.link, self.graph
-        self.link = self.graph = None
+        self.link = self.graph = self.replay = None
         self.ended = ended
         self.outside.forget()
         if ended and link is not None:
@@ -169,7 +166,7 @@ class Feed:
         self.tell(lambda: SessionChanged(ended))
 
     def _show_ended(self, nodes: Mapping[str, NodeStatus]) -> None:
-        # The first frame does without.
+        # Not needed for the first frame.
         from tui.session.ended import ended_nodes, silent_graph
 
         self._ended_nodes = ended_nodes(nodes, self.ended)
@@ -179,7 +176,7 @@ class Feed:
             self.tell(lambda: GraphChanged(silent))
 
     def close(self) -> None:
-        """Forget the session that has ended, and the screens that showed it."""
+        """Forget the session that has ended, and its screens."""
         self.ended, self._ended_nodes = "", {}
         self._screens.clear()
         self.history.clear()
@@ -190,12 +187,12 @@ class Feed:
         return f"{folder}/{node}.log" if folder and node in self.nodes else ""
 
     def note(self, lines: Sequence[LogLine]) -> None:
-        """Add lines of this screen's own to the log."""
+        """Add Deck's own lines to the log."""
         self.history.add(lines)
         self.tell(lambda: LogArrived(tuple(lines), {}))
 
     async def listen(self, owner: SessionOwner) -> None:
-        """Hand over what the session says until it ends: to screens, else to its `owner`."""
+        """Forward the events of the session until it ends: to the screens, or to its `owner`."""
         link = self.link
         if link is None:
             return
@@ -204,11 +201,11 @@ class Feed:
                 return
             try:
                 await self._on_event(event, owner)
-            except Exception as error:  # noqa: BLE001 - raised again where nobody isolates faults
+            except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
                 self._faults.caught(error)
 
     async def _on_event(self, event: Event, owner: SessionOwner) -> None:
-        # The first frame does without.
+        # Not needed for the first frame.
         from launcher.events import ClosedEvent, LogEvent, StatusEvent, StraysEvent
 
         if isinstance(event, StatusEvent):
@@ -222,7 +219,7 @@ class Feed:
             await owner.ended(event.reason)
 
     def take_update(self) -> GraphUpdate | None:
-        """Return the update that waits."""
+        """Return the waiting update."""
         update = self._inbox.take()
         if update is None or self.graph is None:
             return None
@@ -230,7 +227,7 @@ class Feed:
         return update
 
     def hand_over(self, update: GraphUpdate) -> None:
-        """Give an update to the screens that want it."""
+        """Send an update to the screens that need it."""
         self._see_outside(update)
         front = self.front
         for screen in self._screens:
@@ -248,11 +245,11 @@ class Feed:
 
     @property
     def _hears_everybody(self) -> bool:
-        """Whether all nodes are others', as those of a recording are."""
+        """Whether Deck started none of the nodes, as in a recording."""
         return self.watching or self.replay is not None
 
     def _note_rosout(self, update: GraphUpdate) -> None:
-        """Nodes that others have started can be heard on /rosout only."""
+        """Read /rosout, the only source of log lines from nodes that others have started."""
         samples = update.samples.get(ROSOUT, ())
         if self._hears_everybody:
             lines = self._rosout.lines(samples)
@@ -262,7 +259,7 @@ class Feed:
             self.note(lines)
 
     def catch_up(self, screen: SessionScreen) -> None:
-        """Tell a screen that has just been opened how things stand, and keep telling it."""
+        """Send the current state to a screen that was just opened, and keep it up to date."""
         if screen in self._screens:
             return
         self._screens.append(screen)
@@ -276,12 +273,12 @@ class Feed:
             screen.post_message(GraphChanged(self.update))
 
     def forget(self, screen: SessionScreen) -> None:
-        """Tell this screen nothing any more."""
+        """Send nothing more to this screen."""
         if screen in self._screens:
             self._screens.remove(screen)
 
     def ask_for_topics(self) -> None:
-        """Ask the graph for what the screen in front shows, and for what any follows or keeps."""
+        """Request the topics of the screen in front, and those that any screen follows or keeps."""
         graph, front = self.graph, self.front
         if graph is None:
             return
@@ -301,6 +298,6 @@ class Feed:
         self.tell(lambda: StatusChanged(nodes, changed))
 
     def tell(self, make: Callable[[], Message]) -> None:
-        """Post to every screen a message of its own: Textual marks those that are handled."""
+        """Post a separate message to every screen, since Textual marks a message as handled."""
         for screen in self._screens:
             screen.post_message(make())

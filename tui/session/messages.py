@@ -1,7 +1,7 @@
-"""What happens outside, as messages to the screens: the only way in which data reaches widgets.
+"""Events from outside as messages to the screens: the only way in which data reaches widgets.
 
-The app posts them to every screen that has been opened once. Handlers are named as Textual
-names them: `on_status_changed`, `on_log_arrived`, `on_graph_changed`.
+The app posts them to every screen that has been opened. Textual derives the names of the handlers:
+`on_status_changed`, `on_log_arrived`, `on_graph_changed`.
 """
 
 from __future__ import annotations
@@ -17,45 +17,54 @@ if TYPE_CHECKING:
 
 
 class StatusChanged(Message, bubble=False):
-    """The status of nodes has changed."""
+    """The status of some nodes has changed."""
 
     def __init__(self, nodes: Mapping[str, NodeStatus], changed: frozenset[str]) -> None:
-        """Tell of all `nodes` in the profile's order, and of those that `changed`."""
+        """Carry all `nodes` in the profile's order, and the names of those that `changed`."""
         super().__init__()
         self.nodes = nodes
         self.changed = changed
 
 
 class LogArrived(Message, bubble=False):
-    """Lines of any nodes, in the order they came in.
+    """Log lines of any nodes, in order of arrival.
 
-    A screen that is opened later gets what came before in its first message.
+    A screen that is opened later gets the earlier lines in its first message.
     """
 
     def __init__(self, lines: tuple[LogLine, ...], skipped: Mapping[str, int]) -> None:
-        """Carry `lines`, and how many were `skipped` of which node since the message before."""
+        """Carry `lines`, and how many of each node were `skipped` since the previous message."""
         super().__init__()
         self.lines = lines
         self.skipped = skipped
 
 
 class GraphChanged(Message, bubble=False):
-    """The ROS graph as it is now; the screen in front gets all, others what they follow."""
+    """A new update of the graph; the screen in front gets everything, others what they follow."""
 
     def __init__(self, update: GraphUpdate) -> None:
-        """Carry the newest rows, and every sample since the message before."""
+        """Carry the newest rows, and every sample since the previous message."""
         super().__init__()
         self.update = update
 
 
 class SessionChanged(Message, bubble=False):
-    """A session was opened, or it has ended; the feed's `session` tells which."""
+    """A session was opened or has ended; the feed's `session` says which."""
 
     def __init__(self, ended: str = "") -> None:
-        """Carry the reason if it has `ended`."""
+        """Carry the reason if the session has `ended`."""
         super().__init__()
         self.ended = ended
 
 
+class LessonOpened(Message, bubble=False):
+    """A profile was started; for the app, which remembers it."""
+
+    def __init__(self, name: str) -> None:
+        """Carry its name."""
+        super().__init__()
+        self.name = name
+
+
 class LanguageChanged(Message, bubble=False):
-    """Every visible text is to be redrawn."""
+    """All visible text has to be redrawn."""

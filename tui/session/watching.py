@@ -1,4 +1,4 @@
-"""A session in which Deck has started nothing: what runs in a ROS domain is looked at as it is."""
+"""A session in which Deck has started nothing: it only watches a ROS domain."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from graph.housekeeping import is_housekeeping
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
-    from graph.replay.replay import Replay
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
 
@@ -19,19 +18,17 @@ WATCH = "watch"
 
 
 class NodelessLink:
-    """A `SessionLink` that has no nodes: there is nothing to start, stop or restart."""
+    """A `SessionLink` without nodes: there is nothing to start, stop or restart."""
 
-    def __init__(self, session: SessionInfo, replay: Replay | None = None) -> None:
-        """`replay` is the recording that is played in place of a robot."""
+    def __init__(self, session: SessionInfo) -> None:
         self.session = session
-        self.replay = replay
         self.own = False
         self.nodes: Mapping[str, NodeStatus] = {}
         self.strays: tuple[Stray, ...] = ()
         self._closed = asyncio.Event()
 
     async def events(self, *, past: int = 0) -> AsyncIterator[Event]:
-        """Tell of nothing until it is let go of; nothing was written down before."""
+        """Yield nothing until the session is closed: there is no earlier log either."""
         del past
         nothing: tuple[Event, ...] = ()
         for event in nothing:
@@ -42,7 +39,7 @@ class NodelessLink:
         """Nothing to start."""
 
     async def stop(self, *names: str) -> None:
-        """Nothing to stop: what others have started is theirs."""
+        """Nothing to stop: others have started the nodes."""
 
     async def restart(self, *names: str) -> None:
         """Nothing to restart."""
@@ -51,17 +48,17 @@ class NodelessLink:
         """Nothing was left behind."""
 
     async def shutdown(self, now: bool = False) -> None:
-        """Let go of it."""
+        """Disconnect."""
         del now
         self._closed.set()
 
     async def aclose(self) -> None:
-        """Let go of it."""
+        """Disconnect."""
         self._closed.set()
 
 
 def watched(domain: int, discovery: str = "localhost") -> NodelessLink:
-    """Return the session of whatever runs in this domain.
+    """Return the session for whatever runs in this domain.
 
     `discovery`: `localhost` for this machine only, `subnet` for the network too.
     """
@@ -83,5 +80,5 @@ def watched(domain: int, discovery: str = "localhost") -> NodelessLink:
 
 
 def robot_nodes(update: GraphUpdate) -> list[str]:
-    """Return the full names of the nodes that count: those that lists show without being asked."""
+    """Return the full names of the nodes that are listed by default."""
     return [node.name for node in update.nodes if not is_housekeeping(node.name)]

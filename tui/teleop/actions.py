@@ -1,4 +1,4 @@
-"""What can be done while driving by keys; each letter also under its Cyrillic key."""
+"""The actions for driving with keys; each letter also works as the Cyrillic one on its key."""
 
 from __future__ import annotations
 
@@ -14,59 +14,59 @@ if TYPE_CHECKING:
 
 
 class CanDrive(Protocol):
-    """A screen on which the keys can drive."""
+    """A screen that can be used for driving."""
 
     @property
     def feed(self) -> Feed:
-        """What runs."""
+        """The session."""
 
     async def open_teleop(self) -> None:
-        """Open the panel, or go to it."""
+        """Open the panel, or focus it."""
 
 
 class OpenTeleop(Action["CanDrive"]):
-    """Drive the robot by keys."""
+    """Drive the robot with keys."""
 
     id = "deck.teleop"
     key = "t,е"
     title = N_("Drive")
     means = "drive"
     tooltip = N_(
-        "Drive by the arrow keys or W A S D while they are held; letting go stops. Escape closes."
+        "Drive with the arrow keys or W A S D while held; releasing them stops. Escape closes."
     )
     footer = True
     from_elsewhere = True
 
     @classmethod
     def possible(cls, target: CanDrive) -> bool | None:
-        """Only where there is a robot: not in a recording, and not when the session is over."""
+        """Only with a robot: not in a recording, and not after the session has ended."""
         return target.feed.link is not None and target.feed.replay is None
 
     @classmethod
     async def run(cls, target: CanDrive) -> None:
-        """Open the panel, or go to it."""
+        """Open the panel, or focus it."""
         await target.open_teleop()
 
 
 class DrivenByKeys(Protocol):
-    """What is driven by the keys."""
+    """The panel that the keys drive."""
 
     limits: TeleopLimits
-    """How fast and how sharp the keys drive, from the next press on."""
+    """Speed and steering of the keys, from the next press on."""
 
     def press(self, move: Move) -> None:
-        """A key is down."""
+        """Press a key."""
 
     def close(self) -> None:
         """Stop driving."""
 
 
 class TeleopAction(Action["DrivenByKeys"]):
-    """Something in the panel."""
+    """An action of the panel."""
 
 
 class CloseTeleop(TeleopAction):
-    """Drive no more."""
+    """Stop driving."""
 
     id = "teleop.close"
     key = "escape,t,е"
@@ -77,12 +77,12 @@ class CloseTeleop(TeleopAction):
 
     @classmethod
     async def run(cls, target: DrivenByKeys) -> None:
-        """Stop and go."""
+        """Stop and close the panel."""
         target.close()
 
 
 class DriveFaster(TeleopAction):
-    """A higher limit."""
+    """Raise the speed of the keys."""
 
     id = "teleop.faster"
     key = "plus,equals_sign"
@@ -98,7 +98,7 @@ class DriveFaster(TeleopAction):
 
 
 class DriveSlower(DriveFaster):
-    """A lower limit."""
+    """Lower the speed of the keys."""
 
     id = "teleop.slower"
     key = "minus,underscore"
@@ -108,7 +108,7 @@ class DriveSlower(DriveFaster):
 
 
 class MoveAction(TeleopAction):
-    """A key that drives while it is held; one click counts as one short press."""
+    """A key that drives while it is held; a click counts as one short press."""
 
     move: ClassVar[Move]
     footer = True
@@ -126,7 +126,7 @@ class DriveForward(MoveAction):
     id = "teleop.forward"
     key = "up,w,ц"
     title = N_("Forward")
-    tooltip = N_("Forward while it is held; pressed again in a curve: straight on.")
+    tooltip = N_("Forward while it is held; press it again in a curve to go straight on.")
     move = Move.FORWARD
 
 
@@ -136,7 +136,7 @@ class DriveBack(MoveAction):
     id = "teleop.back"
     key = "down,s,ы"
     title = N_("Back")
-    tooltip = N_("Backwards while it is held; pressed again in a curve: straight back.")
+    tooltip = N_("Backwards while it is held; press it again in a curve to go straight back.")
     move = Move.BACK
 
 
@@ -146,7 +146,7 @@ class SteerLeft(MoveAction):
     id = "teleop.left"
     key = "left,a,ф"
     title = N_("Left")
-    tooltip = N_("Left while it is held; what drives goes on in a curve.")
+    tooltip = N_("Left while it is held; a moving robot goes on in a curve.")
     move = Move.LEFT
 
 
@@ -156,12 +156,12 @@ class SteerRight(MoveAction):
     id = "teleop.right"
     key = "right,d,в"
     title = N_("Right")
-    tooltip = N_("Right while it is held; what drives goes on in a curve.")
+    tooltip = N_("Right while it is held; a moving robot goes on in a curve.")
     move = Move.RIGHT
 
 
 class Sharper(TeleopAction):
-    """Sharper curves."""
+    """Steer more sharply."""
 
     id = "teleop.sharper"
     key = "right_square_bracket,ъ"
@@ -176,7 +176,7 @@ class Sharper(TeleopAction):
 
 
 class Wider(Sharper):
-    """Wider curves."""
+    """Steer less sharply."""
 
     id = "teleop.wider"
     key = "left_square_bracket,х"

@@ -1,4 +1,4 @@
-"""What can be done on the screen of topics; each letter also under its Cyrillic key."""
+"""The actions of the Topics screen; each letter also works as the Cyrillic one on its key."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class TopicsTarget(Protocol):
-    """What these actions need of the screen of topics."""
+    """The part of the Topics screen that its actions use."""
 
     table: TopicsTable
     detail: TopicDetail
@@ -25,15 +25,15 @@ class TopicsTarget(Protocol):
 
     @property
     def focused(self) -> Widget | None:
-        """What has the focus."""
+        """The widget that has the focus."""
 
     @property
     def filter(self) -> Input:
-        """Where the words of the filter are typed."""
+        """The input of the filter."""
 
     @property
     def has_message(self) -> bool:
-        """Whether a message of the chosen topic is shown, or held."""
+        """Whether a message of the chosen topic is shown, possibly paused."""
 
     @property
     def shows_image(self) -> bool:
@@ -41,49 +41,46 @@ class TopicsTarget(Protocol):
 
     @property
     def can_publish(self) -> bool:
-        """Whether there is a graph to publish in."""
+        """Whether there is a graph to publish to."""
 
     def focus_filter(self) -> None:
-        """Put the cursor into the filter."""
+        """Focus the filter."""
 
     def filter_messages(self) -> None:
-        """Put the cursor into the expression that messages are to fit."""
+        """Focus the expression that filters messages."""
 
     def show_plot_next(self) -> None:
         """Show the plot in the next of its places."""
 
     def toggle_field(self) -> None:
-        """Plot the number at the cursor, or plot it no more."""
+        """Add the number at the cursor to the plot, or remove it."""
 
     def toggle_picture(self) -> None:
         """Show an image as a picture, or as a tree."""
 
     def toggle_endpoints(self) -> None:
-        """Show who is on the chosen topic, or its message."""
+        """Show the endpoints of the chosen topic, or its message."""
 
     def toggle_housekeeping(self) -> None:
         """Show or hide topics of ROS itself."""
-
-    def copy_message(self) -> None:
-        """Copy the message that is shown as YAML."""
 
     def open_publish(self) -> None:
         """Open the dialog that publishes, for the chosen topic."""
 
 
 class TopicsAction(Action[TopicsTarget]):
-    """Something that the screen of topics does, while its table and message are shown."""
+    """An action of the Topics screen, while its table and message are shown."""
 
     from_elsewhere = True
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """Not while the plot covers all."""
+        """Not while the plot covers everything."""
         return not target.plotting.covers_all
 
 
 class FilterTopics(TopicsAction):
-    """Narrow the list down."""
+    """Filter the list."""
 
     id = "topics.filter"
     key = "slash,ctrl+f"
@@ -95,17 +92,17 @@ class FilterTopics(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """Not in the filter itself: there a slash is a slash."""
+        """Not in the filter itself, where a slash is typed."""
         return target.focused is not target.filter and not target.plotting.covers_all
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Put the cursor into the filter."""
+        """Focus the filter."""
         target.focus_filter()
 
 
 class PauseTopic(TopicsAction):
-    """Hold the message still."""
+    """Pause the message."""
 
     id = "topics.pause"
     key = "p,з"
@@ -115,23 +112,23 @@ class PauseTopic(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """Always: the plot can be held too."""
+        """Always: the plot can be paused too."""
         del target
         return True
 
     @classmethod
     def label(cls, target: TopicsTarget) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return N_("Resume") if target.plotting.paused else cls.title
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Pause, or go on."""
+        """Pause, or resume."""
         target.plotting.toggle_pause()
 
 
 class ShowPlot(TopicsAction):
-    """The plot beside the rest, alone, or not at all."""
+    """Show the plot beside the rest, alone, or not at all."""
 
     id = "topics.plot"
     key = "v,м"
@@ -142,17 +139,17 @@ class ShowPlot(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """With a field in it."""
+        """Only with a field in the plot."""
         return target.plotting.plot.has_value
 
     @classmethod
     def label(cls, target: TopicsTarget) -> str:
-        """By what it would do now."""
+        """Named after what it would do now."""
         return _PLOT_LABELS[target.plotting.place.value]
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Show it elsewhere."""
+        """Show it in the next place."""
         target.show_plot_next()
 
 
@@ -160,7 +157,7 @@ _PLOT_LABELS = {"none": N_("Plot"), "beside": N_("Larger"), "alone": N_("Hide pl
 
 
 class TogglePlotField(TopicsAction):
-    """A number of the message against time."""
+    """Plot a number of the message against time."""
 
     id = "topics.plot_field"
     key = "V,М"
@@ -170,24 +167,24 @@ class TogglePlotField(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """Where there is a message with fields to choose from."""
+        """Only with a message that has fields to choose from."""
         return not target.plotting.covers_all and (
             target.detail.front is target.detail.echo or None
         )
 
     @classmethod
     def shown(cls, target: TopicsTarget) -> bool:
-        """Not without a message: there the key says so."""
+        """Not without a message; there the key explains why."""
         return target.has_message
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Take it in, or out."""
+        """Add it, or remove it."""
         target.toggle_field()
 
 
 class NextPlotWindow(TopicsAction):
-    """How many seconds the plot shows."""
+    """Change how many seconds the plot shows."""
 
     id = "topics.plot_window"
     key = "z,я"
@@ -198,12 +195,12 @@ class NextPlotWindow(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """With a plot on the screen."""
+        """Only while the plot is visible."""
         return target.plotting.plot.display
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Show more, or the least."""
+        """Show more seconds, or the fewest after the most."""
         target.plotting.plot.next_window()
 
 
@@ -217,17 +214,17 @@ class ClearPlot(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """With a field in it."""
+        """Only with a field in the plot."""
         return target.plotting.plot.has_value
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Take them out."""
+        """Remove them."""
         target.plotting.plot.clear()
 
 
 class CopyMessage(TopicsAction):
-    """The message for the clipboard."""
+    """Copy the message to the clipboard."""
 
     id = "topics.copy"
     key = "y,н"
@@ -238,39 +235,39 @@ class CopyMessage(TopicsAction):
 
     @classmethod
     def shown(cls, target: TopicsTarget) -> bool:
-        """Not without one: there the key says so."""
+        """Not without a message; there the key explains why."""
         return target.has_message
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
         """Copy it."""
-        target.copy_message()
+        target.detail.copy_message()
 
 
 class FilterMessages(TopicsAction):
-    """Only messages that fit an expression."""
+    """Show only messages that match an expression."""
 
     id = "topics.condition"
     key = "f,а"
     title = N_("Only if")
     means = "only"
-    tooltip = N_("Show only messages for which an expression holds: m.data > 0.5; Esc ends it.")
+    tooltip = N_("Show only messages that match an expression such as m.data > 0.5; Esc ends it.")
     footer = True
     priority = True
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """Where there is a topic whose messages can be seen."""
+        """Only with a topic whose messages can be shown."""
         return target.table.chosen is not None and not target.plotting.covers_all
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Put the cursor there."""
+        """Focus the expression."""
         target.filter_messages()
 
 
 class PictureOrTree(TopicsAction):
-    """An image as a picture, or as its fields."""
+    """Show an image as a picture, or as its fields."""
 
     id = "topics.picture"
     key = "i,ш"
@@ -285,12 +282,12 @@ class PictureOrTree(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Show the other one."""
+        """Switch to the other."""
         target.toggle_picture()
 
 
 class ShowEndpoints(TopicsAction):
-    """Who is on the topic."""
+    """Show the endpoints of the topic."""
 
     id = "topics.endpoints"
     key = "e,у"
@@ -303,17 +300,17 @@ class ShowEndpoints(TopicsAction):
 
     @classmethod
     def label(cls, target: TopicsTarget) -> str:
-        """By what it would show now."""
+        """Named after what it would show now."""
         return N_("Message") if target.detail.as_endpoints else cls.title
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Show the other one."""
+        """Switch to the other."""
         target.toggle_endpoints()
 
 
 class SortByNext(TopicsAction):
-    """Another column to sort by."""
+    """Sort by another column."""
 
     id = "topics.sort"
     key = "greater_than_sign,Ю"
@@ -328,7 +325,7 @@ class SortByNext(TopicsAction):
 
 
 class ReverseOrder(TopicsAction):
-    """The order turned round."""
+    """Reverse the order."""
 
     id = "topics.reverse"
     key = "less_than_sign,Б"
@@ -337,13 +334,13 @@ class ReverseOrder(TopicsAction):
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Turn it round."""
+        """Reverse it."""
         order = target.table.order
         target.table.reorder(order.by(order.column_id))
 
 
 class ShowHousekeeping(TopicsAction):
-    """Topics of ROS itself."""
+    """Show topics of ROS itself."""
 
     id = "topics.housekeeping"
     key = "a,ф"
@@ -369,12 +366,12 @@ class OpenPublish(TopicsAction):
 
     @classmethod
     def possible(cls, target: TopicsTarget) -> bool | None:
-        """Only while there is a graph to publish in: a recording takes nothing."""
+        """Only while there is a graph to publish to, which a recording is not."""
         return target.can_publish
 
     @classmethod
     async def run(cls, target: TopicsTarget) -> None:
-        """Open the dialog over the screen."""
+        """Open it."""
         target.open_publish()
 
 

@@ -1,4 +1,4 @@
-"""One topic: what it is, and below that its newest message, a picture, or who is on it."""
+"""One topic: its type and figures, and its newest message, a picture, or its endpoints."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from textual.content import Content
 from textual.widget import Widget
 
 from graph.data import Trouble
+from graph.messages.yaml_text import is_cut, to_yaml
 from text.i18n import _
 from text.plain import plain
 from tui.echo.tree import EchoTree
 from tui.topics.echo_filter import EchoFilter
 from tui.topics.endpoints import TopicEndpoints
-from tui.topics.words import ends, figures, packed
+from tui.topics.words import ends, figures, packed, size_text
 from tui.widgets.image_view import ImageView
 from tui.widgets.trouble import advice
 from tui.widgets.working import Working
@@ -30,11 +31,14 @@ if TYPE_CHECKING:
     from tui.widgets.half_blocks import Pixels
     from tui.widgets.image_view import ImageScale
 
+LONGEST_ARRAY = 2000
+"""Elements of an array that are copied: the clipboard of a terminal (OSC 52) is small."""
+
 
 class TopicHead(Widget):
-    """Name and type, figures, and who is on the topic: as many lines as there is height for.
+    """Name and type, figures and endpoints: as many lines as there is room for.
 
-    A name that is longer than a line goes on in the next: it is told whole nowhere else.
+    A name that is longer than a line continues in the next: it is shown in full nowhere else.
     """
 
     DEFAULT_CSS = """
@@ -49,7 +53,7 @@ class TopicHead(Widget):
         self._texts: tuple[str, str, tuple[str, ...], str] = ("", "", (), "")
 
     def show(self, name: str, type_name: str, figures: Sequence[str], below: str) -> None:
-        """Show these texts, drawn only if one of them is new."""
+        """Show these texts; redraws only if one of them has changed."""
         texts = (plain(name), plain(type_name), tuple(figures), below)
         if texts != self._texts:
             before = self._count()
@@ -57,11 +61,11 @@ class TopicHead(Widget):
             self.refresh(layout=self._count() != before)
 
     def on_resize(self) -> None:
-        """Fold the figures anew."""
+        """Wrap the figures to the new width."""
         self.refresh(layout=True)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """As many lines as the figures take at this width, with those above and below."""
+        """Return the lines that the figures take at this width, plus those above and below."""
         del container, viewport
         return self._count(width)
 
@@ -85,7 +89,7 @@ class TopicHead(Widget):
 
 
 class TopicDetail(Vertical, Working):
-    """Shows what is known of one topic; the screen tells it row, message and picture."""
+    """Shows what is known about one topic; the screen passes it row, message and picture."""
 
     DEFAULT_CSS = """
     TopicDetail { width: 1fr; height: 1fr; }
@@ -101,10 +105,10 @@ class TopicDetail(Vertical, Working):
         self._row: TopicRow | None = None
         self._sample: Sample | None = None
         self._newest: Sample | None = None
-        """Whether it fits the expression or not."""
+        """The newest message, whether or not it matches the expression."""
 
     def compose(self) -> ComposeResult:
-        """The head above tree, picture and endpoints, of which one is shown."""
+        """The head above tree, picture and endpoints, one of which is visible."""
         yield TopicHead()
         yield EchoFilter()
         yield EchoTree()
@@ -118,7 +122,7 @@ class TopicDetail(Vertical, Working):
 
     @property
     def filter(self) -> EchoFilter:
-        """Which messages are shown."""
+        """The filter for messages."""
         return self.query_one(EchoFilter)
 
     @property
@@ -128,29 +132,29 @@ class TopicDetail(Vertical, Working):
 
     @property
     def endpoints(self) -> TopicEndpoints:
-        """Everyone on the topic."""
+        """All endpoints of the topic."""
         return self.query_one(TopicEndpoints)
 
     @property
     def front(self) -> Widget:
-        """What is shown below the head."""
+        """The widget that is visible below the head."""
         if self.as_endpoints:
             return self.endpoints
         return self.picture if self.as_picture else self.echo
 
     @property
     def sample(self) -> Sample | None:
-        """The newest message of those that are shown."""
+        """The message that is shown."""
         return self._sample
 
     def fitting(self, samples: Sequence[Sample]) -> Sample | None:
-        """Return the newest of these that is to be shown, if one is; all of them are counted."""
+        """Return the newest of these to be shown, if there is one; all of them are counted."""
         if samples:
             self._newest = samples[-1]
         return self.filter.fitting(samples)
 
     def filter_anew(self) -> Sample | None:
-        """Return the newest message if it is to be shown; one that is not goes out of sight."""
+        """Return the newest message if it is to be shown; otherwise hide it."""
         found = self.filter.fitting(() if self._newest is None else (self._newest,))
         if found is None and not self.filter.is_wrong:
             self._sample = None
@@ -158,49 +162,62 @@ class TopicDetail(Vertical, Working):
         return found
 
     def show_topic(self, row: TopicRow | None) -> None:
-        """Show how the topic is now; another topic than before begins without a message."""
+        """Show the current state of the topic; another topic starts without a message."""
         if row is None or self._row is None or row.name != self._row.name:
             self._sample = self._newest = None
             self.show_as_picture(False)
-            # That of another topic must not stand there until its turn has come.
+            # The picture of another topic must not stay there until a new one arrives.
             self.picture.show_words("")
             self.filter.show_topic("" if row is None else row.name)
         self._row = row
         self._say()
 
     def show_message(self, sample: Sample) -> None:
-        """Show a new message of the topic that is shown."""
+        """Show a new message of the current topic."""
         resized = self._sample is None or self._sample.size_bytes != sample.size_bytes
         self._sample = sample
         if resized:
             self._say()
         self.echo.show(sample.topic, sample.value)
 
+    def copy_message(self) -> None:
+        """Copy the message that is shown as YAML."""
+        message = self.echo.message
+        if message is None:
+            self.notify(_("There is no message to copy."), severity="warning", markup=False)
+            return
+        text = to_yaml(message, most=LONGEST_ARRAY)
+        self.app.copy_to_clipboard(text)
+        words = _("Copied as YAML: {size}.").format(size=size_text(len(text.encode())))
+        if is_cut(message, LONGEST_ARRAY):
+            words += " " + _("Long arrays were cut.")
+        self.notify(words, markup=False)
+
     def show_picture(self, rgb: Pixels, caption: str, scale: ImageScale | None, hz: str) -> None:
         """Show the newest message as a picture."""
         self.picture.show(rgb, caption, scale, hz)
 
     def show_no_picture(self, headline: str, detail: str = "") -> None:
-        """Say why the newest message is no picture."""
+        """Say why the newest message cannot be shown as a picture."""
         self.picture.show_words(headline, detail)
 
     @property
     def as_picture(self) -> bool:
-        """Whether the picture is in front of the tree."""
+        """Whether the picture is shown rather than the tree."""
         return self.has_class("-picture")
 
     def show_as_picture(self, picture: bool) -> None:
-        """Bring the picture to the front, or the tree."""
+        """Show the picture, or the tree."""
         if picture != self.as_picture:
             self.set_class(picture, "-picture")
 
     @property
     def as_endpoints(self) -> bool:
-        """Whether the endpoints are in front of message and picture."""
+        """Whether the endpoints are shown rather than message or picture."""
         return self.has_class("-endpoints")
 
     def show_as_endpoints(self, endpoints: bool) -> None:
-        """Bring the endpoints to the front, or the message."""
+        """Show the endpoints, or the message."""
         if endpoints == self.as_endpoints:
             return
         had_focus = self.front.has_focus
@@ -211,7 +228,7 @@ class TopicDetail(Vertical, Working):
             self.front.focus()
 
     def relabel(self) -> None:
-        """Draw again, after the language changed."""
+        """Redraw in the current language."""
         self._say()
         self.endpoints.relabel()
         self.echo.relabel()
@@ -232,7 +249,7 @@ class TopicDetail(Vertical, Working):
             state = [_("PAUSED"), *state]
         types = " | ".join(row.type_names)
         if self._sample is not None:
-            # That it is quiet is said by the figures, and most topics may be.
+            # Silence is shown in the figures, and is normal for most topics.
             quiet = row.trouble is Trouble.QUIET
             trouble = "" if quiet else " ".join(filter(None, (headline, way_out)))
             head.show(row.name, types, state, trouble or ends(row))

@@ -1,4 +1,4 @@
-"""An expression above the echo: only messages for which it holds are shown, and all are counted."""
+"""An expression above the echo: only messages that match it are shown, and all are counted."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ LONGEST_WORDS = 200
 
 
 class EchoFilter(Horizontal):
-    """A field that is there once it was asked for; each topic has its own expression."""
+    """A field that is visible once it has been requested; each topic has its own expression."""
 
     class ExpressionChanged(Message):
-        """Another expression is in force, or none."""
+        """Another expression is in use, or none."""
 
     DEFAULT_CSS = """
     EchoFilter {
@@ -45,51 +45,51 @@ class EchoFilter(Horizontal):
         super().__init__()
         self._topic = ""
         self._texts: dict[str, str] = {}
-        """Topic to its expression."""
+        """Maps a topic to its expression."""
         self._condition: MessageFilter | None = None
         self._error: ConditionError | None = None
-        """What is wrong with the expression, or what the newest that had none could not answer."""
+        """What is wrong with the expression, or with its evaluation on the newest message."""
         self._seen = self._fitted = self._failed = 0
         self._sent_s: float | None = None
-        """When the newest that was looked at was sent."""
+        """When the newest message examined was sent."""
 
     def compose(self) -> ComposeResult:
-        """All in one line."""
+        """Everything in one line."""
         yield Static(classes="filter-label", markup=False)
         yield Field(id="echo-filter", compact=True, select_on_focus=False, max_length=LONGEST)
         yield Static(classes="filter-told", markup=False)
 
     def on_mount(self) -> None:
-        """Say what it is for."""
+        """Show the texts."""
         self.relabel()
 
     @property
     def field(self) -> Field:
-        """Where the expression is typed."""
+        """The input of the expression."""
         return self.query_one(Field)
 
     @property
     def in_force(self) -> bool:
-        """Whether messages are kept back."""
+        """Whether messages are filtered."""
         return bool(self._texts.get(self._topic, "").strip())
 
     @property
     def is_wrong(self) -> bool:
-        """Whether what stands there is no expression."""
+        """Whether the expression is invalid."""
         return self.in_force and self._condition is None
 
     def open(self) -> None:
-        """Let it be typed."""
+        """Show the field and focus it."""
         self.add_class("-open")
         self.field.focus()
 
     def close(self) -> None:
-        """Keep no message back, and go."""
+        """Stop filtering and hide the field."""
         self.field.value = ""
         self.remove_class("-open")
 
     def show_topic(self, topic: str) -> None:
-        """Take the expression of another topic."""
+        """Use the expression of another topic."""
         if topic == self._topic:
             return
         self._topic = topic
@@ -99,13 +99,13 @@ class EchoFilter(Horizontal):
         self.set_class(self.in_force, "-open")
 
     def fitting(self, samples: Iterable[Sample]) -> Sample | None:
-        """Count these messages of the topic; return the newest that fits, if one does."""
+        """Count these messages of the topic; return the newest that matches, if there is one."""
         found = None
         for sample in samples:
             if not self.in_force:
                 found = sample
             elif sample.sent_s is None or sample.sent_s != self._sent_s:
-                # Whoever begins to follow a topic is told its newest message once more.
+                # A new subscription receives the newest message a second time.
                 self._sent_s = sample.sent_s
                 found = sample if self._fits(sample) else found
         if self.in_force:
@@ -113,13 +113,13 @@ class EchoFilter(Horizontal):
         return found
 
     def relabel(self) -> None:
-        """Say everything in the language spoken now."""
+        """Redraw in the current language."""
         self.query_one(".filter-label", Static).update(" " + _("only if"))
-        self.field.placeholder = _("an expression over the message m, as m.data > 0.5")
+        self.field.placeholder = _("an expression on the message m, such as m.data > 0.5")
         self._tell()
 
     def why_none(self) -> tuple[str, str]:
-        """Return headline and detail for the place of a message while none fits."""
+        """Return headline and detail for the place of a message while none matches."""
         if self.is_wrong:
             return _("the expression is wrong"), _("Nothing is shown until it is right.")
         return _("no message fits the expression yet"), self._counts()
@@ -159,7 +159,7 @@ class EchoFilter(Horizontal):
         return words.format(fit=self._fitted, n=self._seen)
 
     def _tell(self) -> None:
-        """Say how many fit, and once what is wrong, however many messages it is wrong for."""
+        """Show how many match, and report an error only once, however many messages cause it."""
         parts = [] if self._condition is None else [self._counts()]
         if self._error is not None:
             times = f" (×{self._failed})" if self._failed else ""

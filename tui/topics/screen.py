@@ -1,4 +1,4 @@
-"""Every topic with its rates, and the chosen one live."""
+"""Every topic with its rates, and a live view of the chosen one."""
 
 from __future__ import annotations
 
@@ -10,20 +10,18 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, Static
 
 from graph.housekeeping import is_housekeeping
-from graph.messages.yaml_text import is_cut, to_yaml
-from text.i18n import N_, _, ngettext, said
+from text.i18n import N_, _, ngettext
 from tui.actions import bindings
 from tui.echo.tree import EchoTree
-from tui.frame import title
 from tui.frame.screen import DeckScreen
-from tui.topics.actions import TOPICS_ACTIONS, ShowHousekeeping
+from tui.topics.actions import TOPICS_ACTIONS
 from tui.topics.detail import TopicDetail
 from tui.topics.echo_filter import EchoFilter
 from tui.topics.pictures import TopicPictures, carries_images, is_image
 from tui.topics.plot.plot import TopicPlot
 from tui.topics.plotting import PlotPlace, Plotting
 from tui.topics.table.table import TopicsTable
-from tui.topics.words import size_text
+from tui.topics.why_empty import why_empty
 from tui.widgets.field import Field
 
 if TYPE_CHECKING:
@@ -33,19 +31,17 @@ if TYPE_CHECKING:
     from graph.data import Sample, TopicRow
     from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
-LONGEST_ARRAY = 2000
-"""Elements of an array that are copied: a clipboard of a terminal (OSC 52) takes little."""
 SETTLED_S = 0.12
-"""How long a choice must stand before its topic is subscribed: whoever walks down the list with
-the arrow keys asks for none of those passed by."""
+"""How long a choice must stand before its topic is subscribed, so that moving through the list
+with the arrow keys subscribes to none of the topics passed by."""
 STEADY_S, LIVELY_S = 0.25, 0.1
 """Seconds between two updates, without and with a picture in front."""
 RATES_S = 0.2
-"""Rates are not shown more often than so."""
+"""Minimum time between two updates of the rates."""
 
 
 class TopicsScreen(DeckScreen):
-    """A table of topics and, of the chosen one, the newest message as a tree or a picture."""
+    """A table of topics and, for the chosen one, the newest message as a tree or a picture."""
 
     tab: ClassVar[str] = "topics"
     about: ClassVar[str] = N_(
@@ -101,10 +97,10 @@ class TopicsScreen(DeckScreen):
         self.plotting = Plotting(self, self.table, self.detail, self.plot)
         self._pictures = TopicPictures(self.detail, self._is_wanted, lambda: self.table.chosen_row)
         self._rates_s = 0.0
-        """When rates were shown."""
+        """When the rates were last shown."""
         self._settling: Timer | None = None
         self._offered_with_message = False
-        """Whether the keys were offered beside a message."""
+        """Whether the keys were last updated with a message on the screen."""
         self._listed: tuple[TopicRow, ...] = ()
         self._missed: Sample | None = None
         """What would have been shown while another screen was in front."""
@@ -121,22 +117,22 @@ class TopicsScreen(DeckScreen):
 
     @property
     def filter(self) -> Input:
-        """Where the words of the filter are typed."""
+        """The input of the filter."""
         return self.query_one("#topics-filter", Input)
 
     def watch_topics(self) -> set[str]:
-        """The chosen one."""
+        """The chosen topic."""
         return set() if self.table.chosen is None else {self.table.chosen}
 
     def follow_topics(self) -> set[str]:
-        """Those that are plotted, and the chosen one while an expression looks at each message."""
+        """Plotted topics, and the chosen one while an expression examines each message."""
         followed = self.plot.topics
         if self.table.chosen and self.detail.filter.in_force:
             return {*followed, self.table.chosen}
         return followed
 
     def on_mount(self) -> None:
-        """Begin in the table."""
+        """Focus the table."""
         self.table.focus()
         self._label()
 
@@ -154,7 +150,7 @@ class TopicsScreen(DeckScreen):
             self.detail.show_topic(self.table.chosen_row)
             self._count()
         if not self.table.shown:
-            self.table.show_words(*self._why_none())
+            self._say_why_empty()
         missed, self._missed = self._missed, None
         if missed is not None and missed.topic == self.table.chosen:
             self._show_message(missed)
@@ -172,7 +168,7 @@ class TopicsScreen(DeckScreen):
             self._label()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
-        """Say everything anew."""
+        """Redraw all texts."""
         del message
         self._label()
         self.detail.relabel()
@@ -191,7 +187,7 @@ class TopicsScreen(DeckScreen):
 
     @property
     def has_message(self) -> bool:
-        """Whether a message of the chosen topic is shown, or held."""
+        """Whether a message of the chosen topic is shown, possibly paused."""
         return self.detail.echo.message is not None
 
     @on(EchoFilter.ExpressionChanged)
@@ -246,23 +242,23 @@ class TopicsScreen(DeckScreen):
             self.detail.filter.close()
         self.table.focus()
 
-    # What the actions do
+    # Actions
 
     def show_topic(self, topic: str) -> None:
-        """Choose a topic, though a filter or an option had hidden it."""
+        """Choose a topic, even if a filter or an option hides it."""
         self.filter.value = ""
         self.table.filter("")
         if is_housekeeping(topic) and not self.table.order.housekeeping:
             self.toggle_housekeeping()
-        # A screen that has just been made hears of its topics first.
+        # A screen that was just created has to receive its topics first.
         self.call_later(self.table.choose, topic)
 
     def focus_filter(self) -> None:
-        """Put the cursor into the filter."""
+        """Focus the filter."""
         self.set_focus(self.filter)
 
     def filter_messages(self) -> None:
-        """Put the cursor into the expression that messages are to fit."""
+        """Focus the expression that filters messages."""
         self.detail.show_as_endpoints(False)
         self.detail.filter.open()
 
@@ -272,7 +268,7 @@ class TopicsScreen(DeckScreen):
         self.table.reorder(replace(order, housekeeping=not order.housekeeping))
 
     def toggle_endpoints(self) -> None:
-        """Show who is on the chosen topic and by which QoS, or its message."""
+        """Show the endpoints of the chosen topic with their QoS, or its message."""
         self.detail.show_as_endpoints(not self.detail.as_endpoints)
         self._keep_pace()
         self.refresh_bindings()
@@ -291,7 +287,7 @@ class TopicsScreen(DeckScreen):
         self._keep_pace()
 
     def show_plot(self, place: PlotPlace) -> None:
-        """Show the plot there; it may cover a picture."""
+        """Show the plot in this place, possibly over a picture."""
         self.plotting.show(place)
         self._keep_pace()
 
@@ -301,13 +297,13 @@ class TopicsScreen(DeckScreen):
         self.show_plot(places[(places.index(self.plotting.place) + 1) % len(places)])
 
     def toggle_field(self) -> None:
-        """Plot the number at the cursor, beside the rest, or plot it no more."""
+        """Add the number at the cursor to the plot, or remove it."""
         if self.plotting.toggle_field() and self.plotting.place is PlotPlace.NONE:
             self.show_plot(PlotPlace.BESIDE)
 
     @property
     def can_publish(self) -> bool:
-        """Whether there is a graph to publish in: a recording takes nothing."""
+        """Whether there is a graph to publish to; a recording accepts nothing."""
         return self.feed.graph is not None and self.feed.replay is None
 
     def open_publish(self) -> None:
@@ -317,23 +313,10 @@ class TopicsScreen(DeckScreen):
         row = self.table.chosen_row
         self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))
 
-    def copy_message(self) -> None:
-        """Copy the message that is shown as YAML."""
-        message = self.detail.echo.message
-        if message is None:
-            self.notify(_("There is no message to copy."), severity="warning", markup=False)
-            return
-        text = to_yaml(message, most=LONGEST_ARRAY)
-        self.app.copy_to_clipboard(text)
-        words = _("Copied as YAML: {size}.").format(size=size_text(len(text.encode())))
-        if is_cut(message, LONGEST_ARRAY):
-            words += " " + _("Long arrays were cut.")
-        self.notify(words, markup=False)
-
-    # What is shown
+    # Display
 
     def _show_message(self, sample: Sample) -> None:
-        """Show a message of the chosen topic, an image as a picture if that is wanted."""
+        """Show a message of the chosen topic; an image as a picture if requested."""
         first = self.detail.sample is None
         self.detail.show_message(sample)
         if is_image(sample):
@@ -346,54 +329,40 @@ class TopicsScreen(DeckScreen):
 
     @property
     def _shows_picture(self) -> bool:
-        """Whether a picture is on the screen and goes on."""
+        """Whether a live picture is on the screen."""
         in_front = self.detail.front is self.detail.picture and not self.plotting.covers_all
         return in_front and not self.detail.echo.paused
 
     def _is_wanted(self, sample: Sample) -> bool:
-        """Tell whether the sample's topic is still the one that is shown, as a picture."""
+        """Return whether the sample's topic is still the one shown, as a picture."""
         return self.is_attached and sample.topic == self.table.chosen and self._shows_picture
 
     def _keep_pace(self) -> None:
-        """Ask for updates as often as what is shown needs them."""
+        """Request updates at the rate that the display needs."""
         period_s = LIVELY_S if self._shows_picture else STEADY_S
         if period_s != self.period_s:
             self.period_s = period_s
             self.topics_changed()
 
     def _is_time_for_rates(self, time_s: float) -> bool:
-        """Tell whether rates are to be shown now; pictures come more often than those change."""
+        """Return whether to update the rates now; pictures come more often than those change."""
         if self.period_s == LIVELY_S and 0 <= time_s - self._rates_s < RATES_S:
             return False
         self._rates_s = time_s
         return True
 
     def _is_listed(self, row: TopicRow) -> bool:
-        """Leave out what only Deck has asked for; the chosen one stays when all have left it."""
+        """Hide topics that only Deck uses; the chosen one stays even if everybody has left it."""
         return bool(row.publishers or row.subscribers) or row.name == self.table.chosen
 
     def _label(self) -> None:
         self.filter.placeholder = _("filter: words of a name or a type")
-        self.table.show_words(*self._why_none())
+        self._say_why_empty()
         self._count()
 
-    def _why_none(self) -> tuple[str, str]:
-        """Return headline and detail for a table without topics."""
-        update = self.feed.update
-        if self.feed.link is None:
-            return _("no lesson is running"), ""
-        if update is not None and update.error:
-            return self.feed.blind, said(update.error)
-        if title.starting(self.deck):
-            return _("no topics yet"), _("Nodes are starting.")
-        listed = () if update is None else tuple(filter(self._is_listed, update.topics))
-        if update is None or not all(is_housekeeping(row.name) for row in listed):
-            return _("no topics yet"), ""
-        if not listed:
-            return _("no topics"), _("Nobody publishes anything, and nobody listens.")
-        key = self.deck.keys_of(ShowHousekeeping)[0]
-        words = _("There are only those of ROS itself: {key} shows them.").format(key=key)
-        return _("no topics of the robot"), words
+    def _say_why_empty(self) -> None:
+        topics = () if self.feed.update is None else self.feed.update.topics
+        self.table.show_words(*why_empty(self.deck, tuple(filter(self._is_listed, topics))))
 
     def _count(self) -> None:
         everything = len(self._listed)

@@ -1,4 +1,4 @@
-"""A message to be filled in as YAML, checked against its type as one types."""
+"""A form for a message in YAML, checked against its type during typing."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from textual.widgets import Static, TextArea
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.messages.yaml_form import check, prefilled
-from graph.messages.yaml_text import YamlError
 from text.i18n import _
 from text.plain import plain
+from text.yaml_faults import YamlError
 from tui.actions import Acting, bindings
 from tui.widgets.working import Working
 from tui.yaml_form.actions import FORM_ACTIONS
@@ -37,10 +37,10 @@ CHECKED_AFTER_S = 0.15
 
 
 class YamlForm(Vertical, Acting, Working):
-    """An editor with a verdict below it that names line, field and what was expected."""
+    """An editor with a verdict below it that says the line, the field and what was expected."""
 
     class Submitted(Message):
-        """The form was filled in and is right; Ctrl+S was pressed."""
+        """The form is valid, and Ctrl+S was pressed."""
 
         def __init__(self, form: YamlForm, value: Mapping[str, Value]) -> None:
             super().__init__()
@@ -53,7 +53,7 @@ class YamlForm(Vertical, Acting, Working):
             return self.form
 
     class Checked(Message):
-        """The text was looked at: `form.error` says what is wrong, None if nothing is."""
+        """The text was checked: `form.error` says what is wrong, None if nothing is."""
 
         def __init__(self, form: YamlForm) -> None:
             super().__init__()
@@ -85,10 +85,10 @@ class YamlForm(Vertical, Acting, Working):
         type_is_given: bool = False,
         id: str = "",
     ) -> None:
-        """Begin with a type's form; `submit_title` (an `N_`) is what the footer calls Ctrl+S.
+        """Start with a type's form; `submit_title` (an `N_`) is what the footer calls Ctrl+S.
 
-        `submits=False` leaves Ctrl+S to the screen around it. `type_is_given`: nobody can choose
-        it, it comes by itself.
+        `submits=False` leaves Ctrl+S to the screen around it. `type_is_given`: the user cannot
+        choose the type, it is set by the program.
         """
         super().__init__(id=id or None)
         self.type_name = type_name
@@ -96,7 +96,7 @@ class YamlForm(Vertical, Acting, Working):
         self.submits = submits
         self.type_is_given = type_is_given
         self.error: Wrong | None = None
-        """What is wrong with the text as it was last checked."""
+        """What is wrong with the text that was checked last."""
         self._value: Mapping[str, Value] | None = None
         self._checked: str | None = None
         """The text that was checked."""
@@ -117,34 +117,34 @@ class YamlForm(Vertical, Acting, Working):
 
     @property
     def editor(self) -> YamlEditor:
-        """Where it is filled in."""
+        """The editor with the message."""
         return self.query_one(YamlEditor)
 
     @property
     def text(self) -> str:
-        """What stands in the form."""
+        """The text in the form."""
         return self.editor.text
 
     @property
     def value(self) -> Mapping[str, Value] | None:
-        """The fields as they are filled in, None while something is wrong."""
+        """The field values, None while something is wrong."""
         self.check_now()
         return None if self._loading else self._value
 
     @property
     def verdict(self) -> str:
-        """What is said below."""
+        """The text below the editor."""
         return str(self.query_one(Static).content)
 
     def load(self, type_name: str, text: str | None = None) -> Worker[None]:
-        """Show the form of another type, or `text` in it; wait for the worker to see it there."""
+        """Show the form of another type, or `text` in it; the worker ends when it is shown."""
         self.type_name = type_name
         self._loading = True
         self._forget()
         return self.run_worker(self._load(type_name, text), group="load", exclusive=True)
 
     def submit(self) -> None:
-        """Check, and tell that it was submitted; what is wrong is gone to instead."""
+        """Check the text and report that it was submitted, or go to what is wrong."""
         value = self.value
         if value is None:
             self.go_to_problem()
@@ -153,18 +153,18 @@ class YamlForm(Vertical, Acting, Working):
             self.post_message(self.Submitted(self, value))
 
     def go_to_problem(self) -> None:
-        """Put the cursor where it is wrong."""
+        """Move the cursor to what is wrong."""
         place = None if self.error is None else place_of(self.error)
         if place is not None:
             self.editor.go_to(place)
 
     def check_now(self) -> None:
-        """Check what stands there, at once; the screen waits for it."""
+        """Check the text at once, blocking the screen."""
         if self.type_name and not self._loading and self.text != self._checked:
             self._take(self.text, _checked(self.type_name, self.text))
 
     def relabel(self) -> None:
-        """Say the verdict anew, after the language changed."""
+        """Show the verdict in the current language."""
         words = "✓ " + _("fits {type}").format(type=plain(self.type_name, 100))
         if self._loading or (self.type_is_given and not self.type_name):
             words = _("the form is being loaded…")
@@ -179,7 +179,7 @@ class YamlForm(Vertical, Acting, Working):
         self.query_one(Static).update(words)
 
     async def _load(self, type_name: str, text: str | None) -> None:
-        # The first look at a package imports it, which takes its time.
+        # The first use of a package imports it, which takes time.
         try:
             form = await asyncio.to_thread(prefilled, type_name)
         except UnknownTypeError as error:
@@ -192,7 +192,7 @@ class YamlForm(Vertical, Acting, Working):
         await self._check()
 
     def on_click(self, event: Click) -> None:
-        """The verdict leads to what is wrong."""
+        """Go to what is wrong when the verdict is clicked."""
         if isinstance(event.widget, Static):
             self.go_to_problem()
 
@@ -225,7 +225,7 @@ class YamlForm(Vertical, Acting, Working):
         self.relabel()
 
     def _take(self, text: str, found: Mapping[str, Value] | Wrong) -> None:
-        """Show what came of checking this text."""
+        """Show the result of checking this text."""
         self._checked = text
         if isinstance(found, (YamlError, FieldError, UnknownTypeError)):
             self.error, self._value = found, None

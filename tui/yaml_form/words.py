@@ -1,4 +1,4 @@
-"""What is wrong with a form of YAML, said in the language of the screen."""
+"""What is wrong with a YAML form, in the current language."""
 
 from __future__ import annotations
 
@@ -6,25 +6,26 @@ from typing import TypeAlias
 
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
-from graph.messages.yaml_text import YamlError
 from text.i18n import _, said
 from text.plain import plain
+from text.sentences import reason_of
+from text.yaml_faults import YamlError
 from tui.widgets.marked_editor import TextPlace
 
 LONGEST = 300
 
 Wrong: TypeAlias = YamlError | FieldError | UnknownTypeError
-"""All that checking a form may raise."""
+"""Everything that checking a form may raise."""
 
 
 def place_of(error: Wrong) -> TextPlace | None:
-    """Return where it is wrong, None for a type that is not there."""
+    """Return where it is wrong, None if the type does not exist."""
     line = getattr(error, "line", None)
     return None if line is None else TextPlace(line, getattr(error, "column", None) or 1)
 
 
 def wrong_words(error: Wrong) -> str:
-    """The line, the field and the mend: `line 3: drive.speed: expected a number, got 'b'`."""
+    """The line, the field and the fix: `line 3: drive.speed: expected a number, got 'b'`."""
     place = place_of(error)
     line = "" if place is None else _("line {line}").format(line=place.line)
     field = error.field if isinstance(error, FieldError) else ""
@@ -33,8 +34,7 @@ def wrong_words(error: Wrong) -> str:
 
 
 def reason_words(error: Exception) -> str:
-    """Why something was not sent, whatever was raised."""
+    """Return why something was not sent, for any exception."""
     if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
         return wrong_words(error)
-    words = getattr(error, "words", None)
-    return plain(said(words) if words else str(error) or type(error).__name__, LONGEST)
+    return plain(said(reason_of(error)), LONGEST)

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from launcher.status import NodeState
 from tests.tui.app_runs import opened
-from tests.tui.recorded import RecordedPad
+from tests.tui.recorded import RecordedOpener
 from tests.tui.snapshots import Look, SnapCompare, one_look
 from text.i18n import N_
 from tui.actions import REGISTRY, Action, bindings
@@ -154,8 +154,8 @@ def test_letters_work_on_a_russian_keyboard_too() -> None:
 
 
 async def test_the_footer_shows_what_can_be_done_now() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         assert "space STOP" in footer(app)
         assert "Release" not in footer(app)
         await pilot.press("space")
@@ -197,9 +197,9 @@ async def test_help_changes_its_language_while_it_is_open() -> None:
 
 
 async def test_help_does_not_cover_the_dialog_that_goes_by_itself() -> None:
-    pad = RecordedPad()
-    pad.link.hold_shutdown = True
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    opener.link.hold_shutdown = True
+    async with opened(opener) as (app, pilot):
         await pilot.press("q")
         await pilot.pause()
         await pilot.press("f1")
@@ -209,12 +209,12 @@ async def test_help_does_not_cover_the_dialog_that_goes_by_itself() -> None:
 
 
 async def test_a_keymap_changes_key_footer_and_help() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         app.set_keymap({"node.restart": "f7"})
         await pilot.press("f7", "r")
         await pilot.pause()
-        assert pad.link.asked == [("restart", "sonar_front")]
+        assert opener.link.asked == [("restart", "sonar_front")]
         assert "f7 Restart" in footer(app)
         await pilot.press("f1")
         await pilot.pause()
@@ -232,9 +232,9 @@ async def test_themes_are_gone_through_by_a_key() -> None:
 
 
 async def test_language_is_switched_by_a_key_and_everything_visible_changes() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.link.set_state("camera", NodeState.FAILED)
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.set_state("camera", NodeState.FAILED)
         await pilot.press("f9")
         await pilot.pause()
         await pilot.pause()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,7 +18,7 @@ from textual.widget import Widget
 from tests.tui.app_runs import LESSON_9
 from tests.tui.recorded import (
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     RecordedSession,
     lesson_samples,
     lesson_update,
@@ -56,14 +56,10 @@ class Isolated:
         self.graph.show(lesson_update())
         await self.pilot.pause()
 
-    async def until(self, true: Callable[[], object]) -> None:
-        """Wait for what must come about."""
-        await until(true, "what must come about", within_s=60)
-
     async def stops(self) -> bool:
         """Whether the space bar still stops the wheels."""
         await self.pilot.press("space")
-        await self.until(lambda: self.graph.published)
+        await until(lambda: self.graph.published, "what is published")
         topic, _type, message = self.graph.published[-1][:3]
         return topic == "/emergency_stop" and message == {"data": True}
 
@@ -72,7 +68,9 @@ class Isolated:
 async def isolated() -> AsyncIterator[Isolated]:
     graph = RecordedGraph()
     journal: list[tuple[str, str]] = []
-    app = DeckApp(RecordedPad(graph=graph), LESSON_9, journal=lambda *noted: journal.append(noted))
+    app = DeckApp(
+        RecordedOpener(graph=graph), LESSON_9, journal=lambda *noted: journal.append(noted)
+    )
     with isolating():
         async with app.run_test(size=(120, 40)) as pilot:
             await settle(pilot)
@@ -167,7 +165,7 @@ async def test_a_handler_that_fails_handles_the_next_message() -> None:
         assert await deck.stops()
         await deck.look()
         await deck.pilot.press("f3")
-        await deck.until(lambda: isinstance(deck.app.screen, TopicsScreen))
+        await until(lambda: isinstance(deck.app.screen, TopicsScreen), "the topics")
 
 
 async def test_timers_workers_and_callbacks_that_fail_end_nothing() -> None:
@@ -180,7 +178,7 @@ async def test_timers_workers_and_callbacks_that_fail_end_nothing() -> None:
     async with isolated() as deck:
         screen = deck.app.screen
         screen.set_timer(0.001, fail)
-        await deck.until(lambda: len(deck.journal) == 1)
+        await until(lambda: len(deck.journal) == 1, "the fault in the journal")
         # One that fails at the same place is the same.
         screen.run_worker(work(), exit_on_error=True)
         screen.call_later(fail)
@@ -196,7 +194,7 @@ async def test_a_key_whose_action_fails_is_told_and_the_next_key_works() -> None
     async with isolated() as deck:
         with broken(DeckApp, "show_help"):
             await deck.pilot.press("f1")
-            await deck.until(lambda: deck.journal)
+            await until(lambda: deck.journal, "the fault in the journal")
         assert await deck.stops()
         toasts = [note.message for note in deck.app._notifications]
         assert any(FAULT in words for words in toasts)
@@ -207,10 +205,10 @@ async def test_a_panel_that_cannot_be_laid_out_says_so_and_its_screen_stays() ->
         wheels = deck.app.screen.query_one(WheelsFeed)
         with broken(WheelsPanel, "_get_box_model"):
             wheels.query_one(WheelsPanel).refresh(layout=True)
-            await deck.until(lambda: f"Wheels {FAULT}" in flat(shown(wheels)))
+            await until(lambda: f"Wheels {FAULT}" in flat(shown(wheels)), "the fault in its place")
             assert await deck.stops()
         await deck.look()
-        await deck.until(lambda: "29° left" in shown(wheels.query_one(WheelsPanel)))
+        await until(lambda: "29° left" in shown(wheels.query_one(WheelsPanel)), "the wheels")
         assert isinstance(deck.app.screen, LessonDeck)
 
 
@@ -218,33 +216,35 @@ async def test_a_screen_that_cannot_be_laid_out_gives_way_to_one_that_can() -> N
     async with isolated() as deck:
         with broken(LessonDeck, "arrange"):
             deck.app.screen.refresh(layout=True)
-            await deck.until(lambda: isinstance(deck.app.screen, SafeScreen))
-            await deck.until(lambda: shown(deck.app.screen.query_one(Plainly)))
+            await until(lambda: isinstance(deck.app.screen, SafeScreen), "the plain screen")
+            await until(lambda: shown(deck.app.screen.query_one(Plainly)), "its words")
             words = shown(deck.app.screen.query_one(Plainly))
             assert "cannot be drawn" in words
             assert "09-brain" in words
             assert "space" in words
             assert await deck.stops()
-            await deck.until(lambda: "EMERGENCY STOP" in shown(deck.app.screen.query_one(Plainly)))
+            await until(
+                lambda: "EMERGENCY STOP" in shown(deck.app.screen.query_one(Plainly)), "the stop"
+            )
         await deck.pilot.press("f2")
-        await deck.until(lambda: isinstance(deck.app.screen, LessonDeck))
-        await deck.until(lambda: deck.app.screen.query(Panel))
+        await until(lambda: isinstance(deck.app.screen, LessonDeck), "the deck")
+        await until(lambda: deck.app.screen.query(Panel), "its panels")
 
 
 async def test_a_screen_that_cannot_be_made_gives_way_to_one_that_can() -> None:
     async with isolated() as deck:
         with broken(TopicsScreen, "compose_body"):
             await deck.pilot.press("f3")
-            await deck.until(lambda: isinstance(deck.app.screen, SafeScreen))
+            await until(lambda: isinstance(deck.app.screen, SafeScreen), "the plain screen")
             assert await deck.stops()
         await deck.pilot.press("f3")
-        await deck.until(lambda: isinstance(deck.app.screen, TopicsScreen))
-        await deck.until(lambda: deck.app.screen.query(TopicsTable))
+        await until(lambda: isinstance(deck.app.screen, TopicsScreen), "the topics")
+        await until(lambda: deck.app.screen.query(TopicsTable), "the table")
 
 
 async def test_when_nothing_can_be_drawn_the_nodes_are_stopped_the_normal_way() -> None:
     session = RecordedSession()
-    app = DeckApp(RecordedPad(session), LESSON_9, journal=lambda *_: None)
+    app = DeckApp(RecordedOpener(session), LESSON_9, journal=lambda *_: None)
     with isolating():
         async with app.run_test(size=(120, 40)) as pilot:
             await settle(pilot)
@@ -262,7 +262,7 @@ async def test_a_screen_below_that_cannot_be_drawn_either_does_not_keep_the_one_
         with broken(Screen, "arrange"):
             for screen in [front, below, below] * MOST_UNDRAWN:
                 screen._refresh_layout(deck.app.size)
-        await deck.until(lambda: isinstance(deck.app.screen, SafeScreen))
+        await until(lambda: isinstance(deck.app.screen, SafeScreen), "the plain screen")
 
 
 async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() -> None:
@@ -296,7 +296,7 @@ async def test_a_fault_that_cannot_be_told_ends_nothing() -> None:
 
 
 async def test_without_isolation_a_fault_makes_a_test_red() -> None:
-    app = DeckApp(RecordedPad(), LESSON_9)
+    app = DeckApp(RecordedOpener(), LESSON_9)
     with pytest.raises(ZeroDivisionError):  # noqa: PT012 - it is raised when the app has gone
         async with app.run_test(size=(120, 40)) as pilot:
             await settle(pilot)

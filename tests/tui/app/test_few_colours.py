@@ -10,7 +10,7 @@ from textual.pilot import Pilot
 
 from launcher.status import NodeState
 from tests.tui.app_runs import opened
-from tests.tui.recorded import RecordedPad
+from tests.tui.recorded import RecordedOpener
 from tui.app import DeckApp
 from tui.deck.nodes_table import NodesTable
 from tui.themes import CYCLE
@@ -46,11 +46,11 @@ async def test_good_bad_and_plain_words_have_colours_of_their_own(
     terminal: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TERM", terminal)
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         assert app.console.color_system == "standard"
-        pad.link.set_state("camera", NodeState.FAILED)
-        pad.link.set_state("audio", NodeState.BACKOFF)
+        opener.link.set_state("camera", NodeState.FAILED)
+        opener.link.set_state("audio", NodeState.BACKOFF)
         for theme in CYCLE:
             ink = await shown(app, pilot, theme)
             words = [

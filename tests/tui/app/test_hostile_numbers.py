@@ -16,9 +16,9 @@ from graph.data import GraphUpdate, Sample
 from launcher.events import LogEvent, StatusEvent
 from launcher.status import LogLine, NodeStatus
 from robot.motion.odometry import yaw_from_quaternion
-from tests.tui import hostile
+from tests.tui import strategies
 from tests.tui.app_runs import opened
-from tests.tui.recorded import SESSION, RecordedGraph, RecordedPad, RecordedSession
+from tests.tui.recorded import SESSION, RecordedGraph, RecordedOpener, RecordedSession
 from text.figures import elapsed, figure, short, whole
 from tui.clock import time_of_day
 from tui.frame.screen import DeckScreen
@@ -61,7 +61,7 @@ def drawn(panel: Drawing) -> None:
 
 
 def message(topic: str) -> st.SearchStrategy[Any]:
-    return hostile.MESSAGES[topic][1]
+    return strategies.MESSAGES[topic][1]
 
 
 @quick
@@ -75,7 +75,7 @@ def test_wheels_are_drawn(joints: Any, drive: Any) -> None:
 
 
 @quick
-@given(st.lists(st.tuples(hostile.doubles, hostile.doubles), min_size=1, max_size=5))
+@given(st.lists(st.tuples(strategies.doubles, strategies.doubles), min_size=1, max_size=5))
 def test_distances_are_drawn(readings: list[tuple[float, float]]) -> None:
     panel = Sonar("front")
     for metres, time_s in readings:
@@ -85,7 +85,9 @@ def test_distances_are_drawn(readings: list[tuple[float, float]]) -> None:
 
 @quick
 @given(
-    message("/head_state"), st.builds(HeadReading, hostile.doubles, hostile.doubles), hostile.texts
+    message("/head_state"),
+    st.builds(HeadReading, strategies.doubles, strategies.doubles),
+    strategies.texts,
 )
 def test_heads_are_drawn(state: Any, told: HeadReading, answer: str) -> None:
     panel = HeadPanel()
@@ -97,9 +99,9 @@ def test_heads_are_drawn(state: Any, told: HeadReading, answer: str) -> None:
         drawn(panel)
 
 
-places = hostile.pose_stamped | hostile.odometry
+places = strategies.pose_stamped | strategies.odometry
 """Anywhere."""
-near = st.floats(-20, 20) | hostile.doubles
+near = st.floats(-20, 20) | strategies.doubles
 
 
 @quick
@@ -148,14 +150,16 @@ def test_one_reading_of_a_sonar_does_not_make_the_map_useless() -> None:
 
 
 @quick
-@given(hostile.turn)
+@given(strategies.turn)
 def test_a_heading_is_a_number_or_none(turn: dict[str, float]) -> None:
     heading = yaw_from_quaternion(*(turn[axis] for axis in "xyzw"))
     assert math.isnan(heading) or abs(heading) <= math.pi
 
 
 @quick
-@given(st.lists(st.tuples(message("/audio/mic_raw"), hostile.doubles), max_size=4), hostile.maybe)
+@given(
+    st.lists(st.tuples(message("/audio/mic_raw"), strategies.doubles), max_size=4), strategies.maybe
+)
 def test_voices_are_drawn(said: list[tuple[Any, float]], level: float | None) -> None:
     panel = VoicePanel()
     for one, time_s in said:
@@ -165,7 +169,7 @@ def test_voices_are_drawn(said: list[tuple[Any, float]], level: float | None) ->
 
 
 @quick
-@given(st.lists(st.tuples(hostile.doubles, near), min_size=1, max_size=12), st.integers(0, 3))
+@given(st.lists(st.tuples(strategies.doubles, near), min_size=1, max_size=12), st.integers(0, 3))
 def test_plots_are_drawn(points: list[tuple[float, float]], windows: int) -> None:
     plot = TopicPlot()
     plot.toggle(PlotField("/number", ("data",)))
@@ -203,7 +207,7 @@ WORDS: Sequence[Callable[[float], str]] = (
 @pytest.mark.parametrize("words", WORDS, ids=lambda words: words.__name__)
 def test_a_figure_is_short_whatever_it_is(words: Callable[[float], str]) -> None:
     @quick
-    @given(hostile.doubles)
+    @given(strategies.doubles)
     def check(value: float) -> None:
         assert 0 < len(words(value)) <= LONGEST + 8
 
@@ -211,7 +215,7 @@ def test_a_figure_is_short_whatever_it_is(words: Callable[[float], str]) -> None
 
 
 @quick
-@given(hostile.counts)
+@given(strategies.counts)
 def test_a_count_is_short_whatever_it_is(count: int) -> None:
     assert len(count_text(count)) <= LONGEST
     assert len(memory(count)) <= LONGEST
@@ -221,7 +225,7 @@ async def shown(screen: str, said: list[Said]) -> None:
     """Show all of it on a screen that lets every exception out; the stop works to the end."""
     graph = RecordedGraph()
     session = RecordedSession(replace(SESSION, panels=ALL_PANELS))
-    async with opened(RecordedPad(session, graph), screen) as (app, pilot):
+    async with opened(RecordedOpener(session, graph), screen) as (app, pilot):
         for number, (update, statuses, lines) in enumerate(said):
             session.say(StatusEvent(statuses))
             session.say(LogEvent(lines))
@@ -244,7 +248,7 @@ def everything_said() -> list[Said]:
     said: list[Said] = []
 
     @settings(quick, max_examples=LOOKS, suppress_health_check=list(HealthCheck))
-    @given(hostile.updates(), hostile.statuses(), hostile.lines)
+    @given(strategies.updates(), strategies.statuses(), strategies.lines)
     def collect(
         update: GraphUpdate, statuses: tuple[NodeStatus, ...], lines: tuple[LogLine, ...]
     ) -> None:

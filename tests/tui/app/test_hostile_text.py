@@ -1,24 +1,18 @@
 """Whatever text a robot, a recording or a profile brings: no screen gives it to the terminal.
 
-Each screen is led through what it can show, with a recorded world in which every text is hostile,
-and all that the driver is given to write is looked through. Once with the last look that Deck takes
-at each line, and once without: who shows text makes it plain, and does not leave that to others.
+Each screen is led through what it can show, with a recorded world in which every text is hostile.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from textual.app import App
-from textual.drivers.headless_driver import HeadlessDriver
 from textual.events import Paste
-from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import (
@@ -37,9 +31,9 @@ from graph.data import (
 from launcher.errors import StartError
 from launcher.events import ClosedEvent, StatusEvent, StraysEvent
 from launcher.status import NodeState, Stray
-from tests.hostile import EVIL, harm_on_screen, poisoned
+from tests.hostile_text import EVIL, poisoned
 from tests.tui import recorded_devices
-from tests.tui.app_runs import LESSON_9
+from tests.tui.looked_through import looked_through
 from tests.tui.recorded import (
     LESSONS,
     LINES,
@@ -48,47 +42,24 @@ from tests.tui.recorded import (
     SESSION,
     TOPICS,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     RecordedSession,
     line,
     sample,
 )
 from tests.tui.recorded_nodes import graph_update
-from tests.tui.snapshots import settle
 from text.sentences import say
-from tui.app import DeckApp
+from tui.composer import screen as composer_screen
 from tui.composer.json_editor import JsonEditor
+from tui.graph import ask as graph_ask
+from tui.graph import type as graph_type
 from tui.session.requests import Lesson, OpenRequest
+from tui.topics import screen as topics_screen
+from tui.yaml_form import form as yaml_form
 
-SIZE = (160, 50)
 STRING = "std_msgs/msg/String"
 NAME = "evil\x1bc\u202e[/]"
 """Of a profile; it has room in the title."""
-
-
-class Writing(HeadlessDriver):
-    """Keeps what a terminal would be given."""
-
-    written: list[str]
-
-    def __init__(self, *args: Any, **more: Any) -> None:
-        super().__init__(*args, **more)
-        self.written = []
-
-    @property
-    def is_headless(self) -> bool:
-        """Have everything written."""
-        return False
-
-    def write(self, data: str) -> None:
-        self.written.append(data)
-
-
-class Bare(DeckApp):
-    """The app without its last look at each line."""
-
-    def get_line_filters(self) -> Any:
-        return App.get_line_filters(self)
 
 
 def hostile_topics() -> tuple[TopicRow, ...]:
@@ -154,14 +125,14 @@ def hostile_update(base: GraphUpdate, *, keys: bool = False) -> GraphUpdate:
     )
 
 
-class HostilePad(RecordedPad):
+class HostileOpener(RecordedOpener):
     """Lessons with hostile titles."""
 
     async def lessons(self) -> list[Lesson]:
         return [*LESSONS, *map(poisoned, LESSONS)]
 
 
-def hostile_pad(base: GraphUpdate | None = None, *, keys: bool = False) -> HostilePad:
+def hostile_opener(base: GraphUpdate | None = None, *, keys: bool = False) -> HostileOpener:
     """A session and a graph in which every text is hostile."""
     nodes = {
         name: replace(
@@ -195,7 +166,7 @@ def hostile_pad(base: GraphUpdate | None = None, *, keys: bool = False) -> Hosti
         if keys
         else replace(SESSION, title=poisoned(SESSION.title), name=NAME, hardware=EVIL)
     )
-    return HostilePad(RecordedSession(session, nodes, lines), graph, [poisoned(SESSION)])
+    return HostileOpener(RecordedSession(session, nodes, lines), graph, [poisoned(SESSION)])
 
 
 @pytest.fixture(autouse=True)
@@ -207,45 +178,15 @@ def _all_colours(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-@dataclass
-class Stage:
-    """A test's hands and eyes."""
-
-    app: DeckApp
-    pilot: Pilot[Any]
-
-    async def press(self, *keys: str) -> None:
-        """Press keys one by one, each to its end."""
-        for key in keys:
-            await self.pilot.press(key)
-            await self.pilot.pause()
-
-    @property
-    def written(self) -> str:
-        """All that a terminal would have been given."""
-        driver = self.app._driver
-        assert isinstance(driver, Writing)
-        return "".join(driver.written)
+@pytest.fixture(autouse=True)
+def _at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is chosen or typed is looked at without a pause: each key shows all that it leads to."""
+    for module in (graph_ask, graph_type, topics_screen):
+        monkeypatch.setattr(module, "SETTLED_S", 0.001)
+    for module in (composer_screen, yaml_form):
+        monkeypatch.setattr(module, "CHECKED_AFTER_S", 0.001)
 
 
-@asynccontextmanager
-async def on_stage(
-    kind: type[DeckApp], screen: str, pad: RecordedPad, order: OpenRequest = LESSON_9
-) -> AsyncIterator[Stage]:
-    """Open a screen on a terminal that is looked through at the end."""
-    app = kind(pad, order, screen, driver_class=Writing)
-    async with app.run_test(headless=False, size=SIZE) as pilot:
-        stage = Stage(app, pilot)
-        await settle(pilot)
-        yield stage
-        await stage.pilot.pause()
-        written = stage.written
-    assert len(written) > 1000
-    assert "evil" in written
-    assert not harm_on_screen(written)
-
-
-apps = pytest.mark.parametrize("kind", [DeckApp, Bare])
 worlds = pytest.mark.parametrize("keys", [False, True], ids=["values", "all"])
 
 WALKS: dict[str, tuple[str, ...]] = {
@@ -274,66 +215,58 @@ WALKS: dict[str, tuple[str, ...]] = {
 """Through all that a screen shows; a hostile name stands beside the one that it is made of."""
 
 
-@apps
 @worlds
 @pytest.mark.parametrize("screen", WALKS)
-async def test_no_screen_gives_it_to_the_terminal(
-    screen: str, kind: type[DeckApp], keys: bool
-) -> None:
+async def test_no_screen_gives_it_to_the_terminal(screen: str, keys: bool) -> None:
     base = None
     if screen == "devices":
         samples = (*recorded_devices.STATUSES, recorded_devices.of_chassis())
         base = recorded_devices.update(*samples)
-    async with on_stage(kind, screen, hostile_pad(base, keys=keys)) as stage:
+    async with looked_through(screen, hostile_opener(base, keys=keys)) as stage:
         await stage.press(*WALKS[screen])
 
 
-@apps
-async def test_a_parameter_is_opened_refused_and_left(kind: type[DeckApp]) -> None:
-    async with on_stage(kind, "graph", hostile_pad()) as stage:
+async def test_a_parameter_is_opened_refused_and_left() -> None:
+    async with looked_through("graph", hostile_opener()) as stage:
         await stage.press("down", "E")
         for _row in range(5):
             await stage.press("down", "enter", "end", "left", "x", "enter", "escape")
         await stage.press("W", "enter", "escape", "O", "enter", "escape")
 
 
-@apps
-async def test_the_lessons_and_what_is_wrong_with_them(kind: type[DeckApp]) -> None:
-    pad = hostile_pad()
-    pad.refusal = StartError(say("{what}: nothing\n{what}", what=EVIL))
-    async with on_stage(kind, "picker", pad, OpenRequest()) as stage:
+async def test_the_lessons_and_what_is_wrong_with_them() -> None:
+    opener = hostile_opener()
+    opener.refusal = StartError(say("{what}: nothing\n{what}", what=EVIL))
+    async with looked_through("picker", opener, OpenRequest()) as stage:
         await stage.press(*("down",) * 8, "enter", "escape", "up", "enter", "escape")
 
 
-@apps
-async def test_what_the_supervisor_says(kind: type[DeckApp]) -> None:
-    pad = hostile_pad()
-    assert isinstance(pad.link, RecordedSession)
-    async with on_stage(kind, "deck", pad) as stage:
-        pad.link.say(StraysEvent((Stray(1, 1.0, EVIL, EVIL, EVIL),)))
-        pad.link.say(StatusEvent((poisoned(NODES["camera"]),)))
+async def test_what_the_supervisor_says() -> None:
+    opener = hostile_opener()
+    async with looked_through("deck", opener) as stage:
+        opener.link.say(StraysEvent((Stray(1, 1.0, EVIL, EVIL, EVIL),)))
+        opener.link.say(StatusEvent((poisoned(NODES["camera"]),)))
         await stage.pilot.pause(0.1)
         await stage.press("escape", "s", "x", "r")
         stage.app.notify(EVIL, title=EVIL)
         await stage.pilot.pause(0.1)
-        pad.link.hold_shutdown = True
+        opener.link.hold_shutdown = True
         await stage.press("q")
         await stage.pilot.pause(0.1)
         await stage.press("q")
-        pad.link.say(ClosedEvent(EVIL))
+        opener.link.say(ClosedEvent(EVIL))
         await stage.pilot.pause(0.1)
 
 
-@apps
-async def test_an_observer_that_cannot_work(kind: type[DeckApp]) -> None:
-    pad = hostile_pad()
-    pad.graph.update = replace(graph_update(), error=EVIL)
-    async with on_stage(kind, "deck", pad) as stage:
+async def test_an_observer_that_cannot_work() -> None:
+    opener = hostile_opener()
+    opener.graph.update = replace(graph_update(), error=EVIL)
+    async with looked_through("deck", opener) as stage:
         await stage.press("2", "5", "1")
 
 
 async def test_what_is_pasted_into_a_field_of_textuals_own() -> None:
-    async with on_stage(DeckApp, "deck", hostile_pad()) as stage:
+    async with looked_through("deck", hostile_opener(), all_plain=False) as stage:
         await stage.press("ctrl+p")
         stage.app.post_message(Paste(EVIL.replace("\n", "")))
         await stage.pilot.pause(0.1)
@@ -345,24 +278,24 @@ async def test_what_is_pasted_into_a_field_of_textuals_own() -> None:
 async def test_what_somebody_forgot_is_found_by_the_last_look(
     show: Callable[[str], Static],
 ) -> None:
-    async with on_stage(DeckApp, "deck", hostile_pad()) as stage:
+    async with looked_through("deck", hostile_opener(), all_plain=False) as stage:
         await stage.app.screen.mount(show(EVIL), before=0)
         await stage.pilot.pause(0.1)
 
 
-@apps
-async def test_lines_that_come_over_rosout(kind: type[DeckApp]) -> None:
-    pad = hostile_pad()
-    async with on_stage(kind, "logs", pad) as stage:
-        pad.link.say(StatusEvent((replace(NODES["camera"], detail=EVIL, state=NodeState.FAILED),)))
+async def test_lines_that_come_over_rosout() -> None:
+    opener = hostile_opener()
+    async with looked_through("logs", opener) as stage:
+        opener.link.say(
+            StatusEvent((replace(NODES["camera"], detail=EVIL, state=NodeState.FAILED),))
+        )
         stage.app.feed.note([line("deck", 1, EVIL)])
         await stage.pilot.pause(0.1)
 
 
-@apps
-async def test_what_is_composed_and_what_came_of_it(kind: type[DeckApp]) -> None:
-    pad = hostile_pad()
-    async with on_stage(kind, "composer", pad) as stage:
+async def test_what_is_composed_and_what_came_of_it() -> None:
+    opener = hostile_opener()
+    async with looked_through("composer", opener) as stage:
         text = '{"thought": "' + EVIL + '", "' + EVIL + '": [' + EVIL + "]}"
         stage.app.screen.query_one(JsonEditor).post_message(Paste(text))
         await stage.pilot.pause(0.1)
@@ -373,7 +306,6 @@ async def test_what_is_composed_and_what_came_of_it(kind: type[DeckApp]) -> None
         ]
         raw = sample("/llm_result", STRING, {"data": EVIL})
         samples = {"/llm_result": (*results, raw)}
-        assert isinstance(pad.graph, RecordedGraph)
-        pad.graph.show(replace(graph_update(), samples=samples))
+        opener.graph.show(replace(graph_update(), samples=samples))
         await stage.pilot.pause(0.1)
         await stage.press("ctrl+n", "f9", "alt+up")

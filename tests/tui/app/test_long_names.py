@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 from graph.data import NodeRow
 from launcher.status import NodeState, NodeStatus
 from tests.tui.app_runs import opened
-from tests.tui.recorded import NODES, RecordedGraph, RecordedPad, RecordedSession, lesson_update
+from tests.tui.recorded import NODES, RecordedGraph, RecordedOpener, RecordedSession, lesson_update
 from tests.tui.snapshots import Look, SnapCompare, one_look, settle
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
@@ -25,7 +25,7 @@ NAME = "/z_robot/" + "a_rather_long_name_of_a_node_" * 3 + "END"
 async def test_the_detail_of_a_node_has_its_whole_name(size: tuple[int, int]) -> None:
     now = lesson_update()
     graph = RecordedGraph(replace(now, nodes=(NodeRow(NAME), *now.nodes)))
-    async with opened(RecordedPad(graph=graph), "graph", size) as (app, pilot):
+    async with opened(RecordedOpener(graph=graph), "graph", size) as (app, pilot):
         assert isinstance(app.screen, GraphScreen)
         await settle(pilot)
         await pilot.press("end")
@@ -46,10 +46,10 @@ STATES = [
 ]
 
 
-def pad_with(node: NodeStatus) -> RecordedPad:
+def opener_with(node: NodeStatus) -> RecordedOpener:
     """Lesson 9 whose last node is this one."""
     nodes = {**NODES, node.name: node}
-    return RecordedPad(RecordedSession(nodes={name: nodes[name] for name in nodes}))
+    return RecordedOpener(RecordedSession(nodes={name: nodes[name] for name in nodes}))
 
 
 def told_below(app: DeckApp) -> list[str]:
@@ -68,7 +68,7 @@ def told_below(app: DeckApp) -> list[str]:
 async def test_what_the_table_of_nodes_cuts_stands_whole_below_it(
     size: tuple[int, int], node: NodeStatus, expected: list[str]
 ) -> None:
-    async with opened(pad_with(node), size=size) as (app, pilot):
+    async with opened(opener_with(node), size=size) as (app, pilot):
         assert isinstance(app.screen, LessonDeck)
         assert told_below(app) == []
         app.screen.table.choose(node.name)
@@ -84,7 +84,7 @@ async def test_what_the_table_of_nodes_cuts_stands_whole_below_it(
 
 async def test_it_is_told_as_soon_as_the_window_is_too_narrow_for_it() -> None:
     node = replace(NODES["camera"], name=LONG[:60])
-    async with opened(pad_with(node), size=(200, 60)) as (app, pilot):
+    async with opened(opener_with(node), size=(200, 60)) as (app, pilot):
         assert isinstance(app.screen, LessonDeck)
         app.screen.table.choose(node.name)
         await settle(pilot)
@@ -105,5 +105,5 @@ def test_a_name_and_a_reason_that_are_cut(look: Look, dump_compare: SnapCompare)
         await look.settle(pilot)
 
     node = replace(NODES["camera"], name=LONG, state=NodeState.FAILED, detail=REASON, pid=None)
-    app = look.app("deck", pad_with(node))
+    app = look.app("deck", opener_with(node))
     assert dump_compare(app, terminal_size=look.size, run_before=choose)

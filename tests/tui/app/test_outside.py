@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 from graph.data import GraphUpdate, NodeRow, Sample
 from launcher.status import NodeState
 from tests.tui.app_runs import opened
-from tests.tui.recorded import NODES, NOW_S, RecordedPad, lesson_update, sample
+from tests.tui.recorded import NODES, NOW_S, RecordedOpener, lesson_update, sample
 from tests.tui.snapshots import Look, SnapCompare, one_look, settle
 from text.i18n import set_language
 from tui.app import DeckApp
@@ -50,17 +50,17 @@ def offered(app: DeckApp) -> set[str]:
     return {key.title for key in bar.keys()}  # noqa: SIM118 - no mapping
 
 
-async def show(pad: RecordedPad, pilot: Pilot[Any], update: GraphUpdate) -> None:
-    pad.graph.show(update)
+async def show(opener: RecordedOpener, pilot: Pilot[Any], update: GraphUpdate) -> None:
+    opener.graph.show(update)
     await settle(pilot)
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
 async def test_it_stands_below_decks_own_until_it_leaves_the_graph(size: tuple[int, int]) -> None:
-    pad = RecordedPad()
-    async with opened(pad, size=size) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, size=size) as (app, pilot):
         own = rows_of(app)
-        await show(pad, pilot, graph("/my_node", "/arm/driver", *HELPERS))
+        await show(opener, pilot, graph("/my_node", "/arm/driver", *HELPERS))
         shown = rows_of(app)
         assert shown[: len(NODES)] == own
         assert [row[:3] for row in shown[len(NODES) :]] == [
@@ -68,14 +68,14 @@ async def test_it_stands_below_decks_own_until_it_leaves_the_graph(size: tuple[i
             ["my_node", "◇ outside", "—"],
         ]
         assert "● 8/8" in title.states(app)[0]
-        await show(pad, pilot, graph())
+        await show(opener, pilot, graph())
         assert rows_of(app) == own
 
 
 async def test_it_cannot_be_started_or_stopped_and_the_keys_say_why() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        await show(pad, pilot, graph("/my_node"))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await show(opener, pilot, graph("/my_node"))
         titles = offered(app)
         assert {"Stop", "Restart"} <= titles
         await pilot.press("end")
@@ -88,19 +88,19 @@ async def test_it_cannot_be_started_or_stopped_and_the_keys_say_why() -> None:
             await pilot.pause()
             (told,) = (one.message for one in app._notifications)
             assert "my_node was not started by Deck" in told
-        assert pad.link.asked == []
+        assert opener.link.asked == []
         await pilot.press("X")
         await pilot.pause()
-        assert pad.link.asked == [("stop",)]
+        assert opener.link.asked == [("stop",)]
 
 
 async def test_what_it_says_on_rosout_is_in_the_log_and_decks_own_are_not_doubled() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        assert "/rosout" not in pad.graph.followed
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        assert "/rosout" not in opener.graph.followed
         early = said("I am awake")
-        await show(pad, pilot, graph("/my_node", "/arm/driver"))
-        assert "/rosout" in pad.graph.followed
+        await show(opener, pilot, graph("/my_node", "/arm/driver"))
+        assert "/rosout" in opener.graph.followed
         lines = (
             early,
             said("of Deck's own", "sonar_front"),
@@ -110,7 +110,7 @@ async def test_what_it_says_on_rosout_is_in_the_log_and_decks_own_are_not_double
             # A subscription that is opened anew hears again what publishers keep.
             early,
         )
-        await show(pad, pilot, graph("/my_node", "/arm/driver", samples=lines))
+        await show(opener, pilot, graph("/my_node", "/arm/driver", samples=lines))
 
         def heard() -> list[tuple[str, str]]:
             every = app.feed.history.all()
@@ -118,20 +118,20 @@ async def test_what_it_says_on_rosout_is_in_the_log_and_decks_own_are_not_double
 
         first = [("my_node", "I am awake"), ("arm/driver", "moved")]
         assert heard() == first
-        await show(pad, pilot, graph("/my_node", "/arm/driver", "/late"))
+        await show(opener, pilot, graph("/my_node", "/arm/driver", "/late"))
         assert heard() == [*first, ("late", "here before it is seen")]
         await pilot.press("4")
         await settle(pilot)
         assert isinstance(app.screen, LogsScreen)
         assert {"my_node", "arm/driver", "late"} <= app.screen.pane.view.ring.counts.keys()
-        await show(pad, pilot, graph())
-        assert "/rosout" not in pad.graph.followed
+        await show(opener, pilot, graph())
+        assert "/rosout" not in opener.graph.followed
 
 
 async def test_its_log_is_muted_and_heard_alone_like_any() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        await show(pad, pilot, graph("/my_node", samples=(said("I am awake"),)))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await show(opener, pilot, graph("/my_node", samples=(said("I am awake"),)))
         assert isinstance(app.screen, LessonDeck)
         await pilot.press("end", "o")
         await pilot.pause()
@@ -185,10 +185,10 @@ async def test_one_in_place_of_a_node_that_was_stopped_is_not_told_to_be_decks(
 ) -> None:
     monkeypatch.setattr("launcher.processes.table.process_numbers", lambda: [8])
     monkeypatch.setattr("launcher.processes.table.read_marks", lambda _pid: {})
-    pad = RecordedPad()
-    async with opened(pad, "graph") as (app, pilot):
-        pad.link.set_state("camera", NodeState.EXITED, pid=None)
-        await show(pad, pilot, lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)))
+    opener = RecordedOpener()
+    async with opened(opener, "graph") as (app, pilot):
+        opener.link.set_state("camera", NodeState.EXITED, pid=None)
+        await show(opener, pilot, lesson_update(nodes=(NodeRow("/camera", processes=(8,)),)))
         await pilot.press("home")
         await settle(pilot)
         shown = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
@@ -199,17 +199,17 @@ async def test_one_in_place_of_a_node_that_was_stopped_is_not_told_to_be_decks(
 
 
 async def test_a_name_that_would_write_the_terminal_is_harmless() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        await show(pad, pilot, graph("/e\x1b]52;c;eA==\x07vil"))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await show(opener, pilot, graph("/e\x1b]52;c;eA==\x07vil"))
         (name,) = (row[0] for row in rows_of(app) if "vil" in row[0])
         assert "\x1b" not in name
 
 
 async def test_another_session_begins_without_those_of_the_one_before() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        await show(pad, pilot, graph("/my_node"))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        await show(opener, pilot, graph("/my_node"))
         await pilot.press("f8")
         await settle(pilot)
         assert app.feed.outside.now == ()
@@ -217,9 +217,9 @@ async def test_another_session_begins_without_those_of_the_one_before() -> None:
 
 async def test_russian() -> None:
     set_language("ru")
-    pad = RecordedPad()
-    async with opened(pad, size=(80, 24)) as (app, pilot):
-        await show(pad, pilot, graph("/my_node"))
+    opener = RecordedOpener()
+    async with opened(opener, size=(80, 24)) as (app, pilot):
+        await show(opener, pilot, graph("/my_node"))
         assert rows_of(app)[-1][:2] == ["my_node", "◇ извне"]
         await pilot.press("end", "x")
         await pilot.pause()
@@ -230,12 +230,12 @@ async def test_russian() -> None:
 @one_look
 def test_a_node_started_by_hand(look: Look, dump_compare: SnapCompare) -> None:
     """Below Deck's own, chosen: `outside` and dashes; its line in the log; no key to stop it."""
-    pad = RecordedPad()
-    app = look.app("deck", pad)
+    opener = RecordedOpener()
+    app = look.app("deck", opener)
 
     async def by_hand(pilot: Pilot[Any]) -> None:
         await look.settle(pilot)
-        await show(pad, pilot, graph("/my_node", samples=(said("I am awake"),)))
+        await show(opener, pilot, graph("/my_node", samples=(said("I am awake"),)))
         await pilot.press("end")
 
     assert dump_compare(app, terminal_size=look.size, run_before=by_hand)

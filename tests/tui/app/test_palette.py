@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
@@ -12,24 +11,18 @@ from textual.pilot import Pilot
 from textual.widgets import OptionList
 
 from tests.tui.app_runs import opened
-from tests.tui.recorded import RecordedPad
+from tests.tui.recorded import RecordedOpener
+from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.composer.screen import ComposerScreen
+from tui.composer.templates import TemplatesDialog
 from tui.devices.screen import DevicesScreen
 from tui.palette import PLACES, entries
 from tui.screens import SCREENS
 from tui.session.requests import OpenRequest
+from tui.teleop.widget import TeleopPanel
 from tui.topics.screen import TopicsScreen
-
-
-async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
-    """Wait until the screen is so."""
-    for _round in range(300):
-        await pilot.pause(0.02)
-        if condition():
-            return
-    raise AssertionError(f"not so: {condition}")
 
 
 def found(app: DeckApp) -> list[str]:
@@ -39,12 +32,21 @@ def found(app: DeckApp) -> list[str]:
     return [str(option.prompt) for option in app.screen.query_one(OptionList).options]
 
 
+def is_searched(app: DeckApp) -> bool:
+    """Whether the palette has found all that it will find for what is typed."""
+    return all(worker.is_finished for worker in app.workers if worker.node is app.screen)
+
+
 async def look_for(app: DeckApp, pilot: Pilot[Any], words: str, expected: str) -> list[str]:
     """Type words into the palette, wait until something expected is listed; return the list."""
+
+    def listed() -> bool:
+        return is_searched(app) and any(expected in line for line in found(app))
+
     await pilot.press("ctrl+p")
-    await until(pilot, lambda: found(app))
+    await until(lambda: is_searched(app) and found(app), "what is offered at first")
     await pilot.press(*words)
-    await until(pilot, lambda: any(expected in line for line in found(app)))
+    await until(listed, lambda: f"{expected!r} in the palette, but {found(app)}")
     return found(app)
 
 
@@ -52,22 +54,26 @@ async def take(app: DeckApp, pilot: Pilot[Any], name: str) -> None:
     """Choose what is listed under this name."""
     place = next(i for i, line in enumerate(found(app)) if line.splitlines()[0] == name)
     await pilot.press(*["down"] * place, "enter")
-    await until(pilot, lambda: not isinstance(app.screen, CommandPalette))
+    await until(lambda: not isinstance(app.screen, CommandPalette), "the palette gone")
 
 
-def told(app: DeckApp) -> str:
-    """Return what was told in the corner."""
-    return "\n".join(note.message for note in app._notifications)
+async def told(app: DeckApp, words: str) -> None:
+    """Wait until this is told in the corner."""
+
+    def notes() -> str:
+        return "\n".join(note.message for note in app._notifications)
+
+    await until(lambda: words in notes(), lambda: f"{words!r} in the corner, but {notes()!r}")
 
 
 async def test_it_finds_an_action_by_name_and_does_it() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.press("down")
         await look_for(app, pilot, "restart", "Restart all")
         await take(app, pilot, "Restart")
-        await until(pilot, lambda: pad.link.asked)
-        assert pad.link.asked == [("restart", "camera")]
+        await until(lambda: opener.link.asked, "what is asked of the nodes")
+        assert opener.link.asked == [("restart", "camera")]
 
 
 async def test_it_says_when_nothing_is_called_that() -> None:
@@ -107,25 +113,25 @@ async def test_what_only_looks_is_done_where_it_is() -> None:
     async with opened() as (app, pilot):
         await look_for(app, pilot, "templates", "Composer › Templates")
         await take(app, pilot, "Composer › Templates")
-        await until(pilot, lambda: type(app.screen).__name__ == "TemplatesDialog")
+        await until(lambda: isinstance(app.screen, TemplatesDialog), "the templates")
         assert isinstance(app.feed.front, ComposerScreen)
 
 
 async def test_what_acts_is_only_gone_to_and_its_key_is_told() -> None:
-    pad = RecordedPad()
-    async with opened(pad, "topics") as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, "topics") as (app, pilot):
         await look_for(app, pilot, "restart", "Deck › Restart all")
         await take(app, pilot, "Deck › Restart all")
-        await until(pilot, lambda: "Restart all is here: R." in told(app))
+        await told(app, "Restart all is here: R.")
         assert app.screen is app.get_screen("deck")
-        assert pad.link.asked == []
+        assert opener.link.asked == []
 
 
 async def test_what_is_impossible_where_it_is_is_told_there() -> None:
     async with opened() as (app, pilot):
         await look_for(app, pilot, "plot", "Topics › Clear plot")
         await take(app, pilot, "Topics › Clear plot")
-        await until(pilot, lambda: "Clear plot is here, not possible now." in told(app))
+        await told(app, "Clear plot is here, not possible now.")
         assert isinstance(app.screen, TopicsScreen)
 
 
@@ -133,31 +139,29 @@ async def test_what_is_impossible_here_is_found_too() -> None:
     async with opened() as (app, pilot):
         await look_for(app, pilot, "release", "Release (not possible now)")
         await take(app, pilot, "Release (not possible now)")
-        await until(pilot, lambda: "Release the emergency stop: nodes may" in told(app))
+        await told(app, "Release the emergency stop: nodes may")
 
 
 async def test_the_keys_of_a_panel_lead_to_what_opens_it() -> None:
     async with opened(screen="logs") as (app, pilot):
         await look_for(app, pilot, "sharper", "Deck › Drive › Sharper")
         await take(app, pilot, "Deck › Drive › Sharper")
-        await until(pilot, lambda: app.screen.query("TeleopPanel"))
-        await until(pilot, lambda: "Sharper is here: ]." in told(app))
+        await until(lambda: app.screen.query(TeleopPanel), "the panel that drives")
+        await told(app, "Sharper is here: ].")
 
 
 async def test_a_word_of_the_sentence_is_enough() -> None:
     async with opened() as (app, pilot):
         await look_for(app, pilot, "clipboard", "Devices › Copy")
         await take(app, pilot, "Devices › Copy")
-        await until(pilot, lambda: isinstance(app.screen, DevicesScreen))
+        await until(lambda: isinstance(app.screen, DevicesScreen), "the devices")
 
 
 async def test_beside_the_list_of_lessons_it_says_that_a_lesson_comes_first() -> None:
     async with opened(order=OpenRequest()) as (app, pilot):
         await look_for(app, pilot, "plot", "Topics › Plot")
         await take(app, pilot, "Topics › Plot")
-        await until(
-            pilot, lambda: "Plot is on the screen Topics: open a lesson first." in told(app)
-        )
+        await told(app, "Plot is on the screen Topics: open a lesson first.")
 
 
 async def test_the_keys_of_a_recording_are_left_out_beside_a_robot() -> None:

@@ -103,9 +103,11 @@ def test_what_a_parameter_is_for() -> None:
             ParameterRow("a", "integer", 1, "", "0 .. 9 rad/s", True, 0, 9),
             "только чтение, 0…9 рад/с",
         ),
+        (ParameterRow("a", "integer", 1, "", "0 .. 2147483648", False, 0, 2**31), "0…2147483648"),
         (ParameterRow("a", "double", 1.0, "", "0 .. 1 furlong", False, 0.0, 1.0), "0…1 furlong"),
         (ParameterRow("a", "double", 1.0, "", "0 .. 2 s", False, 0.0, 1.0), "0…1, 0 .. 2 s"),
-        (ParameterRow("a", "string", "", "", "text, may be empty"), "текст, можно пустой"),
+        (ParameterRow("a", "double", 1.0, "", "a .. b s", False, 0.0, 1.0), "0…1, a .. b s"),
+        (ParameterRow("a", "string", "", "", "text, may be empty"), "строка, может быть пустой"),
         (ParameterRow("a", "string", "", "", "as you like"), "as you like"),
     ],
 )

@@ -22,7 +22,7 @@ from tests.tui.recorded import (
     NOW_S,
     SESSION,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     RecordedSession,
     lesson_update,
     line,
@@ -52,7 +52,23 @@ if TYPE_CHECKING:
     from textual.pilot import Pilot
 
 
+class Surroundings:
+    """Notes what it is to remember."""
+
+    terminal_fd = 1
+
+    def __init__(self) -> None:
+        self.kept: dict[str, str] = {}
+
+    def arrive(self, app: DeckApp) -> None:
+        del app
+
+    def remember(self, **values: str) -> None:
+        self.kept.update(values)
+
+
 ATTACHED = replace(SESSION, foreground=False, started_by=Who(4000, "ann", "pts/2", "10.0.0.7"))
+ATTACH = OpenRequest(attach="09-brain")
 STRAY = Stray(4711, NOW_S - 600, "camera", "python -m nodes.mock_camera", "20251231-1")
 
 
@@ -114,19 +130,31 @@ async def test_the_screens_of_a_session_that_is_closed_are_not_kept_in_memory() 
 
 
 async def test_one_that_is_opened_while_another_is_closed_waits_for_that() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         app.sessions.close()
         app.sessions.open(app.sessions.request)
         await app.workers.wait_for_complete([w for w in app.workers if w.group == "leaving"])
         await settle(pilot)
         assert isinstance(app.screen, LessonDeck)
-        assert pad.link.asked == [("shutdown",), ("aclose",)]
+        assert opener.link.asked == [("shutdown",), ("aclose",)]
         assert app.feed.session is SESSION
 
 
+@pytest.mark.parametrize(("order", "lesson"), [(LESSON_9, "09-brain"), (ATTACH, None)])
+async def test_the_lesson_that_was_started_is_remembered_one_attached_to_is_not(
+    order: OpenRequest, lesson: str | None
+) -> None:
+    around = Surroundings()
+    app = DeckApp(RecordedOpener(), order, "deck", surroundings=around)
+    async with app.run_test() as pilot:
+        await settle(pilot)
+        assert app.feed.session is SESSION
+        assert around.kept.get("lesson") == lesson
+
+
 async def test_a_lesson_is_started_before_its_screen_is_drawn() -> None:
-    class Watched(RecordedPad):
+    class Watched(RecordedOpener):
         async def open(self, order: OpenRequest) -> SessionLink:
             panels.append(len(app.screen.query(NodesTable)))
             return await super().open(order)
@@ -175,10 +203,10 @@ async def test_a_screen_opened_late_knows_the_log_and_the_nodes_from_the_beginni
 
 
 async def test_a_screen_in_the_background_misses_no_line() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.press("4", "1")
-        pad.link.say(LogEvent((line("camera", 4, "while away", Severity.WARN),)))
+        opener.link.say(LogEvent((line("camera", 4, "while away", Severity.WARN),)))
         await pilot.pause()
         await pilot.press("4")
         await pilot.pause()
@@ -205,21 +233,21 @@ async def test_screens_are_switched_by_a_click_on_the_title() -> None:
 
 
 async def test_leaving_stops_the_nodes_that_this_screen_has_started() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.press("q")
         await pilot.pause()
-        assert pad.link.asked == [("shutdown",), ("aclose",)]
-        assert pad.graph.stopped
+        assert opener.link.asked == [("shutdown",), ("aclose",)]
+        assert opener.graph.stopped
         assert app.return_code == 0
 
 
 async def test_leaving_an_attached_session_leaves_it_running() -> None:
-    pad = RecordedPad(RecordedSession(ATTACHED))
-    async with opened(pad) as (_app, pilot):
+    opener = RecordedOpener(RecordedSession(ATTACHED))
+    async with opened(opener) as (_app, pilot):
         await pilot.press("ctrl+q")
         await pilot.pause()
-        assert pad.link.asked == [("aclose",)]
+        assert opener.link.asked == [("aclose",)]
 
 
 def footer(app: DeckApp) -> str:
@@ -227,26 +255,26 @@ def footer(app: DeckApp) -> str:
     return str(app.screen.query_one(KeyBar).render())
 
 
-def of_another_screen() -> RecordedPad:
+def of_another_screen() -> RecordedOpener:
     """A session that a screen elsewhere has started in its own foreground."""
-    pad = RecordedPad(RecordedSession(replace(ATTACHED, foreground=True)))
-    pad.link.own = False
-    return pad
+    opener = RecordedOpener(RecordedSession(replace(ATTACHED, foreground=True)))
+    opener.link.own = False
+    return opener
 
 
 async def test_leaving_does_not_end_what_another_screen_has_started() -> None:
-    pad = of_another_screen()
-    async with opened(pad) as (app, pilot):
+    opener = of_another_screen()
+    async with opened(opener) as (app, pilot):
         assert "q Detach" in footer(app)
         await pilot.press("q", "q")
         await pilot.pause()
-        assert pad.link.asked == [("aclose",)]
+        assert opener.link.asked == [("aclose",)]
         assert app.sessions.parting_words.startswith("left as it is: 09-brain in domain 42")
 
 
 async def test_what_is_left_running_is_named_with_what_ends_it() -> None:
-    pad = RecordedPad(RecordedSession(ATTACHED))
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener(RecordedSession(ATTACHED))
+    async with opened(opener) as (app, pilot):
         await pilot.press("q")
         await pilot.pause()
         assert app.sessions.parting_words == (
@@ -264,27 +292,27 @@ async def test_ones_own_session_is_quit_and_cannot_be_ended_as_anothers() -> Non
 
 
 async def test_what_another_screen_has_started_is_ended_only_if_asked_and_says_whose() -> None:
-    pad = of_another_screen()
-    async with opened(pad) as (app, pilot):
+    opener = of_another_screen()
+    async with opened(opener) as (app, pilot):
         await pilot.press("shift+f8")
         await settle(pilot)
         assert isinstance(app.screen, EndSessionScreen)
         assert "ann on pts/2 from 10.0.0.7 (pid 4000)" in str(app.screen.words())
         await pilot.press("escape")
         await settle(pilot)
-        assert pad.link.asked == []
+        assert opener.link.asked == []
         await pilot.press("shift+f8")
         await settle(pilot)
         await pilot.press("enter")
         await settle(pilot)
-        assert pad.link.asked == [("shutdown",), ("aclose",)]
+        assert opener.link.asked == [("shutdown",), ("aclose",)]
         assert isinstance(app.screen, PickerScreen)
 
 
 async def test_a_session_that_is_ended_elsewhere_says_who_did() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.link.say(ClosedEvent(say("ended from elsewhere: {who}", who="bob on pts/3 (pid 7)")))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(ClosedEvent(say("ended from elsewhere: {who}", who="bob on pts/3 (pid 7)")))
         await pilot.pause()
         await pilot.pause()
         messages = [note.message for note in app._notifications]
@@ -292,26 +320,26 @@ async def test_a_session_that_is_ended_elsewhere_says_who_did() -> None:
 
 
 async def test_while_nodes_are_stopping_it_says_which_and_q_again_does_not_wait() -> None:
-    pad = RecordedPad()
-    pad.link.hold_shutdown = True
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    opener.link.hold_shutdown = True
+    async with opened(opener) as (app, pilot):
         await pilot.press("q")
         await pilot.pause()
         assert isinstance(app.screen, StoppingScreen)
         assert "safety_stop" in str(app.screen.words())
         await pilot.press("q")
         await pilot.pause()
-        assert ("shutdown", "now") in pad.link.asked
+        assert ("shutdown", "now") in opener.link.asked
 
 
 async def test_closing_a_session_goes_back_to_the_lessons_and_another_can_be_opened() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.press("4", "f8")
         await settle(pilot)
         assert isinstance(app.screen, PickerScreen)
-        assert pad.link.asked == [("shutdown",), ("aclose",)]
-        pad.link = RecordedSession()
+        assert opener.link.asked == [("shutdown",), ("aclose",)]
+        opener.link = RecordedSession()
         await pilot.press("enter")
         await settle(pilot)
         assert app.feed.session is SESSION
@@ -319,13 +347,13 @@ async def test_closing_a_session_goes_back_to_the_lessons_and_another_can_be_ope
 
 
 async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.link.say(ClosedEvent(say("the supervisor is gone")))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(ClosedEvent(say("the supervisor is gone")))
         await pilot.pause()
         await pilot.pause()
         assert title.states(app)[0] == "the supervisor is gone"
-        assert pad.graph.stopped
+        assert opener.graph.stopped
         await pilot.press("4")
         await pilot.pause()
         assert isinstance(app.screen, LogsScreen)
@@ -336,14 +364,14 @@ async def test_a_session_that_ends_says_why_and_its_log_can_still_be_read() -> N
 
 
 async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_alive() -> None:
-    pad = RecordedPad()
-    async with opened(pad, size=(200, 60)) as (app, pilot):
-        pad.graph.show(lesson_update())
-        pad.link.set_state("camera", NodeState.FAILED, signal="SIGSEGV", pid=None)
+    opener = RecordedOpener()
+    async with opened(opener, size=(200, 60)) as (app, pilot):
+        opener.graph.show(lesson_update())
+        opener.link.set_state("camera", NodeState.FAILED, signal="SIGSEGV", pid=None)
         await settle(pilot)
         drawings = list(app.screen.query(WheelsPanel)) + list(app.screen.query(HeadPanel))
         assert [drawing.stale for drawing in drawings] == [False, False]
-        pad.link.say(ClosedEvent(say("the supervisor is gone")))
+        opener.link.say(ClosedEvent(say("the supervisor is gone")))
         await settle(pilot)
         table = app.screen.query_one(NodesTable)
         rows = [table.render_line(y).text for y in range(1, 9)]
@@ -369,7 +397,7 @@ async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_
 async def test_what_was_named_and_cannot_be_opened_ends_the_program_with_words(
     error: Exception, code: int
 ) -> None:
-    app = DeckApp(RecordedPad(refusal=error), LESSON_9)
+    app = DeckApp(RecordedOpener(refusal=error), LESSON_9)
     async with app.run_test() as pilot:
         await pilot.pause()
         await pilot.pause()
@@ -378,38 +406,40 @@ async def test_what_was_named_and_cannot_be_opened_ends_the_program_with_words(
 
 
 async def test_what_an_earlier_run_left_behind_is_offered_for_stopping() -> None:
-    pad = RecordedPad()
-    pad.link.say(StraysEvent((STRAY,)))
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    opener.link.say(StraysEvent((STRAY,)))
+    async with opened(opener) as (app, pilot):
         await pilot.pause()
         assert isinstance(app.screen, StraysScreen)
         assert "4711" in str(app.screen.words())
         await pilot.press("enter")
         await pilot.pause()
-        assert pad.link.asked == [("stop_strays", "camera")]
+        assert opener.link.asked == [("stop_strays", "camera")]
 
 
 async def test_what_is_left_behind_may_be_let_be_and_is_asked_about_once() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.link.say(StraysEvent((STRAY,)))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.say(StraysEvent((STRAY,)))
         await pilot.pause()
         await pilot.pause()
         asking = app.screen
         assert isinstance(asking, StraysScreen)
         await pilot.press("escape")
-        pad.link.say(StraysEvent((STRAY,)))
+        opener.link.say(StraysEvent((STRAY,)))
         await pilot.pause()
         await pilot.pause()
         assert not isinstance(app.screen, StraysScreen)
-        assert pad.link.asked == []
+        assert opener.link.asked == []
 
 
 async def test_a_graph_that_cannot_be_observed_says_so_and_the_rest_works() -> None:
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(error="ROS cannot be used: no rclpy")))
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener(
+        graph=RecordedGraph(lesson_update(error="ROS cannot be used: no rclpy"))
+    )
+    async with opened(opener) as (app, pilot):
         await pilot.pause()
         assert any("no rclpy" in note.message for note in app._notifications)
         await pilot.press("x")
         await pilot.pause()
-        assert pad.link.asked == [("stop", "sonar_front")]
+        assert opener.link.asked == [("stop", "sonar_front")]

@@ -11,7 +11,7 @@ from textual.color import Color
 from graph.data import EndpointInfo, GraphUpdate
 from launcher.status import NodeState, NodeStatus
 from tests.tui.app_runs import opened
-from tests.tui.recorded import NODES, TOPICS, RecordedGraph, RecordedPad, lesson_update, topic
+from tests.tui.recorded import NODES, TOPICS, RecordedGraph, RecordedOpener, lesson_update, topic
 from tests.tui.snapshots import settle
 from tui.frame.title_bar import TitleBar
 from tui.session.strangers import NAMELESS, Strangers
@@ -108,9 +108,9 @@ def test_a_name_is_waited_for() -> None:
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
 @pytest.mark.parametrize("screen", ["deck", "logs"])
 async def test_it_stands_in_the_title_in_red(size: tuple[int, int], screen: str) -> None:
-    pad = RecordedPad()
-    async with opened(pad, screen, size) as (app, pilot):
-        pad.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
+    opener = RecordedOpener()
+    async with opened(opener, screen, size) as (app, pilot):
+        opener.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
         await settle(pilot)
         bar = app.screen.query_one(TitleBar)
         assert "Foreign commands on /wheel_commands: /evil" in bar.text
@@ -120,29 +120,29 @@ async def test_it_stands_in_the_title_in_red(size: tuple[int, int], screen: str)
         await settle(pilot)
         assert "EMERGENCY STOP" in bar.text
         await pilot.press("ctrl+r")
-        pad.graph.show(graph(wheel_commands=(DIFFERENTIAL,)))
+        opener.graph.show(graph(wheel_commands=(DIFFERENTIAL,)))
         await settle(pilot)
         assert "/evil" not in bar.text
 
 
 async def test_another_session_begins_without_the_strangers_of_the_one_before() -> None:
-    pad = RecordedPad(sessions=[])
-    async with opened(pad) as (app, pilot):
-        pad.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
+    opener = RecordedOpener(sessions=[])
+    async with opened(opener) as (app, pilot):
+        opener.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
         await settle(pilot)
         assert app.strangers.now
         await pilot.press("f8")
         await settle(pilot)
-        pad.graph = RecordedGraph()
+        opener.graph = RecordedGraph()
         app.sessions.open(app.sessions.request)
         await settle(pilot)
         assert not app.strangers.now
 
 
 async def test_a_name_that_would_write_the_terminal_is_harmless() -> None:
-    pad = RecordedPad()
-    async with opened(pad, size=(120, 40)) as (app, pilot):
-        pad.graph.show(graph(drive_safe=(GATE, "/e\x1b]52;c;eA==\x07vil")))
+    opener = RecordedOpener()
+    async with opened(opener, size=(120, 40)) as (app, pilot):
+        opener.graph.show(graph(drive_safe=(GATE, "/e\x1b]52;c;eA==\x07vil")))
         await settle(pilot)
         text = app.screen.query_one(TitleBar).text
         assert "vil" in text

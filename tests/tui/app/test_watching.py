@@ -15,7 +15,7 @@ from tests.tui.recorded import (
     NOW_S,
     TOPICS,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     lesson_samples,
     lesson_update,
     sample,
@@ -57,7 +57,7 @@ def robot() -> GraphUpdate:
     return lesson_update(samples={**lesson_samples(), "/rosout": lines})
 
 
-class WatchingPad(RecordedPad):
+class WatchingOpener(RecordedOpener):
     """Opens a robot that is only looked at."""
 
     async def open(self, order: OpenRequest) -> SessionLink:
@@ -65,22 +65,22 @@ class WatchingPad(RecordedPad):
         return watched(42)
 
 
-def pad(update: GraphUpdate) -> RecordedPad:
-    return WatchingPad(graph=RecordedGraph(update))
+def opener_of(update: GraphUpdate) -> RecordedOpener:
+    return WatchingOpener(graph=RecordedGraph(update))
 
 
-def app_of(look: Look, watching: RecordedPad) -> DeckApp:
+def app_of(look: Look, watching: RecordedOpener) -> DeckApp:
     app = look.app("deck", watching)
     return DeckApp(watching, OpenRequest(watch=WatchRequest(42)), app._first_screen)
 
 
 @asynccontextmanager
 async def watching(update: GraphUpdate) -> AsyncIterator[tuple[Pilot[Any], RecordedGraph]]:
-    found = pad(update)
-    app = app_of(Look((120, 40), "en"), found)
+    opener = opener_of(update)
+    app = app_of(Look((120, 40), "en"), opener)
     async with app.run_test(size=(120, 40)) as pilot:
         await settle(pilot)
-        yield pilot, found.graph
+        yield pilot, opener.graph
 
 
 def deck_of(pilot: Pilot[Any]) -> LessonDeck:
@@ -103,12 +103,12 @@ async def test_title_and_words_count_the_same_nodes_whenever_they_come() -> None
 
         def counts() -> tuple[str, str]:
             """In the title, and beside it."""
-            found = re.search(r"(\d+) nodes?", title.states(deck_of(pilot).deck)[0])
+            counted = re.search(r"(\d+) nodes?", title.states(deck_of(pilot).deck)[0])
             shown = "".join(deck_of(pilot).query_one(TitleBar).render_line(0).text)
-            assert found is not None
-            assert found[0] in shown
+            assert counted is not None
+            assert counted[0] in shown
             told = re.search(r"(\d+ nodes?) run", words_of(pilot))
-            return found[0], told[1] if told else ""
+            return counted[0], told[1] if told else ""
 
         graph.show(lesson_update(nodes=tuple(NodeRow(f"/{name}") for name in ("a", "b"))))
         await settle(pilot)
@@ -182,13 +182,13 @@ async def test_the_emergency_stop_does_not_claim_to_stop_the_nodes_of_others() -
 
 
 async def test_the_picker_s_first_row_looks_at_the_domain() -> None:
-    found = pad(robot())
-    app = DeckApp(found, OpenRequest())
+    opener = opener_of(robot())
+    app = DeckApp(opener, OpenRequest())
     async with app.run_test(size=(120, 40)) as pilot:
         await settle(pilot)
         await pilot.press("home", "enter")
         await settle(pilot)
-        assert found.orders[0].watch == WatchRequest(42)
+        assert opener.orders[0].watch == WatchRequest(42)
         assert app.feed.session is not None
         assert app.feed.session.run_id == WATCH
 
@@ -196,14 +196,14 @@ async def test_the_picker_s_first_row_looks_at_the_domain() -> None:
 @one_look
 def test_a_robot_of_others(look: Look, dump_compare: SnapCompare) -> None:
     """Who runs, the panels for what is there, and the log as /rosout tells it."""
-    app = app_of(look, pad(robot()))
+    app = app_of(look, opener_of(robot()))
     assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
 @one_look
 def test_nobody_there(look: Look, dump_compare: SnapCompare) -> None:
     """An empty domain: says so in words."""
-    app = app_of(look, pad(NOTHING))
+    app = app_of(look, opener_of(NOTHING))
     assert dump_compare(app, terminal_size=look.size, run_before=look.settle)
 
 

@@ -12,8 +12,9 @@ from textual.widgets import OptionList, Static
 
 from graph.data import EndpointInfo, Sample, TopicRow
 from tests.tui.composer.test_outcome import drive, result
-from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
+from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.snapshots import Look, settle
+from tests.waiting import until
 from tui import clock
 from tui.composer.screen import ComposerScreen
 from tui.composer.sent import KEPT, Sent, sent_path
@@ -39,7 +40,7 @@ PARSER = TopicRow(
 )
 
 
-class Room:
+class Stage:
     """The composer over a recorded graph, under a pilot."""
 
     def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
@@ -82,201 +83,208 @@ def graph() -> RecordedGraph:
 
 
 @pytest.fixture
-async def room(graph: RecordedGraph) -> Any:
-    app = HOME.app("composer", RecordedPad(graph=graph))
+async def stage(graph: RecordedGraph) -> Any:
+    app = HOME.app("composer", RecordedOpener(graph=graph))
     async with app.run_test(size=HOME.size) as pilot:
         await settle(pilot)
-        yield Room(app, pilot, graph)
+        yield Stage(app, pilot, graph)
 
 
-async def test_it_opens_with_a_valid_example_and_says_who_listens(room: Room) -> None:
-    assert room.screen.editor.text == TEMPLATES[0].text()
-    assert room.screen.problems == ()
+async def test_it_opens_with_a_valid_example_and_says_who_listens(stage: Stage) -> None:
+    assert stage.screen.editor.text == TEMPLATES[0].text()
+    assert stage.screen.problems == ()
     assert (
-        str(room.screen.query_one("#composer-to", Static).content) == "/llm_raw_json → llm_parser"
+        str(stage.screen.query_one("#composer-to", Static).content) == "/llm_raw_json → llm_parser"
     )
-    assert room.graph.prepared[-1][:2] == ("/llm_raw_json", "std_msgs/msg/String")
+    assert stage.graph.prepared[-1][:2] == ("/llm_raw_json", "std_msgs/msg/String")
 
 
-async def test_sending_publishes_exactly_what_stands_there(room: Room) -> None:
+async def test_sending_publishes_exactly_what_stands_there(stage: Stage) -> None:
     text = VALID.replace("go", "вперёд 🤖 \\u0000")
-    await room.write(text)
-    await room.pilot.press("ctrl+s")
-    await room.pilot.pause()
-    assert room.graph.published == [("/llm_raw_json", "std_msgs/msg/String", {"data": text}, False)]
-    assert room.told() == ["· /llm_result: waiting for an answer"]
+    await stage.write(text)
+    await stage.pilot.press("ctrl+s")
+    await stage.pilot.pause()
+    assert stage.graph.published == [
+        ("/llm_raw_json", "std_msgs/msg/String", {"data": text}, False)
+    ]
+    assert stage.told() == ["· /llm_result: waiting for an answer"]
 
 
-async def test_what_came_of_it_is_told_with_its_delay(room: Room) -> None:
-    await room.write(VALID)
-    await room.pilot.press("ctrl+s")
-    await room.show(result(event="accepted", commands=1, thought="go"), after_s=0.012)
-    await room.show(drive("/drive", 0.1, 0.0), after_s=0.015)
-    assert room.told() == [
+async def test_what_came_of_it_is_told_with_its_delay(stage: Stage) -> None:
+    await stage.write(VALID)
+    await stage.pilot.press("ctrl+s")
+    await stage.show(result(event="accepted", commands=1, thought="go"), after_s=0.012)
+    await stage.show(drive("/drive", 0.1, 0.0), after_s=0.015)
+    assert stage.told() == [
         "✓ /llm_result: accepted: 1 command “go”",
         "→ /drive: 0.10 m/s, 0.00 rad, straight on",
     ]
-    assert [round(one.delay_s or 0, 3) for one in room.screen.outcome.entries] == [0.012, 0.015]
+    assert [round(one.delay_s or 0, 3) for one in stage.screen.outcome.entries] == [0.012, 0.015]
 
 
-async def test_the_trail_is_followed_also_while_another_screen_is_in_front(room: Room) -> None:
-    assert room.graph.followed >= FOLLOWED
-    await room.write(VALID)
-    await room.pilot.press("ctrl+s", "f5")
-    await settle(room.pilot)
-    assert room.graph.followed >= FOLLOWED
-    await room.show(result(event="accepted", commands=1, thought=""))
-    await room.pilot.press("f4")
-    await settle(room.pilot)
-    assert room.told()[0].startswith("✓ /llm_result: accepted")
+async def test_the_trail_is_followed_also_while_another_screen_is_in_front(stage: Stage) -> None:
+    assert stage.graph.followed >= FOLLOWED
+    await stage.write(VALID)
+    await stage.pilot.press("ctrl+s", "f5")
+    await settle(stage.pilot)
+    assert stage.graph.followed >= FOLLOWED
+    await stage.show(result(event="accepted", commands=1, thought=""))
+    await stage.pilot.press("f4")
+    await settle(stage.pilot)
+    assert stage.told()[0].startswith("✓ /llm_result: accepted")
 
 
-async def test_without_a_message_nothing_is_followed_behind_another_screen(room: Room) -> None:
-    await room.pilot.press("f5")
-    await settle(room.pilot)
-    assert not room.graph.followed & {"/drive", "/wheel_commands"}
+async def test_without_a_message_nothing_is_followed_behind_another_screen(stage: Stage) -> None:
+    await stage.pilot.press("f5")
+    await settle(stage.pilot)
+    assert not stage.graph.followed & {"/drive", "/wheel_commands"}
 
 
 async def test_silence_is_told_after_three_seconds(
-    room: Room, monkeypatch: pytest.MonkeyPatch
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    await room.write(VALID)
-    await room.pilot.press("ctrl+s")
+    await stage.write(VALID)
+    await stage.pilot.press("ctrl+s")
     later = clock.now() + 3.1
     monkeypatch.setattr(clock, "now", lambda: later)
-    await room.show()
-    assert room.told() == [
+    await stage.show()
+    assert stage.told() == [
         "✗ /llm_result: no answer within 3 s: is llm_parser running? Listening: llm_parser"
     ]
 
 
-async def test_what_is_wrong_is_marked_listed_and_not_sent(room: Room) -> None:
-    await room.write(TOO_FAST)
-    assert room.screen.editor.render_line(0).text.startswith("1✗")
-    listed = room.screen.verdict.query_one(OptionList)
+async def test_what_is_wrong_is_marked_listed_and_not_sent(stage: Stage) -> None:
+    await stage.write(TOO_FAST)
+    assert stage.screen.editor.render_line(0).text.startswith("1✗")
+    listed = stage.screen.verdict.query_one(OptionList)
     assert str(listed.get_option_at_index(0).prompt) == (
         "line 1, column 61: commands[0].speed: must be from -0.5 to 0.5 m/s, not 9"
     )
-    await room.pilot.press("ctrl+s")
-    await room.pilot.pause()
-    assert room.graph.published == []
-    assert room.screen.editor.cursor_location == (0, 60)
+    await stage.pilot.press("ctrl+s")
+    await stage.pilot.pause()
+    assert stage.graph.published == []
+    assert stage.screen.editor.cursor_location == (0, 60)
 
 
-async def test_what_is_wrong_is_sent_by_a_key_of_its_own(room: Room) -> None:
-    await room.write(TOO_FAST)
-    await room.pilot.press("ctrl+o")
+async def test_what_is_wrong_is_sent_by_a_key_of_its_own(stage: Stage) -> None:
+    await stage.write(TOO_FAST)
+    await stage.pilot.press("ctrl+o")
     problem = {"field": "commands[0].speed", "line": 1, "column": 59, "message": "too fast"}
-    await room.show(result(event="refused", problems=[problem]))
-    assert room.graph.published[0][2] == {"data": TOO_FAST}
-    assert room.told() == [
+    await stage.show(result(event="refused", problems=[problem]))
+    assert stage.graph.published[0][2] == {"data": TOO_FAST}
+    assert stage.told() == [
         "✗ /llm_result: refused: nothing of it is executed",
         "✗ /llm_result: line 1, column 59: commands[0].speed: too fast",
     ]
 
 
-async def test_that_key_does_nothing_while_all_is_well(room: Room) -> None:
-    await room.write(VALID)
-    await room.pilot.press("ctrl+o")
-    await room.pilot.pause()
-    assert room.graph.published == []
+async def test_that_key_does_nothing_while_all_is_well(stage: Stage) -> None:
+    await stage.write(VALID)
+    await stage.pilot.press("ctrl+o")
+    await stage.pilot.pause()
+    assert stage.graph.published == []
 
 
-async def test_typing_is_checked_by_itself(room: Room) -> None:
-    room.screen.editor.replace_all("")
-    await room.pilot.press("{")
-    for _round in range(200):
-        await room.pilot.pause(0.02)
-        if room.screen.problems:
-            break
-    assert "name in double quotes is expected" in room.screen.problems[0].message
+async def test_typing_is_checked_by_itself(stage: Stage) -> None:
+    stage.screen.editor.replace_all("")
+    await stage.pilot.press("{")
+    await until(lambda: stage.screen.problems, "what is wrong with it")
+    assert "name in double quotes is expected" in stage.screen.problems[0].message
 
 
-async def test_a_key_walks_from_problem_to_problem(room: Room) -> None:
-    await room.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
+async def test_a_key_walks_from_problem_to_problem(stage: Stage) -> None:
+    await stage.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
     seen = []
     for _press in range(3):
-        await room.pilot.press("ctrl+n")
-        seen.append(room.screen.editor.cursor_location)
+        await stage.pilot.press("ctrl+n")
+        seen.append(stage.screen.editor.cursor_location)
     assert seen == [(0, 12), (2, 12), (0, 12)]
 
 
-async def test_enter_in_the_list_of_problems_goes_to_the_place(room: Room) -> None:
-    await room.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
-    room.screen.verdict.query_one(OptionList).focus()
-    await room.pilot.press("end", "enter")
-    await room.pilot.pause()
-    assert room.screen.editor.cursor_location == (2, 12)
-    assert room.screen.editor.has_focus
+async def test_enter_in_the_list_of_problems_goes_to_the_place(stage: Stage) -> None:
+    await stage.write('{"thought": 1,\n "commands": [\n {"action": "jump"}]}')
+    stage.screen.verdict.query_one(OptionList).focus()
+    await stage.pilot.press("end", "enter")
+    await stage.pilot.pause()
+    assert stage.screen.editor.cursor_location == (2, 12)
+    assert stage.screen.editor.has_focus
 
 
-async def test_a_graph_that_refuses_is_told(room: Room) -> None:
-    room.graph.publish_error = RuntimeError("no publisher for you \x1b[2J")
-    await room.write(VALID)
-    await room.pilot.press("ctrl+s")
-    await room.pilot.pause()
-    assert room.told() == ["✗ /llm_raw_json: not sent: no publisher for you ␛[2J"]
+async def test_a_graph_that_refuses_is_told(stage: Stage) -> None:
+    stage.graph.publish_error = RuntimeError("no publisher for you \x1b[2J")
+    await stage.write(VALID)
+    await stage.pilot.press("ctrl+s")
+    await stage.pilot.pause()
+    assert stage.told() == ["✗ /llm_raw_json: not sent: no publisher for you ␛[2J"]
 
 
 async def test_a_graph_that_never_answers_does_not_hold_the_keys(
-    room: Room, monkeypatch: pytest.MonkeyPatch
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(room.graph, "publish", lambda *_args, **_more: Future())
-    await room.write(VALID)
-    await room.pilot.press("ctrl+s")
-    await room.pilot.press("x")
-    assert room.screen.editor.text == "x" + VALID
+    monkeypatch.setattr(stage.graph, "publish", lambda *_args, **_more: Future())
+    await stage.write(VALID)
+    await stage.pilot.press("ctrl+s")
+    await stage.pilot.press("x")
+    assert stage.screen.editor.text == "x" + VALID
 
 
-async def test_space_types_a_space_and_ctrl_x_stops_the_robot(room: Room) -> None:
-    await room.write("")
-    room.screen.editor.focus()
-    await room.pilot.press("a", "space", "1", "q")
-    assert room.screen.editor.text == "a 1q"
-    before = room.app.emergency.state
+async def test_space_types_a_space_and_ctrl_x_stops_the_robot(stage: Stage) -> None:
+    await stage.write("")
+    stage.screen.editor.focus()
+    await stage.pilot.press("a", "space", "1", "q")
+    assert stage.screen.editor.text == "a 1q"
+    before = stage.app.emergency.state
     assert not before.engaged
-    await room.pilot.press("ctrl+x")
-    await room.pilot.pause()
-    assert room.app.emergency.state.engaged
-    assert room.screen.editor.text == "a 1q"
+    await stage.pilot.press("ctrl+x")
+    await stage.pilot.pause()
+    assert stage.app.emergency.state.engaged
+    assert stage.screen.editor.text == "a 1q"
 
 
-async def test_enter_is_a_new_line_and_sends_nothing(room: Room) -> None:
-    await room.write("")
-    room.screen.editor.focus()
-    await room.pilot.press("enter")
-    assert room.screen.editor.text == "\n"
-    assert room.graph.published == []
+async def test_enter_is_a_new_line_and_sends_nothing(stage: Stage) -> None:
+    await stage.write("")
+    stage.screen.editor.focus()
+    await stage.pilot.press("enter")
+    assert stage.screen.editor.text == "\n"
+    assert stage.graph.published == []
 
 
-async def test_a_template_takes_the_place_of_the_text(room: Room) -> None:
-    await room.pilot.press("ctrl+t")
-    await room.pilot.pause()
-    assert isinstance(room.app.screen, TemplatesDialog)
-    await room.pilot.press("down", "enter")
-    await room.pilot.pause()
-    assert room.screen.editor.text == TEMPLATES[1].text()
-    await room.pilot.press("ctrl+t", "escape")
-    await room.pilot.pause()
-    assert room.screen.editor.text == TEMPLATES[1].text()
+async def test_a_template_takes_the_place_of_the_text(stage: Stage) -> None:
+    await stage.pilot.press("ctrl+t")
+    await stage.pilot.pause()
+    assert isinstance(stage.app.screen, TemplatesDialog)
+    await stage.pilot.press("down", "enter")
+    await stage.pilot.pause()
+    assert stage.screen.editor.text == TEMPLATES[1].text()
+    await stage.pilot.press("ctrl+t", "escape")
+    await stage.pilot.pause()
+    assert stage.screen.editor.text == TEMPLATES[1].text()
 
 
-async def test_what_was_sent_is_recalled_and_the_draft_comes_back(room: Room) -> None:
+def recalled(sent: Sent) -> list[str]:
+    """Walk back through all of it; return it from the oldest to the newest."""
+    texts: list[str] = []
+    while (text := sent.older("")) is not None:
+        texts.append(text)
+    return texts[::-1]
+
+
+async def test_what_was_sent_is_recalled_and_the_draft_comes_back(stage: Stage) -> None:
     for text in (VALID, TOO_FAST):
-        await room.write(text)
-        await room.pilot.press("ctrl+o" if text == TOO_FAST else "ctrl+s")
-    await room.write("draft")
+        await stage.write(text)
+        await stage.pilot.press("ctrl+o" if text == TOO_FAST else "ctrl+s")
+    await stage.write("draft")
     seen = []
     for key in ("alt+up", "alt+up", "alt+up", "alt+down", "alt+down", "alt+down"):
-        await room.pilot.press(key)
-        seen.append(room.screen.editor.text)
+        await stage.pilot.press(key)
+        seen.append(stage.screen.editor.text)
     assert seen == [TOO_FAST, VALID, VALID, TOO_FAST, "draft", "draft"]
-    assert Sent(sent_path()).texts == (VALID, TOO_FAST)
+    assert recalled(Sent(sent_path())) == [VALID, TOO_FAST]
 
 
 async def test_without_a_lesson_nothing_is_sent() -> None:
     graph = RecordedGraph()
-    app = HOME.app("composer", RecordedPad(graph=graph))
+    app = HOME.app("composer", RecordedOpener(graph=graph))
     async with app.run_test(size=HOME.size) as pilot:
         await settle(pilot)
         await app.feed.disconnect("it has ended")
@@ -285,20 +293,20 @@ async def test_without_a_lesson_nothing_is_sent() -> None:
         assert graph.published == []
 
 
-async def test_any_size_is_survived(room: Room) -> None:
-    await room.write(TOO_FAST)
+async def test_any_size_is_survived(stage: Stage) -> None:
+    await stage.write(TOO_FAST)
     for size in ((1, 1), (10, 4), (30, 8), (59, 19)):
-        await room.pilot.resize_terminal(*size)
-        await room.show(drive("/drive", 0.1, 0.0))
+        await stage.pilot.resize_terminal(*size)
+        await stage.show(drive("/drive", 0.1, 0.0))
 
 
 def test_a_broken_history_is_as_good_as_none(tmp_path: Path) -> None:
     path = tmp_path / "composer.json"
     for text in ("", "{", '{"a": 1}', "[1, null]", "[" * 100_000, "\x00"):
         path.write_text(text, encoding="utf-8")
-        assert Sent(path).texts == ()
+        assert recalled(Sent(path)) == []
     path.write_bytes(b"\xff\xfe")
-    assert Sent(path).texts == ()
+    assert recalled(Sent(path)) == []
 
 
 def test_the_history_is_bounded_and_knows_no_doubles(tmp_path: Path) -> None:
@@ -307,13 +315,14 @@ def test_the_history_is_bounded_and_knows_no_doubles(tmp_path: Path) -> None:
     for number in range(KEPT + 10):
         sent.add(str(number))
     sent.add("20")
-    assert len(sent.texts) == KEPT
-    assert sent.texts[-1] == "20"
-    assert json.loads(path.read_text(encoding="utf-8")) == list(sent.texts)
+    texts = recalled(sent)
+    assert len(texts) == KEPT
+    assert texts[-1] == "20"
+    assert json.loads(path.read_text(encoding="utf-8")) == texts
 
 
 def test_a_history_that_cannot_be_written_is_passed_over(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     sent = Sent(tmp_path / "file" / "composer.json")
     sent.add("text")
-    assert sent.texts == ("text",)
+    assert recalled(sent) == ["text"]

@@ -12,7 +12,7 @@ from textual.pilot import Pilot
 
 from tests.tui.composer.test_composer import PARSER
 from tests.tui.composer.test_outcome import drive, head, result, safety, wheels
-from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_update
+from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from tui import clock
 from tui.app import DeckApp
@@ -36,10 +36,10 @@ def _own_history(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
 
 
-def pad() -> RecordedPad:
+def with_parser() -> RecordedOpener:
     """A lesson with llm_parser in it."""
     topics = (*lesson_update().topics, PARSER)
-    return RecordedPad(graph=RecordedGraph(update=lesson_update(topics=topics)))
+    return RecordedOpener(graph=RecordedGraph(update=lesson_update(topics=topics)))
 
 
 def written(text: str | None, *keys: str, came: tuple[tuple[float, Any], ...] = ()) -> Before:
@@ -80,13 +80,15 @@ def test_accepted(look: Look, snap_compare: SnapCompare) -> None:
         (1.043, result(event="head", pan=-45, tilt=10, sum=1)),
     )
     before = written(None, "ctrl+s", came=came)
-    assert snap_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+    assert snap_compare(
+        look.app("composer", with_parser()), terminal_size=look.size, run_before=before
+    )
 
 
 @one_look
 def test_wrong(look: Look, dump_compare: SnapCompare) -> None:
     """Wrong values underlined, their lines marked, each problem listed with its place."""
-    app = look.app("composer", pad())
+    app = look.app("composer", with_parser())
     assert dump_compare(app, terminal_size=look.size, run_before=written(BAD))
 
 
@@ -102,7 +104,9 @@ def test_refused_and_held(look: Look, dump_compare: SnapCompare) -> None:
         (0.2, safety("obstacle at 0.38 m")),
     )
     before = written(BAD, "ctrl+o", came=came)
-    assert dump_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(
+        look.app("composer", with_parser()), terminal_size=look.size, run_before=before
+    )
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
@@ -112,7 +116,9 @@ def test_hostile_text(language: str, dump_compare: SnapCompare) -> None:
     text = '{"thought": "\x1b]52;c;aGVsbG8=\x07 [red] \u202e", "\x1b[2J": "[/]"}'
     answer = result(event="accepted", commands=1, thought="[b]\x1b[31m\x00\u202e[/b]")
     before = written(text, "ctrl+o", came=((0.01, answer),))
-    assert dump_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(
+        look.app("composer", with_parser()), terminal_size=look.size, run_before=before
+    )
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
@@ -120,10 +126,12 @@ def test_templates(language: str, dump_compare: SnapCompare) -> None:
     """A dialog over the composer lists the templates, right ones first."""
     look = Look((120, 40), language)
     before = written(None, "ctrl+t")
-    assert dump_compare(look.app("composer", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(
+        look.app("composer", with_parser()), terminal_size=look.size, run_before=before
+    )
 
 
 def test_a_tiny_terminal(dump_compare: SnapCompare) -> None:
     """At 40x12 there is still an editor, a verdict and the beginning of what came."""
-    app = Look((40, 12), "en").app("composer", pad())
+    app = Look((40, 12), "en").app("composer", with_parser())
     assert dump_compare(app, terminal_size=(40, 12), run_before=written(None, "ctrl+s"))

@@ -11,17 +11,18 @@ from textual.widgets import Input
 from launcher.events import LogEvent
 from launcher.status import NodeState, Severity
 from tests.tui.app_runs import opened
-from tests.tui.deck_days import llm
+from tests.tui.lesson_openers import llm
 from tests.tui.recorded import (
     SESSION,
     TOPICS,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     lesson_update,
     line,
     topic,
 )
 from tests.tui.snapshots import settle
+from tests.waiting import until
 from text.i18n import set_language
 from text.sentences import say
 from tui.app import DeckApp
@@ -52,26 +53,26 @@ def deck_of(app: DeckApp) -> LessonDeck:
 
 
 async def test_a_node_and_all_nodes_are_started_stopped_restarted() -> None:
-    pad = RecordedPad()
+    opener = RecordedOpener()
     asked: list[tuple[str, ...]] = []
-    async with opened(pad) as (_app, pilot):
+    async with opened(opener) as (_app, pilot):
         await pilot.press("down")
         for key, verb in (("x", "stop"), ("r", "restart"), ("ч", "stop")):
             asked.append((verb, "camera"))
             await pilot.press(key)
             await pilot.pause()
-            assert pad.link.asked == asked
-        pad.link.set_state("camera", NodeState.EXITED)
+            assert opener.link.asked == asked
+        opener.link.set_state("camera", NodeState.EXITED)
         await pilot.pause()
         asked.append(("start", "camera"))
         await pilot.press("s")
         await pilot.pause()
-        assert pad.link.asked == asked
+        assert opener.link.asked == asked
         for key, verb in (("S", "start"), ("X", "stop"), ("R", "restart")):
             asked.append((verb,))
             await pilot.press(key)
             await pilot.pause()
-            assert pad.link.asked == asked
+            assert opener.link.asked == asked
 
 
 @pytest.mark.parametrize(
@@ -88,9 +89,9 @@ async def test_a_node_and_all_nodes_are_started_stopped_restarted() -> None:
     ],
 )
 async def test_what_is_done_already_is_not_offered(state: NodeState, keys: str) -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.link.set_state("sonar_front", state)
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.link.set_state("sonar_front", state)
         await pilot.pause()
         await pilot.pause()
         shown = str(app.screen.query_one(KeyBar).render()).strip()
@@ -98,15 +99,15 @@ async def test_what_is_done_already_is_not_offered(state: NodeState, keys: str) 
 
 
 async def test_a_node_is_chosen_by_a_click_and_stopped_by_a_click() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.click(NodesTable, offset=(8, 4))
         assert deck_of(app).chosen_node == "head_controller"
         keys = app.screen.query_one("KeyBar")
         at = str(keys.render()).index("x Stop")
         await pilot.click("KeyBar", offset=(at + 2, 0))
         await pilot.pause()
-        assert pad.link.asked == [("stop", "head_controller")]
+        assert opener.link.asked == [("stop", "head_controller")]
 
 
 async def test_a_node_is_muted_heard_alone_and_heard_again() -> None:
@@ -124,9 +125,9 @@ async def test_a_node_is_muted_heard_alone_and_heard_again() -> None:
 
 
 async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
-    pad = RecordedPad()
-    async with opened(pad, size=(200, 60)) as (app, pilot):
-        pad.link.set_state("camera", NodeState.BACKOFF, signal="SIGKILL", restarts=1, pid=None)
+    opener = RecordedOpener()
+    async with opened(opener, size=(200, 60)) as (app, pilot):
+        opener.link.set_state("camera", NodeState.BACKOFF, signal="SIGKILL", restarts=1, pid=None)
         await pilot.pause()
         await pilot.pause()
         table = app.screen.query_one(NodesTable)
@@ -137,17 +138,17 @@ async def test_a_node_that_dies_is_shown_by_word_and_sign() -> None:
 
 
 async def test_a_node_that_runs_but_is_not_ready_looks_like_none_that_is_well() -> None:
-    pad = RecordedPad()
+    opener = RecordedOpener()
     late = say("not ready within {seconds:g} s: {why}", seconds=10.0, why="nobody publishes /x")
-    async with opened(pad, size=(200, 60)) as (app, pilot):
-        pad.link.set_state("camera", NodeState.RUNNING, detail=late)
+    async with opened(opener, size=(200, 60)) as (app, pilot):
+        opener.link.set_state("camera", NodeState.RUNNING, detail=late)
         await pilot.pause()
         await pilot.pause()
         row = app.screen.query_one(NodesTable).render_line(2).text
         assert "◔ running" in row
         assert "not ready within 10 s" in row
         assert "○ 7/8" in title.states(app)[0]
-        pad.link.set_state("camera", NodeState.RUNNING, detail="")
+        opener.link.set_state("camera", NodeState.RUNNING, detail="")
         await pilot.pause()
         await pilot.pause()
         assert "● running" in app.screen.query_one(NodesTable).render_line(2).text
@@ -168,10 +169,10 @@ async def test_a_node_that_runs_but_is_not_ready_looks_like_none_that_is_well() 
 async def test_the_title_says_starting_only_while_a_node_is_to_come(
     state: NodeState, sign: str
 ) -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         assert "● 8/8" in title.states(app)[0]
-        pad.link.set_state("camera", state)
+        opener.link.set_state("camera", state)
         await pilot.pause()
         await pilot.pause()
         assert f"{sign} 7/8" in title.states(app)[0]
@@ -179,23 +180,23 @@ async def test_the_title_says_starting_only_while_a_node_is_to_come(
 
 async def test_hostile_log_lines_and_names_are_shown_harmlessly() -> None:
     bad = "\x1b]52;c;aGk=\x07[red]no markup[/red]\x00\u202egnp"
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.link.say(LogEvent((line("[b]evil[/b]", 1, "x" * 1_000_000), line("camera", 9, bad))))
-        screen = ""
-        for _round in range(100):
-            await pilot.pause(0.02)
-            screen = "\n".join(strip.text for strip in app.screen._compositor.render_strips())
-            if "[red]no markup[/red]" in screen:
-                break
-        assert "[red]no markup[/red]" in screen
+    opener = RecordedOpener()
+    async with opened(opener) as (app, _pilot):
+        opener.link.say(LogEvent((line("[b]evil[/b]", 1, "x" * 1_000_000), line("camera", 9, bad))))
+
+        def seen() -> str:
+            strips = app.screen._compositor.render_strips()
+            return "\n".join(strip.text for strip in strips)
+
+        await until(lambda: "[red]no markup[/red]" in seen(), "the line, its markup as it is")
+        screen = seen()
         assert "\x1b" not in screen
         assert "\u202e" not in screen
 
 
 async def test_panels_show_what_their_topics_say() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.pause()
         gauge = app.screen.query_one(SonarFeed).query_one(SonarPanel)
         assert gauge.query_one("#front", Sonar).has_value
@@ -208,8 +209,8 @@ async def test_panels_show_what_their_topics_say() -> None:
 
 async def test_without_a_differential_the_wheels_show_what_drive_would_do() -> None:
     rows = (topic("/drive", "ackermann_msgs/msg/AckermannDriveStamped", 1.0),)
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=rows)))
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=rows)))
+    async with opened(opener) as (app, pilot):
         await pilot.pause()
         wheels = app.screen.query_one(WheelsFeed)
         assert "← /drive" in str(wheels.border_title)
@@ -220,16 +221,16 @@ async def test_without_a_differential_the_wheels_show_what_drive_would_do() -> N
 
 
 async def test_the_rear_sonar_comes_with_its_publisher_and_stays_without_it() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         gauge = app.screen.query_one(SonarPanel)
         assert not gauge.has_class("-both")
         rear = topic("/sensor/sonar_rear", "std_msgs/msg/Float32", 1.0)
-        pad.graph.show(lesson_update(topics=(*TOPICS, rear)))
+        opener.graph.show(lesson_update(topics=(*TOPICS, rear)))
         await pilot.pause()
         await pilot.pause()
         assert gauge.has_class("-both")
-        pad.graph.show(lesson_update(topics=(*TOPICS, replace(rear, publishers=0))))
+        opener.graph.show(lesson_update(topics=(*TOPICS, replace(rear, publishers=0))))
         await pilot.pause()
         await pilot.pause()
         assert gauge.has_class("-both")
@@ -244,26 +245,26 @@ async def test_the_trail_of_a_json_shows_without_the_composer() -> None:
 
 
 async def test_only_what_is_shown_is_asked_for() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (_app, pilot):
-        assert "/camera/color/image_raw" in pad.graph.watched
-        assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= pad.graph.followed
-        before = pad.graph.measured
+    opener = RecordedOpener()
+    async with opened(opener) as (_app, pilot):
+        assert "/camera/color/image_raw" in opener.graph.watched
+        assert {"/audio/mic_raw", "/emergency_stop", "/safety_state"} <= opener.graph.followed
+        before = opener.graph.measured
         assert not before
         await pilot.press("2")
         await pilot.pause()
-        assert pad.graph.measured
-        assert "/camera/color/image_raw" not in pad.graph.watched
-        assert "/audio/mic_raw" in pad.graph.followed
+        assert opener.graph.measured
+        assert "/camera/color/image_raw" not in opener.graph.watched
+        assert "/audio/mic_raw" in opener.graph.followed
 
 
 async def test_a_command_is_written_and_published() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.press("c", *"left", "enter")
         await pilot.pause()
         sent = ("/ai_command", "std_msgs/msg/String", {"data": "left"}, False)
-        assert pad.graph.published == [sent]
+        assert opener.graph.published == [sent]
         await pilot.press("escape")
         assert not isinstance(app.focused, Input)
 

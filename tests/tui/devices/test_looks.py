@@ -11,9 +11,10 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from graph.data import Sample
-from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
-from tests.tui.recorded_devices import STATUSES, of_chassis, of_sonar, pad, update
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
+from tests.tui.recorded_devices import STATUSES, of_chassis, of_sonar, update, with_drivers
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
+from tests.waiting import until
 from tui.app import DeckApp
 from tui.devices import words as devices_words
 
@@ -50,8 +51,10 @@ def shown(*samples: Sample, keys: tuple[str, ...] = ()) -> Before:
 @every_look
 def test_frames_of_the_chassis(look: Look, snap_compare: SnapCompare) -> None:
     """Four drivers, each with its state; drive lines out and telemetry in, noise and a bad line."""
-    before = shown(of_chassis())
-    assert snap_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+    before = shown(of_chassis(language=look.language))
+    assert snap_compare(
+        look.app("devices", with_drivers()), terminal_size=look.size, run_before=before
+    )
 
 
 @one_look
@@ -59,28 +62,30 @@ def test_frames_of_a_sonar(look: Look, dump_compare: SnapCompare) -> None:
     """The second driver is chosen; the bytes are in a column of their own."""
     metres = (1.23, 1.24, 9.0, 0.1, 1.25)
     before = shown(of_sonar(*metres, language=look.language), keys=("down", "down"))
-    assert dump_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(
+        look.app("devices", with_drivers()), terminal_size=look.size, run_before=before
+    )
 
 
 @one_look
 def test_an_unplugged_device(look: Look, dump_compare: SnapCompare) -> None:
     """Why nothing comes from the last driver, with the mend."""
     before = shown(keys=("end",))
-    assert dump_compare(look.app("devices", pad()), terminal_size=look.size, run_before=before)
+    assert dump_compare(
+        look.app("devices", with_drivers()), terminal_size=look.size, run_before=before
+    )
 
 
 @one_look
 def test_a_lesson_without_drivers(look: Look, dump_compare: SnapCompare) -> None:
     """Says that there are none, and which profile has them."""
-    nobody = RecordedPad(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
+    nobody = RecordedOpener(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
     app = look.app("devices", nobody)
 
     async def before(pilot: Pilot[Any]) -> None:
         await settle(pilot)
         empty = pilot.app.screen.query_one("#devices-empty", Static)
-        for _round in range(500):
-            if "robot" in str(empty.render()):
-                break
-            await pilot.pause(0.01)
+        await until(lambda: "robot" in str(empty.render()), "the profile that has them")
+        await pilot.pause()
 
     assert dump_compare(app, terminal_size=look.size, run_before=before)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +15,7 @@ from textual.widgets import Static
 from graph.data import Sample
 from robot.frames.lines import FrameLine
 from robot.frames.protocols import FrameKind
-from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, sample
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession, sample
 from tests.tui.recorded_devices import (
     AT_S,
     STATUSES,
@@ -23,11 +23,12 @@ from tests.tui.recorded_devices import (
     frames,
     of_chassis,
     of_sonar,
-    pad,
     status,
     update,
+    with_drivers,
 )
 from tests.tui.snapshots import Look, settle
+from tests.waiting import until
 from tui import clock
 from tui.app import DeckApp
 from tui.devices import words as devices_words
@@ -63,13 +64,6 @@ class Stage:
         for _round in range(3):
             await self.pilot.pause()
 
-    async def until(self, condition: Callable[[], bool]) -> None:
-        for _round in range(500):
-            await self.pilot.pause(0.01)
-            if condition():
-                return
-        raise AssertionError("it never came")
-
     def drivers(self) -> list[str]:
         """The rows of the table, without blanks at the ends."""
         table = self.screen.table
@@ -89,9 +83,9 @@ class Stage:
 
 @asynccontextmanager
 async def stage(
-    of: RecordedPad | None = None, size: tuple[int, int] = (120, 40)
+    of: RecordedOpener | None = None, size: tuple[int, int] = (120, 40)
 ) -> AsyncIterator[Stage]:
-    chosen = of or pad()
+    chosen = of or with_drivers()
     app = Look(size, "en").app("devices", chosen)
     async with app.run_test(size=size) as pilot:
         await settle(pilot)
@@ -180,7 +174,7 @@ async def test_lines_are_copied_and_written_to_a_file(tmp_path: Path) -> None:
         field = at.screen.pane.prompt.query_one("Input")
         field.value = str(tmp_path / "frames.log")  # type: ignore[attr-defined]
         await at.press("enter")
-        await at.until(lambda: not at.screen.pane.prompt.kind)
+        await until(lambda: not at.screen.pane.prompt.kind, "the file written")
         assert "drive left 3.20" in (tmp_path / "frames.log").read_text()
         await at.press("escape")
         assert at.screen.table.has_focus
@@ -191,7 +185,7 @@ async def test_why_nothing_comes_from_a_driver(monkeypatch: pytest.MonkeyPatch) 
         view = at.screen.pane.view
         assert "Listening on /chassis/frames" in view.empty_words
         await at.press("down")
-        assert "publishes no …/imu: data/frames" in view.empty_words
+        assert "does not publish …/imu: data/frames" in view.empty_words
         await at.press("end")
         assert "Nothing is connected" in view.empty_words
         assert "no such port; plug it in" in at.whole()
@@ -207,11 +201,11 @@ async def test_why_nothing_comes_from_a_driver(monkeypatch: pytest.MonkeyPatch) 
 
 async def test_why_there_is_no_driver(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(devices_words, "_lessons_with_drivers", lambda: ("robot",))
-    lesson = RecordedPad(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
+    lesson = RecordedOpener(RecordedSession(lines=()), RecordedGraph(update(publishers=())))
     async with stage(lesson) as at:
-        await at.until(lambda: "Drivers run in: robot." in at.empty())
+        await until(lambda: "Drivers run in: robot." in at.empty(), "the lesson with drivers")
         assert "No driver says anything on /diagnostics." in at.empty()
-    starting = pad()
+    starting = with_drivers()
     starting.graph.update = update(publishers=())
     async with stage(starting) as at:
         assert "chassis, sonar_front have not said anything" in at.empty()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -12,9 +11,10 @@ from textual.pilot import Pilot
 from graph.data import NodeRow, ParameterRow, ParametersResult
 from launcher.status import NodeState, NodeStatus
 from tests.tui.app_runs import opened
-from tests.tui.recorded import RecordedGraph, RecordedPad
-from tests.tui.recorded_devices import STATUSES, pad, status, update
+from tests.tui.recorded import RecordedGraph, RecordedOpener
+from tests.tui.recorded_devices import STATUSES, status, update, with_drivers
 from tests.tui.snapshots import settle
+from tests.waiting import until
 from tui.actions import REGISTRY
 from tui.app import DeckApp
 from tui.devices.screen import DevicesScreen
@@ -25,9 +25,9 @@ MOCK = "/mock_robot"
 TROUBLES = ("devices.unplug", "devices.noise", "devices.silence", "devices.battery")
 
 
-def simulation(*samples: Any) -> tuple[RecordedPad, RecordedGraph]:
+def simulation(*samples: Any) -> tuple[RecordedOpener, RecordedGraph]:
     """Drivers at the lines of a simulated robot, whose node has its parameters."""
-    drivers = pad()
+    drivers = with_drivers()
     graph = RecordedGraph(with_robot(*(samples or STATUSES)))
     lines = [ParameterRow(name, "string", "fine") for name in ("pico", "tof_front", "tof_rear")]
     rows = (*lines, ParameterRow("battery", "double", 7.4))
@@ -35,7 +35,7 @@ def simulation(*samples: Any) -> tuple[RecordedPad, RecordedGraph]:
     robot = NodeStatus("mock_robot", "nodes.mock_robot", NodeState.READY, pid=4199)
     link: Any = drivers.link
     link.nodes["mock_robot"] = robot
-    return RecordedPad(link, graph), graph
+    return RecordedOpener(link, graph), graph
 
 
 def with_robot(*samples: Any) -> Any:
@@ -53,14 +53,6 @@ async def choose(app: DeckApp, pilot: Pilot[Any], name: str) -> None:
     await pilot.pause()
 
 
-async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
-    for _round in range(300):
-        await pilot.pause(0.02)
-        if condition():
-            return
-    raise AssertionError("it did not come to that")
-
-
 def told(app: DeckApp) -> list[str]:
     return [note.message for note in app._notifications]
 
@@ -71,7 +63,7 @@ def told(app: DeckApp) -> list[str]:
         ("U", "sonar_front", "tof_front", "unplugged", "fine", "tof_front: the cable is plugged"),
         ("Г", "sonar_rear", "tof_rear", "unplugged", "fine", "tof_rear: the cable is plugged"),
         ("Z", "chassis", "pico", "noise", "fine", "pico: the noise is gone"),
-        ("H", "sonar_front", "tof_front", "silent", "fine", "tof_front: it speaks again"),
+        ("H", "sonar_front", "tof_front", "silent", "fine", "tof_front: it sends data again"),
         ("B", "chassis", "battery", 5.8, 7.4, "The battery has 7.4 V"),
     ],
 )
@@ -83,9 +75,9 @@ async def test_a_key_makes_the_trouble_and_mends_it(
     async with opened(recorded, "devices") as (app, pilot):
         await choose(app, pilot, driver)
         await pilot.press(key)
-        await until(pilot, lambda: len(told(app)) == 1)
+        await until(lambda: len(told(app)) == 1, "the word of the trouble")
         await pilot.press(key)
-        await until(pilot, lambda: len(told(app)) == 2)
+        await until(lambda: len(told(app)) == 2, "the word that it is mended")
         assert graph.set_to == [(MOCK, {parameter: wrong}), (MOCK, {parameter: fine})]
         assert told(app)[1].startswith(over)
 
@@ -96,7 +88,7 @@ async def test_what_the_robot_refuses_is_told() -> None:
     async with opened(recorded, "devices") as (app, pilot):
         await choose(app, pilot, "sonar_front")
         await pilot.press("U")
-        await until(pilot, lambda: told(app) == ["the port is gone"])
+        await until(lambda: told(app) == ["the port is gone"], "the reason")
 
 
 async def test_only_a_device_that_is_simulated_can_have_trouble_made() -> None:
@@ -115,7 +107,7 @@ async def test_only_a_device_that_is_simulated_can_have_trouble_made() -> None:
 
 
 async def test_beside_a_real_robot_no_trouble_is_possible() -> None:
-    async with opened(pad(), "devices") as (app, pilot):
+    async with opened(with_drivers(), "devices") as (app, pilot):
         await choose(app, pilot, "chassis")
         assert possible(app) == []
 

@@ -13,7 +13,7 @@ from tests.tui.recorded import (
     NOW_S,
     TOPICS,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     RecordedSession,
     lesson_update,
     sample,
@@ -32,79 +32,79 @@ GO = (EMERGENCY_STOP, TOPIC_TYPE, {"data": False}, True)
 
 @pytest.mark.parametrize("screen", ["deck", "topics", "logs"])
 async def test_space_stops_at_once_on_every_screen(screen: str) -> None:
-    pad = RecordedPad()
-    async with opened(pad, screen) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, screen) as (app, pilot):
         await pilot.press("space")
-        assert pad.graph.published == [STOP]
+        assert opener.graph.published == [STOP]
         title = app.screen.query_one(TitleBar)
         assert "■ EMERGENCY STOP · ^r releases" in title.text
         assert title.styles.background == Color.parse("#b00020")
 
 
 async def test_the_publisher_is_made_before_it_is_needed() -> None:
-    pad = RecordedPad()
-    async with opened(pad):
-        assert pad.graph.prepared == [(EMERGENCY_STOP, TOPIC_TYPE, True)]
+    opener = RecordedOpener()
+    async with opened(opener):
+        assert opener.graph.prepared == [(EMERGENCY_STOP, TOPIC_TYPE, True)]
 
 
 async def test_the_stop_stays_until_it_is_released() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.press("space", "space", "escape", "2", "1")
         assert app.emergency.state.engaged
-        assert GO not in pad.graph.published
+        assert GO not in opener.graph.published
         await pilot.press("ctrl+r")
-        assert pad.graph.published[-1] == GO
+        assert opener.graph.published[-1] == GO
         await pilot.pause()
         assert "EMERGENCY" not in app.screen.query_one(TitleBar).text
 
 
 async def test_the_release_key_does_nothing_while_nothing_is_stopped() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (_app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (_app, pilot):
         await pilot.press("ctrl+r")
-        assert pad.graph.published == []
+        assert opener.graph.published == []
 
 
 async def test_in_a_text_field_space_is_a_blank_and_ctrl_x_stops() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
         await pilot.press("c", "a", "space", "b")
         assert app.screen.query_one(CommandLine).query_one(Input).value == "a b"
-        assert pad.graph.published == []
+        assert opener.graph.published == []
         await pilot.press("ctrl+x")
-        assert pad.graph.published == [STOP]
+        assert opener.graph.published == [STOP]
 
 
 @pytest.mark.parametrize("key", ["f1", "ctrl+p"])
 async def test_a_dialog_does_not_come_before_the_stop(key: str) -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (_app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener) as (_app, pilot):
         await pilot.press(key)
         await pilot.pause()
         await pilot.press("ctrl+x")
-        assert pad.graph.published == [STOP]
+        assert opener.graph.published == [STOP]
 
 
 async def test_where_nobody_listens_the_nodes_are_stopped_instead() -> None:
     deaf = tuple(row for row in TOPICS if row.name != EMERGENCY_STOP)
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=deaf)))
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=deaf)))
+    async with opened(opener) as (app, pilot):
         await pilot.press("space")
         await pilot.pause()
-        assert ("stop",) in pad.link.asked
-        assert STOP in pad.graph.published
+        assert ("stop",) in opener.link.asked
+        assert STOP in opener.graph.published
         assert "nobody listens" in app.screen.query_one(TitleBar).text
         assert ["nobody listens" in told.message for told in app._notifications] == [True]
 
 
 async def test_the_release_starts_again_what_the_stop_has_ended_and_nothing_else() -> None:
     deaf = tuple(row for row in TOPICS if row.name != EMERGENCY_STOP)
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=deaf)))
-    link = pad.link
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=deaf)))
+    link = opener.link
     assert isinstance(link, RecordedSession)
     first, *others = link.nodes
-    async with opened(pad) as (app, pilot):
+    async with opened(opener) as (app, pilot):
         link.set_state(first, NodeState.EXITED)
         await settle(pilot)
         await pilot.press("space")
@@ -128,77 +128,79 @@ async def test_the_release_starts_again_what_the_stop_has_ended_and_nothing_else
 async def test_the_release_is_said_again_to_a_node_that_has_not_heard(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    pad, now = RecordedPad(), [NOW_S]
+    opener, now = RecordedOpener(), [NOW_S]
     monkeypatch.setattr("tui.clock.now", lambda: now[0])
-    async with opened(pad) as (_app, pilot):
+    async with opened(opener) as (_app, pilot):
         for now[0] in (NOW_S, NOW_S + 1):
-            pad.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
+            opener.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
             await settle(pilot)
         await pilot.press("ctrl+r")
         for seconds in (2.5, 4, 9, 13, 15):
             now[0] = NOW_S + seconds
-            pad.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
+            opener.graph.show(obeyed(word(GATE, True, now[0], since_s=NOW_S), at_s=now[0]))
             await settle(pilot)
-        assert pad.graph.published == 4 * [GO]
+        assert opener.graph.published == 4 * [GO]
 
 
 async def test_the_release_of_another_is_told() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.graph.show(obeyed(word(GATE, True, NOW_S), at_s=NOW_S))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.graph.show(obeyed(word(GATE, True, NOW_S), at_s=NOW_S))
         await settle(pilot)
         assert "EMERGENCY STOP" in app.screen.query_one(TitleBar).text
-        pad.graph.show(obeyed(word(GATE, False, NOW_S + 5), at_s=NOW_S + 5))
+        opener.graph.show(obeyed(word(GATE, False, NOW_S + 5), at_s=NOW_S + 5))
         await settle(pilot)
         assert "EMERGENCY STOP" not in app.screen.query_one(TitleBar).text
-        assert ["Another has released" in told.message for told in app._notifications] == [True]
+        assert ["released elsewhere" in told.message for told in app._notifications] == [True]
 
 
 async def test_where_ros_cannot_be_reached_the_nodes_are_stopped_instead() -> None:
-    pad = RecordedPad()
-    pad.graph.publish_error = RuntimeError("no rclpy")
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener()
+    opener.graph.publish_error = RuntimeError("no rclpy")
+    async with opened(opener) as (app, pilot):
         await pilot.press("space")
         await pilot.pause()
-        assert ("stop",) in pad.link.asked
+        assert ("stop",) in opener.link.asked
         assert "ROS cannot be reached" in app.screen.query_one(TitleBar).text
 
 
 async def test_a_stop_from_elsewhere_shows_here_and_can_be_released_here() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.graph.show(said(True, NOW_S + 1))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.graph.show(said(True, NOW_S + 1))
         await pilot.pause()
         await pilot.pause()
         assert "by another" in app.screen.query_one(TitleBar).text
         await pilot.press("ctrl+r")
-        assert pad.graph.published == [GO]
+        assert opener.graph.published == [GO]
 
 
 async def test_a_stop_whose_publisher_has_gone_can_be_released() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.graph.show(gate_says("emergency_stop", NOW_S))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.graph.show(gate_says("emergency_stop", NOW_S))
         await settle(pilot)
         assert "■ EMERGENCY STOP · ^r releases" in app.screen.query_one(TitleBar).text
         assert "^r Release" in str(app.screen.query_one(KeyBar).render())
         await pilot.press("ctrl+r")
-        assert pad.graph.published == [GO]
+        assert opener.graph.published == [GO]
 
 
 async def test_the_safety_nodes_words_stand_in_the_title() -> None:
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.graph.show(held(b"\x01", "front 0.38 m"))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.graph.show(held(b"\x01", "front 0.38 m"))
         await pilot.pause()
         await pilot.pause()
         assert "⚠ Front 0.38 m" in title.states(app)[0]
 
 
 async def test_long_words_of_the_safety_node_leave_the_tabs_their_names() -> None:
-    pad = RecordedPad()
-    async with opened(pad, size=(80, 24)) as (app, pilot):
-        pad.graph.show(held(b"\x01", "front 0.38 m, and the left wheel has told nothing for 2 s"))
+    opener = RecordedOpener()
+    async with opened(opener, size=(80, 24)) as (app, pilot):
+        opener.graph.show(
+            held(b"\x01", "front 0.38 m, and the left wheel has told nothing for 2 s")
+        )
         await settle(pilot)
         line = app.screen.query_one(TitleBar).text
         for name in ("1 Deck", "2 Top.", "3 Com.", "4 Logs", "5 Gra.", "6 Flow", "7 Dev."):
@@ -221,16 +223,16 @@ async def test_what_the_gate_refuses_stands_in_the_title_though_nothing_is_held(
     values = [{"key": "verdict", "value": "free"}, {"key": "refused", "value": refused}]
     status = [{"level": b"\x01", "name": "safety_stop", "message": "-", "values": values}]
     one = sample(SAFETY_STATE, "diagnostic_msgs/msg/DiagnosticArray", {"status": status})
-    pad = RecordedPad()
-    async with opened(pad) as (app, pilot):
-        pad.graph.show(lesson_update(samples={SAFETY_STATE: (one,)}))
+    opener = RecordedOpener()
+    async with opened(opener) as (app, pilot):
+        opener.graph.show(lesson_update(samples={SAFETY_STATE: (one,)}))
         await settle(pilot)
         assert words in app.screen.query_one(TitleBar).text
 
 
 async def test_another_session_begins_without_the_stop_of_the_one_before() -> None:
-    pad = RecordedPad(sessions=[])
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener(sessions=[])
+    async with opened(opener) as (app, pilot):
         await pilot.press("space", "f8")
         await pilot.pause()
         app.sessions.open(app.sessions.request)

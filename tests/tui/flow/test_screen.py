@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from launcher.events import LogEvent
-from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession, line
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession, line
 from tests.tui.recorded_flow import BEFORE, command, update, voice, voice_lines, word
 from tests.tui.snapshots import Look, settle
 from tui import clock
@@ -59,7 +59,7 @@ class Stage:
 @asynccontextmanager
 async def stage() -> AsyncIterator[Stage]:
     graph, session = RecordedGraph(update(*BEFORE)), RecordedSession(lines=())
-    app = Look((120, 40), "en").app("flow", RecordedPad(session, graph))
+    app = Look((120, 40), "en").app("flow", RecordedOpener(session, graph))
     async with app.run_test(size=(120, 40)) as pilot:
         await settle(pilot)
         yield Stage(pilot, graph, session)

@@ -9,8 +9,8 @@ from textual.app import App, ComposeResult
 from textual.events import Paste
 
 from graph.data import ParameterRow, ParametersResult
-from tests.hostile import EVIL
-from tests.tui.graph_room import opened
+from tests.hostile_text import EVIL
+from tests.tui.graph_stage import opened
 from tests.tui.recorded import RecordedGraph
 from tests.tui.recorded_nodes import graph_update
 from text.plain import is_plain, plain
@@ -69,16 +69,16 @@ async def asked(value: object, *keys: str) -> tuple[str, object]:
     row = ParameterRow("topic", "string", value)  # type: ignore[arg-type]
     graph = RecordedGraph(update=graph_update())
     graph.node_parameters[NODE] = ParametersResult(NODE, (row,))
-    async with opened(graph) as room:
-        await room.choose(NODE)
-        await room.press("E")
-        await room.wait(lambda: room.screen.query("GraphParameters"))
-        await room.wait_for("topic")
-        await room.press("enter")
-        await room.wait(lambda: isinstance(room.app.screen, ParameterDialog))
-        stood = room.app.screen.query_one(Field).value
-        await room.press("end", *keys, "enter")
-        await room.wait(lambda: graph.set_to)
+    async with opened(graph) as stage:
+        await stage.choose(NODE)
+        await stage.press("E")
+        await stage.wait(lambda: stage.screen.query("GraphParameters"))
+        await stage.wait_for("topic")
+        await stage.press("enter")
+        await stage.wait(lambda: isinstance(stage.app.screen, ParameterDialog))
+        stood = stage.app.screen.query_one(Field).value
+        await stage.press("end", *keys, "enter")
+        await stage.wait(lambda: graph.set_to)
         return stood, graph.set_to[0][1]["topic"]
 
 

@@ -11,9 +11,10 @@ from textual.pilot import Pilot
 from textual.widgets import Input
 
 from graph.data import CallResult, GoalStatus, GraphUpdate, ParametersResult, SeenGoal
-from tests.tui.recorded import RecordedGraph, RecordedPad
+from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tests.tui.snapshots import Look, SnapCompare, both_languages, every_look, one_look, settle
+from tests.waiting import until
 from tui.app import DeckApp
 from tui.graph.places import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
@@ -27,7 +28,7 @@ TYPE = GraphPlace(GraphKind.TYPE, "sensor_msgs/msg/JointState")
 
 def app_of(look: Look, update: GraphUpdate | None = None) -> DeckApp:
     graph = RecordedGraph(update=update or graph_update())
-    return look.app("graph", RecordedPad(graph=graph))
+    return look.app("graph", RecordedOpener(graph=graph))
 
 
 def at(place: GraphPlace, *steps: str | Step) -> Callable[[Pilot[Any]], Awaitable[None]]:
@@ -53,14 +54,15 @@ def at(place: GraphPlace, *steps: str | Step) -> Callable[[Pilot[Any]], Awaitabl
 
 async def still(pilot: Pilot[Any], screen: GraphScreen) -> None:
     """Wait until nothing is loaded or checked any more."""
-    for _round in range(200):
+
+    def at_rest() -> bool:
         # Forms and types wait until a choice stands.
-        await pilot.pause(0.05)
-        if (
-            all(one.is_finished or one.node is pilot.app for one in pilot.app.workers)
-            and not screen.is_settling
-        ):
-            break
+        return not screen.is_settling and all(
+            one.is_finished or one.node is pilot.app for one in pilot.app.workers
+        )
+
+    await pilot.pause()
+    await until(at_rest, "a screen at rest")
     for _round in range(3):
         await pilot.pause()
 

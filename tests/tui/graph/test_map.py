@@ -8,7 +8,7 @@ import pytest
 from textual.events import Key
 
 from graph.data import GraphUpdate, NodeRow
-from tests.tui.graph_room import Room, opened
+from tests.tui.graph_stage import Stage, opened
 from tests.tui.recorded_nodes import NODE_ROWS, graph_update
 from tui.graph.map_drawing import MapDrawing, drawing
 from tui.graph.neighbours import neighbours, node_called
@@ -25,7 +25,7 @@ BRAIN = """
 
 
 @pytest.fixture
-async def room() -> AsyncIterator[Room]:
+async def stage() -> AsyncIterator[Stage]:
     async with opened() as opened_room:
         await opened_room.choose("/safety_stop")
         await opened_room.press("M")
@@ -39,15 +39,15 @@ def drawn(name: str, width: int, height: int, update: GraphUpdate | None = None)
     return drawing(name, neighbours(update, node), width, height)
 
 
-async def held(room: Room, key: str, times: int, place: GraphPlace) -> None:
+async def held(stage: Stage, key: str, times: int, place: GraphPlace) -> None:
     """Press a key as one that is held down, and wait for where that leads.
 
     A busy machine takes a minute for sixty keys if each is waited for.
     """
     for _press in range(times):
-        room.app.post_message(Key(key, None))
-    await room.wait(lambda: room.screen.map.here == place)
-    await room.pilot.pause()
+        stage.app.post_message(Key(key, None))
+    await stage.wait(lambda: stage.screen.map.here == place)
+    await stage.pilot.pause()
 
 
 def text(made: MapDrawing, width: int) -> str:
@@ -83,61 +83,61 @@ def test_every_neighbour_can_be_reached() -> None:
     assert right == ["/drive_safe", "/electronic_differential", "/safety_state"]
 
 
-async def test_arrows_walk_and_enter_goes_on_from_there(room: Room) -> None:
-    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
-    await room.press("right", "up", "up", "up", "down")
-    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/electronic_differential")
-    await room.press("enter")
-    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/electronic_differential")
-    assert "/wheel_commands" in room.seen()
-    await room.press("escape")
-    assert room.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
+async def test_arrows_walk_and_enter_goes_on_from_there(stage: Stage) -> None:
+    assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
+    await stage.press("right", "up", "up", "up", "down")
+    assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/electronic_differential")
+    await stage.press("enter")
+    assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/electronic_differential")
+    assert "/wheel_commands" in stage.seen()
+    await stage.press("escape")
+    assert stage.screen.map.here == GraphPlace(GraphKind.NODE, "/safety_stop")
 
 
-async def test_the_edge_is_not_walked_over(room: Room) -> None:
-    await room.press("left", "left", "left")
+async def test_the_edge_is_not_walked_over(stage: Stage) -> None:
+    await stage.press("left", "left", "left")
     for key, times, edge in (
         ("up", 10, GraphPlace(GraphKind.TOPIC, "/drive")),
         ("down", 30, GraphPlace(GraphKind.NODE, "/sonar_front")),
     ):
-        await held(room, key, times, edge)
-        await room.press(key)
-        assert room.screen.map.here == edge
+        await held(stage, key, times, edge)
+        await stage.press(key)
+        assert stage.screen.map.here == edge
 
 
-async def test_enter_on_a_service_goes_to_its_form(room: Room) -> None:
-    await room.screen.go(GraphPlace(GraphKind.NODE, "/head_controller"))
-    await room.pilot.pause()
-    await room.press("left", *("up",) * 5, "enter")
-    assert room.screen.history.here == GraphPlace(GraphKind.SERVICE, "/set_head_position")
-    assert not room.screen.draws
-    await room.wait_for("fits example_interfaces/srv/AddTwoInts")
+async def test_enter_on_a_service_goes_to_its_form(stage: Stage) -> None:
+    await stage.screen.go(GraphPlace(GraphKind.NODE, "/head_controller"))
+    await stage.pilot.pause()
+    await stage.press("left", *("up",) * 5, "enter")
+    assert stage.screen.history.here == GraphPlace(GraphKind.SERVICE, "/set_head_position")
+    assert not stage.screen.draws
+    await stage.wait_for("fits example_interfaces/srv/AddTwoInts")
 
 
-async def test_a_node_that_vanishes_is_said_to_have_left(room: Room) -> None:
+async def test_a_node_that_vanishes_is_said_to_have_left(stage: Stage) -> None:
     rest = tuple(row for row in NODE_ROWS if row.name != "/safety_stop")
-    await room.show(graph_update(nodes=rest))
-    assert "this node has left the graph" in room.seen()
-    await room.show(graph_update())
-    assert "┌" in room.seen()
+    await stage.show(graph_update(nodes=rest))
+    assert "this node has left the graph" in stage.seen()
+    await stage.show(graph_update())
+    assert "┌" in stage.seen()
 
 
-async def test_without_a_node_it_says_so(room: Room) -> None:
-    await room.press("M")
-    room.screen.history.forget()
-    await room.show(GraphUpdate(0.0))
-    await room.press("M")
-    assert "no node to draw" in room.seen()
-    await room.press("M")
-    assert "no node in this domain" in room.seen()
+async def test_without_a_node_it_says_so(stage: Stage) -> None:
+    await stage.press("M")
+    stage.screen.history.forget()
+    await stage.show(GraphUpdate(0.0))
+    await stage.press("M")
+    assert "no node to draw" in stage.seen()
+    await stage.press("M")
+    assert "no node in this domain" in stage.seen()
 
 
-async def test_more_neighbours_than_rows_are_scrolled(room: Room) -> None:
+async def test_more_neighbours_than_rows_are_scrolled(stage: Stage) -> None:
     hub = NodeRow("/hub", publishes=tuple(f"/topic_{n:02}" for n in range(60)))
-    await room.show(graph_update(nodes=(hub,)))
-    await room.screen.go(GraphPlace(GraphKind.NODE, "/hub"))
-    await room.pilot.pause()
-    await room.press("right")
-    await held(room, "down", 60, GraphPlace(GraphKind.TOPIC, "/topic_59"))
-    assert "/topic_59" in room.seen()
-    assert "/hub" in room.seen()
+    await stage.show(graph_update(nodes=(hub,)))
+    await stage.screen.go(GraphPlace(GraphKind.NODE, "/hub"))
+    await stage.pilot.pause()
+    await stage.press("right")
+    await held(stage, "down", 60, GraphPlace(GraphKind.TOPIC, "/topic_59"))
+    assert "/topic_59" in stage.seen()
+    assert "/hub" in stage.seen()

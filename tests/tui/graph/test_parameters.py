@@ -12,7 +12,7 @@ import pytest
 from textual.widgets import Input
 
 from graph.data import GraphUpdate, ParametersResult, Sample
-from tests.tui.graph_room import Room, opened
+from tests.tui.graph_stage import Stage, opened
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import settle
 from tui.graph.parameter_dialog import ParameterDialog
@@ -22,101 +22,101 @@ NODE = "/sonar_front"
 
 
 @pytest.fixture
-async def room() -> AsyncIterator[Room]:
+async def stage() -> AsyncIterator[Stage]:
     async with opened() as opened_room:
         await opened_room.choose(NODE)
         yield opened_room
 
 
-async def typed(room: Room, text: str) -> None:
-    room.app.screen.query_one(Input).value = text
-    await room.press("enter")
+async def typed(stage: Stage, text: str) -> None:
+    stage.app.screen.query_one(Input).value = text
+    await stage.press("enter")
 
 
-async def test_they_are_read_when_asked_and_not_before(room: Room) -> None:
-    assert room.graph.asked_parameters == []
-    await room.press("E")
-    await room.wait_for("5 parameters · read in 10 ms")
-    assert room.graph.asked_parameters == [NODE]
-    assert "0.1…50, above 0" in room.seen()
-    assert "⊘ sonar_front" in room.seen()
-    await room.press("E")
-    assert "5 parameters" not in room.seen()
+async def test_they_are_read_when_asked_and_not_before(stage: Stage) -> None:
+    assert stage.graph.asked_parameters == []
+    await stage.press("E")
+    await stage.wait_for("5 parameters · read in 10 ms")
+    assert stage.graph.asked_parameters == [NODE]
+    assert "0.1…50, above 0" in stage.seen()
+    assert "⊘ sonar_front" in stage.seen()
+    await stage.press("E")
+    assert "5 parameters" not in stage.seen()
 
 
-async def test_those_of_a_node_that_is_not_in_front_are_not_offered(room: Room) -> None:
-    await room.press("E")
-    await room.wait_for("5 parameters")
-    await room.press("slash", "q", "q")
-    await room.wait_for("nothing fits the filter")
-    assert "W Save" not in room.seen()
-    room.screen.names.focus()
-    await room.press("W", "O", "E")
-    assert room.app.screen is room.screen
-    assert room.graph.asked_parameters == [NODE]
-    await room.press("escape")
-    await room.wait_for("W Save")
+async def test_those_of_a_node_that_is_not_in_front_are_not_offered(stage: Stage) -> None:
+    await stage.press("E")
+    await stage.wait_for("5 parameters")
+    await stage.press("slash", "q", "q")
+    await stage.wait_for("nothing fits the filter")
+    assert "W Save" not in stage.seen()
+    stage.screen.names.focus()
+    await stage.press("W", "O", "E")
+    assert stage.app.screen is stage.screen
+    assert stage.graph.asked_parameters == [NODE]
+    await stage.press("escape")
+    await stage.wait_for("W Save")
 
 
-async def test_another_value_is_set_and_read_back(room: Room) -> None:
-    await room.press("E", "down", "enter")
-    assert "Allowed: 0.1…50, above 0" in room.seen()
-    await typed(room, "2.5")
-    await room.wait(lambda: room.app.screen is room.screen)
-    assert room.graph.set_to == [(NODE, {"rate": "2.5"})]
-    await room.wait(lambda: room.graph.asked_parameters == [NODE, NODE])
+async def test_another_value_is_set_and_read_back(stage: Stage) -> None:
+    await stage.press("E", "down", "enter")
+    assert "Allowed: 0.1…50, above 0" in stage.seen()
+    await typed(stage, "2.5")
+    await stage.wait(lambda: stage.app.screen is stage.screen)
+    assert stage.graph.set_to == [(NODE, {"rate": "2.5"})]
+    await stage.wait(lambda: stage.graph.asked_parameters == [NODE, NODE])
 
 
-def shown(room: Room) -> GraphUpdate:
+def shown(stage: Stage) -> GraphUpdate:
     """The graph as it is now."""
-    assert room.graph.update is not None
-    return room.graph.update
+    assert stage.graph.update is not None
+    return stage.graph.update
 
 
-def changed(room: Room, node: str) -> GraphUpdate:
+def changed(stage: Stage, node: str) -> GraphUpdate:
     """The graph in which a node tells that `rate` was set from outside."""
     value: dict[str, Any] = {"node": node, "changed_parameters": [{"name": "rate"}]}
     event = Sample(PARAMETER_EVENTS, "rcl_interfaces/msg/ParameterEvent", 0.0, 0.0, 99, value)
-    return replace(shown(room), samples={PARAMETER_EVENTS: (event,)})
+    return replace(shown(stage), samples={PARAMETER_EVENTS: (event,)})
 
 
-async def test_a_change_from_outside_is_read_at_once(room: Room) -> None:
+async def test_a_change_from_outside_is_read_at_once(stage: Stage) -> None:
     """`ros2 param set` in another window; what other nodes change asks this one nothing."""
-    assert PARAMETER_EVENTS in room.graph.followed
-    await room.press("E")
-    await room.wait_for("5 parameters")
-    await room.show(changed(room, "/camera"))
-    assert room.graph.asked_parameters == [NODE]
-    await room.show(changed(room, NODE))
-    assert room.graph.asked_parameters == [NODE, NODE]
-    await room.press("E")
-    await room.show(changed(room, NODE))
-    assert room.graph.asked_parameters == [NODE, NODE], "they are not shown"
+    assert PARAMETER_EVENTS in stage.graph.followed
+    await stage.press("E")
+    await stage.wait_for("5 parameters")
+    await stage.show(changed(stage, "/camera"))
+    assert stage.graph.asked_parameters == [NODE]
+    await stage.show(changed(stage, NODE))
+    assert stage.graph.asked_parameters == [NODE, NODE]
+    await stage.press("E")
+    await stage.show(changed(stage, NODE))
+    assert stage.graph.asked_parameters == [NODE, NODE], "they are not shown"
 
 
-def started(room: Room, *processes: int) -> GraphUpdate:
+def started(stage: Stage, *processes: int) -> GraphUpdate:
     """The graph in which the node lives in these processes, in none if there are none."""
-    others = [row for row in shown(room).nodes if row.name != NODE]
+    others = [row for row in shown(stage).nodes if row.name != NODE]
     (node,) = (row for row in graph_update().nodes if row.name == NODE)
     nodes = (*others, replace(node, processes=processes)) if processes else tuple(others)
-    return replace(shown(room), nodes=nodes)
+    return replace(shown(stage), nodes=nodes)
 
 
-async def test_a_node_that_was_started_again_is_read_anew(room: Room) -> None:
+async def test_a_node_that_was_started_again_is_read_anew(stage: Stage) -> None:
     """It has its first values again, and who listens now may not have heard it tell so."""
-    await room.show(started(room, 7))
-    await room.press("E")
-    await room.wait_for("5 parameters")
-    await room.show(started(room))
-    await room.show(started(room, 7))
-    assert room.graph.asked_parameters == [NODE]
-    await room.show(started(room))
-    await room.show(started(room, 8))
-    await room.wait(lambda: room.graph.asked_parameters == [NODE, NODE])
+    await stage.show(started(stage, 7))
+    await stage.press("E")
+    await stage.wait_for("5 parameters")
+    await stage.show(started(stage))
+    await stage.show(started(stage, 7))
+    assert stage.graph.asked_parameters == [NODE]
+    await stage.show(started(stage))
+    await stage.show(started(stage, 8))
+    await stage.wait(lambda: stage.graph.asked_parameters == [NODE, NODE])
 
 
 async def test_changes_faster_than_the_answers_are_read_once_more(
-    room: Room, monkeypatch: pytest.MonkeyPatch
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One that asked anew at each of them would never see an answer."""
     asked: list[Future[ParametersResult]] = []
@@ -125,32 +125,32 @@ async def test_changes_faster_than_the_answers_are_read_once_more(
         asked.append(Future())
         return asked[-1]
 
-    monkeypatch.setattr(room.graph, "parameters", ask)
-    await room.press("E")
+    monkeypatch.setattr(stage.graph, "parameters", ask)
+    await stage.press("E")
     for _round in range(3):
-        await room.show(changed(room, NODE))
+        await stage.show(changed(stage, NODE))
     assert len(asked) == 1
     asked[0].set_result(ParametersResult(NODE, (), "the first answer"))
-    await room.wait_for("the first answer")
-    await room.wait(lambda: len(asked) == 2)
+    await stage.wait_for("the first answer")
+    await stage.wait(lambda: len(asked) == 2)
     asked[1].set_result(ParametersResult(NODE, (), "the second answer"))
-    await room.wait_for("the second answer")
-    await settle(room.pilot)
+    await stage.wait_for("the second answer")
+    await settle(stage.pilot)
     assert len(asked) == 2
 
 
-async def test_a_refusal_keeps_the_dialog_open_and_says_why(room: Room) -> None:
-    room.graph.refusals["rate"] = "outside of 0.1 to 50"
-    await room.press("E", "down", "enter")
-    await typed(room, "99")
-    await room.wait_for("Refused: outside of 0.1 to 50")
-    await room.press("escape")
-    assert room.app.screen is room.screen
+async def test_a_refusal_keeps_the_dialog_open_and_says_why(stage: Stage) -> None:
+    stage.graph.refusals["rate"] = "outside of 0.1 to 50"
+    await stage.press("E", "down", "enter")
+    await typed(stage, "99")
+    await stage.wait_for("Refused: outside of 0.1 to 50")
+    await stage.press("escape")
+    assert stage.app.screen is stage.screen
 
 
-async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(room: Room) -> None:
-    await room.press("E", "down", "enter")
-    dialog = room.app.screen
+async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(stage: Stage) -> None:
+    await stage.press("E", "down", "enter")
+    dialog = stage.app.screen
     assert isinstance(dialog, ParameterDialog)
     assert NODE not in dialog.words().plain
     row = replace(dialog._row, name="a_namespace_of_parameters." * 3 + "END")
@@ -158,81 +158,81 @@ async def test_a_name_that_the_title_of_the_dialog_cuts_stands_whole_in_it(room:
     assert long.words().plain.startswith(f"{NODE} · {row.name}\n")
 
 
-async def test_what_can_only_be_read_is_not_offered_for_change(room: Room) -> None:
-    await room.press("E", "enter")
-    assert isinstance(room.app.screen, ParameterDialog)
-    assert room.app.screen.query_one(Input).disabled
-    assert "It can only be read" in room.seen()
-    await room.press("escape")
-    await room.wait(lambda: room.app.screen is room.screen)
+async def test_what_can_only_be_read_is_not_offered_for_change(stage: Stage) -> None:
+    await stage.press("E", "enter")
+    assert isinstance(stage.app.screen, ParameterDialog)
+    assert stage.app.screen.query_one(Input).disabled
+    assert "It can only be read" in stage.seen()
+    await stage.press("escape")
+    await stage.wait(lambda: stage.app.screen is stage.screen)
 
 
 async def test_a_node_that_does_not_answer_freezes_nothing(
-    room: Room, monkeypatch: pytest.MonkeyPatch
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     future: Future[ParametersResult] = Future()
-    monkeypatch.setattr(room.graph, "parameters", lambda _node: future)
-    await room.press("E")
-    assert "the node is being asked" in room.seen()
-    assert "asked, no answer for 0 s" in room.seen()
+    monkeypatch.setattr(stage.graph, "parameters", lambda _node: future)
+    await stage.press("E")
+    assert "the node is being asked" in stage.seen()
+    assert "asked, no answer for 0 s" in stage.seen()
     future.set_result(ParametersResult(NODE, (), "no answer within 5 s"))
-    await room.wait_for("no answer within 5 s")
+    await stage.wait_for("no answer within 5 s")
 
 
 async def test_an_answer_that_comes_late_is_not_taken_for_another_node(
-    room: Room, monkeypatch: pytest.MonkeyPatch
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     future: Future[ParametersResult] = Future()
-    monkeypatch.setattr(room.graph, "parameters", lambda _node: future)
-    await room.press("E", "E")
+    monkeypatch.setattr(stage.graph, "parameters", lambda _node: future)
+    await stage.press("E", "E")
     monkeypatch.undo()
-    await room.choose("/camera")
-    await room.press("E")
-    await room.wait_for("5 parameters")
+    await stage.choose("/camera")
+    await stage.press("E")
+    await stage.wait_for("5 parameters")
     future.set_result(ParametersResult(NODE, (), "too late"))
-    await settle(room.pilot)
-    assert "too late" not in room.seen()
+    await settle(stage.pilot)
+    assert "too late" not in stage.seen()
 
 
-async def test_they_are_saved_and_loaded_as_yaml(room: Room, tmp_path: Path) -> None:
+async def test_they_are_saved_and_loaded_as_yaml(stage: Stage, tmp_path: Path) -> None:
     path = tmp_path / "sonar.yaml"
-    await room.press("E", "W")
-    await typed(room, str(path))
-    await room.wait(lambda: room.app.screen is room.screen)
+    await stage.press("E", "W")
+    await typed(stage, str(path))
+    await stage.wait(lambda: stage.app.screen is stage.screen)
     assert "rate: 1.0" in path.read_text()
     path.write_text(path.read_text().replace("rate: 1.0", "rate: 3.0"))
-    await room.press("O")
-    await typed(room, str(path))
-    await room.wait(lambda: room.graph.set_to)
-    ((node, values),) = room.graph.set_to
+    await stage.press("O")
+    await typed(stage, str(path))
+    await stage.wait(lambda: stage.graph.set_to)
+    ((node, values),) = stage.graph.set_to
     assert node == NODE
     assert values["rate"] == 3.0
     assert "frame_id" not in values
 
 
 async def test_a_file_that_is_there_is_written_over_only_when_enter_is_pressed_again(
-    room: Room, tmp_path: Path
+    stage: Stage, tmp_path: Path
 ) -> None:
     path = tmp_path / "notes.yaml"
     path.write_text("precious")
-    await room.press("E", "W")
-    await typed(room, str(path))
-    await room.wait_for("Enter again overwrites it")
+    await stage.press("E", "W")
+    await typed(stage, str(path))
+    await stage.wait_for("Enter again to overwrite it")
     assert path.read_text() == "precious"
-    await room.press("enter")
-    await room.wait(lambda: room.app.screen is room.screen)
+    await stage.press("enter")
+    await stage.wait(lambda: stage.app.screen is stage.screen)
     assert "rate: 1.0" in path.read_text()
 
 
 async def test_a_file_that_is_wrong_is_told_with_its_line(
-    room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    stage: Stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Short names: a long one is broken into two lines anywhere.
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.yaml").write_text("/sonar_front:\n  ros__parameters:\n    rate: [1, 2\n")
-    await room.press("E", "O")
-    await typed(room, "bad.yaml")
-    await room.wait_for("bad.yaml:3:")
-    await typed(room, "none.yaml")
-    await room.wait_for("No such file")
-    assert room.graph.set_to == []
+    await stage.press("E", "O")
+    await typed(stage, "bad.yaml")
+    await stage.wait_for("bad.yaml:3:")
+    await typed(stage, "none.yaml")
+    await stage.wait_for("No such file")
+    assert stage.graph.set_to == []

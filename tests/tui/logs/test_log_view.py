@@ -1,81 +1,22 @@
-"""The log view under hands: following, pausing, choosing, searching, copying, writing."""
+"""The log view under hands: following, pausing, choosing, searching, copying."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from rich.cells import cell_len
-from textual.app import App, ComposeResult
 
-from launcher.status import LogLine, Severity
+from launcher.status import Severity
+from tests.tui.logs.bare_log import HOSTILE, LogApp, line, lines, rows, shown, texts
+from tests.waiting import until
 from tui.log_view.bar import LogBar
 from tui.log_view.filter import LogFilter
-from tui.log_view.pane import LogPane
-from tui.log_view.prompt import LogPrompt
 from tui.log_view.view import LogView
 
 if TYPE_CHECKING:
-    from textual.pilot import Pilot
-
-    from tests.tui.snapshots import SnapCompare
-
-HOSTILE = (
-    "\x1b[31mred\x1b[0m \x1b]52;c;cm0gLXJm\x07",
-    "[red]markup[/red] [@click=app.quit]quit[/]",
-    "nul \x00, bell \x07, c1 \x9b31m, \udcff half",
-    "right to left \u202egnp.exe\u202c",
-    "ｗｉｄｅ 你好 e\u0301 \U0001f9e0 \U0001f399\ufe0f \U0001f469\u200d\U0001f680" * 4,
-    "x" * 1_000_000,
-    "",
-)
-
-
-class LogApp(App[None]):
-    """A bare app with nothing but the log."""
-
-    def __init__(self, period_s: float = 0.0) -> None:
-        super().__init__()
-        self.pane = LogPane(LogView(period_s=period_s, file_of=lambda node: f"/logs/{node}.log"))
-
-    def compose(self) -> ComposeResult:
-        """The log fills the screen."""
-        yield self.pane
-
-    def on_mount(self) -> None:
-        """Keys go to the lines."""
-        self.pane.view.focus()
-
-
-def line(
-    seq: int, text: str = "", node: str = "sonar_front", severity: Severity = Severity.INFO
-) -> LogLine:
-    return LogLine(node, seq, 1_767_225_600.0 + seq, severity, text or f"line {seq}")
-
-
-def lines(first: int, count: int) -> list[LogLine]:
-    return [line(seq) for seq in range(first, first + count)]
-
-
-def rows(view: LogView) -> list[str]:
-    return [view.render_line(y).text.rstrip() for y in range(view.size.height)]
-
-
-def texts(view: LogView) -> list[str]:
-    """The text column of what is on screen."""
-    return [row.split("sonar_front ", 1)[-1] for row in rows(view) if row]
-
-
-async def shown(pilot: Pilot[None], lines: Sequence[LogLine]) -> LogView:
-    app = pilot.app
-    assert isinstance(app, LogApp)
-    app.pane.view.append(lines)
-    await pilot.pause()
-    return app.pane.view
+    pass
 
 
 async def test_the_newest_line_stays_in_sight() -> None:
@@ -321,61 +262,6 @@ async def test_resizing_keeps_the_line_that_was_at_the_top() -> None:
         assert view.top_id == top
 
 
-async def answer(pilot: Pilot[None], path: Path) -> None:
-    app = pilot.app
-    assert isinstance(app, LogApp)
-    field = app.pane.prompt.query_one("Input")
-    field.value = str(path)  # type: ignore[attr-defined]
-    await pilot.press("enter")
-    await app.workers.wait_for_complete()
-    await pilot.pause()
-
-
-def remark(app: App[None]) -> str:
-    return str(app.query_one(LogPrompt).query_one("#remark").render())
-
-
-async def test_lines_are_written_to_a_file_and_never_over_one_unasked(tmp_path: Path) -> None:
-    async with LogApp().run_test(size=(80, 12)) as pilot:
-        await shown(pilot, lines(1, 100))
-        app = pilot.app
-        assert isinstance(app, LogApp)
-        app.pane.save_folder = str(tmp_path)
-        app.pane.save()
-        await pilot.pause()
-        proposed = app.pane.prompt.query_one("Input").value  # type: ignore[attr-defined]
-        assert Path(proposed).parent == tmp_path
-        path = tmp_path / "new" / "my.log"
-        await answer(pilot, path)
-        assert len(path.read_text(encoding="utf-8").splitlines()) == 100
-        path.write_text("mine", encoding="utf-8")
-        app.pane.save()
-        await answer(pilot, path)
-        assert path.read_text(encoding="utf-8") == "mine"
-        assert "Enter again overwrites" in remark(app)
-        await answer(pilot, path)
-        assert path.read_text(encoding="utf-8").endswith("line 100\n")
-        assert app.pane.view.has_focus
-
-
-async def test_a_file_that_cannot_be_written_is_told_in_words(tmp_path: Path) -> None:
-    async with LogApp().run_test(size=(80, 12)) as pilot:
-        await shown(pilot, lines(1, 3))
-        app = pilot.app
-        assert isinstance(app, LogApp)
-        for path, words in (
-            (tmp_path, "There is such a file"),
-            (tmp_path / ("n" * 300), "too long"),
-            (Path("/proc/nowhere/x"), ""),
-            (Path(), "Name a file"),
-        ):
-            app.pane.save()
-            await answer(pilot, path if path != Path() else Path(" "))
-            assert words in remark(app)
-            assert remark(app)
-            await pilot.press("escape")
-
-
 async def test_a_flood_measures_and_draws_next_to_nothing() -> None:
     """Ten thousand lines in twenty batches cost no layout and at most one drawing a batch."""
     async with LogApp().run_test(size=(80, 24)) as pilot:
@@ -408,52 +294,6 @@ async def test_batches_that_come_close_together_are_drawn_once() -> None:
         view._tail.redraw = note  # type: ignore[method-assign]
         for batch in range(20):
             view.append(lines(11 + batch * 10, 10))
-        for _wait in range(200):
-            await pilot.pause(0.01)
-            if drawn:
-                break
+        await until(lambda: drawn, "the first drawing")
         assert len(drawn) == 1
         assert texts(view)[-1] == "line 210"
-
-
-def sample_lines() -> list[LogLine]:
-    severities = list(Severity)
-    names = ("sonar_front", "safety_stop", "ai_brain", "electronic_differential")
-    made = [
-        line(
-            1 + number // 4,
-            ("Публикую дистанцию: 1.84 м", "Путь свободен", HOSTILE[0], "Look around [bold]now[/]")[
-                number % 4
-            ],
-            names[number % 4],
-            severities[number % 5],
-        )
-        for number in range(24)
-    ]
-    return [*made, line(1250)]
-
-
-def test_every_severity_and_a_gap(
-    dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Severities as words and colours, a colour for each node, escapes as pictures, a gap told."""
-    monkeypatch.setenv("TZ", "UTC")
-    time.tzset()
-
-    async def prepare(pilot: Pilot[None]) -> None:
-        view = await shown(pilot, sample_lines())
-        view.log_filter = replace(view.log_filter, search="дистан")
-        await pilot.press("up", "up", *["shift+up"] * 4)
-
-    assert dump_compare(LogApp(), terminal_size=(90, 20), run_before=prepare)
-
-
-def test_a_narrow_log(dump_compare: SnapCompare, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Time, one letter and a short name are left; the text is folded between words."""
-    monkeypatch.setenv("TZ", "UTC")
-    time.tzset()
-
-    async def prepare(pilot: Pilot[None]) -> None:
-        await shown(pilot, sample_lines())
-
-    assert dump_compare(LogApp(), terminal_size=(46, 16), run_before=prepare)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
@@ -145,6 +145,8 @@ def test_the_lowest_severity_goes_round() -> None:
 ALPHABET = st.sampled_from("ab ё—\u0301你🧠\ufe0f\u200d🎙")
 
 
+@example("\u200daaa🧠🧠🧠", 8)
+@example("\u200d\u200d" + "a" * 10 + "🧠", 8)
 @given(st.text(ALPHABET, max_size=60), st.integers(8, 20))
 def test_folding_keeps_every_character_and_no_row_is_too_wide(text: str, width: int) -> None:
     pieces = folded(text, width)

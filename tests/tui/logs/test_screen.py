@@ -13,7 +13,7 @@ from textual.widgets import Input
 
 from launcher.events import LogEvent
 from launcher.status import Severity
-from tests.tui.recorded import LINES, RecordedPad, RecordedSession, line
+from tests.tui.recorded import LINES, RecordedOpener, RecordedSession, line
 from tests.tui.snapshots import Look, SnapCompare, every_look, settle
 from tests.waiting import until
 from tui.frame.key_bar import KeyBar
@@ -54,7 +54,7 @@ async def test_opened_late_it_has_every_line_once() -> None:
 
 async def test_lines_that_come_are_appended_whatever_screen_is_in_front() -> None:
     session = RecordedSession()
-    async with HOME.app("logs", RecordedPad(link=session)).run_test(size=HOME.size) as pilot:
+    async with HOME.app("logs", RecordedOpener(link=session)).run_test(size=HOME.size) as pilot:
         await settle(pilot)
         screen = screen_of(pilot)
         await pilot.press("1")

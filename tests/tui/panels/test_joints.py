@@ -11,7 +11,7 @@ from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
 from tests.tui.recorded import (
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     joints,
     lesson_samples,
     lesson_update,
@@ -66,8 +66,8 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
     kind: type[Drawing], other: Sample, came: str, awaited: str
 ) -> None:
     samples = {**lesson_samples(), other.topic: (other,)}
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(samples=samples)))
-    async with opened(pad, size=(160, 60)) as (app, pilot):
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
+    async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
         panel = app.screen.query_one(kind)
         words = " ".join(" ".join(rows(panel)).split())
@@ -75,7 +75,7 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
         assert came in words
         assert awaited in words
         assert "waiting for the first message" not in words
-        pad.graph.show(lesson_update())
+        opener.graph.show(lesson_update())
         await pilot.pause()
         await pilot.pause()
         assert "have come" not in " ".join(rows(panel))
@@ -85,19 +85,19 @@ async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
     topic = "/sensor/sonar_front"
     words = sample(topic, "std_msgs/msg/String", {"data": "1.5"})
     samples = {**lesson_samples(), topic: (words,)}
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(samples=samples)))
-    async with opened(pad, size=(160, 60)) as (app, pilot):
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
+    async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
         panel = app.screen.query_one("#front", Sonar)
         told = " ".join(" ".join(rows(panel)).split())
         assert "messages come, but of another type" in told
         assert f"{topic}: std_msgs/String comes; expected: std_msgs/Float32" in told
         # A look at which nothing has come changes nothing.
-        pad.graph.show(lesson_update(samples={}))
+        opener.graph.show(lesson_update(samples={}))
         await pilot.pause()
         await pilot.pause()
         assert "of another type" in " ".join(rows(panel))
-        pad.graph.show(lesson_update())
+        opener.graph.show(lesson_update())
         await pilot.pause()
         await pilot.pause()
         assert "1.84" in " ".join(rows(panel)) or "FREE" in " ".join(rows(panel))

@@ -12,7 +12,7 @@ from textual.app import App, ComposeResult
 from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
 from tests.tui.panel_stage import rows
-from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_map import (
     MAP_SESSION,
     NOBODY,
@@ -48,9 +48,9 @@ class Alone(App[None]):
         return "\n".join(rows(self.query_one(RoomMap)))
 
 
-def pad(update: GraphUpdate) -> RecordedPad:
+def opener_of(update: GraphUpdate) -> RecordedOpener:
     """The Deck with this graph."""
-    return RecordedPad(RecordedSession(MAP_SESSION), RecordedGraph(update))
+    return RecordedOpener(RecordedSession(MAP_SESSION), RecordedGraph(update))
 
 
 # ---------------------------------------------------------------- how it looks
@@ -59,7 +59,7 @@ def pad(update: GraphUpdate) -> RecordedPad:
 @both_languages
 def test_deck_with_a_map_looks(look: Look, snap_compare: SnapCompare) -> None:
     """Walls and boxes, the path in curves, rays that end at walls, the goal, the truth beside."""
-    app = look.app(pad=pad(map_update()))
+    app = look.app(opener=opener_of(map_update()))
     assert snap_compare(app, terminal_size=look.size, run_before=look.settle)
 
 
@@ -73,7 +73,9 @@ def test_deck_with_a_map_without_a_room_looks(look: Look, snap_compare: SnapComp
         sonar_front=(reading("front", math.inf),),
         sonar_rear=(reading("rear", math.nan),),
     )
-    assert snap_compare(look.app(pad=pad(update)), terminal_size=look.size, run_before=look.settle)
+    assert snap_compare(
+        look.app(opener=opener_of(update)), terminal_size=look.size, run_before=look.settle
+    )
 
 
 # ---------------------------------------------------------------- why it is empty

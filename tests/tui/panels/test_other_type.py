@@ -7,7 +7,7 @@ import pytest
 from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
 from tests.tui.panels.test_map import Alone
-from tests.tui.recorded import RecordedGraph, RecordedPad, lesson_samples, lesson_update, sample
+from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_samples, lesson_update, sample
 from tests.tui.recorded_lesson import TOPICS
 from tests.tui.recorded_map import map_update
 from tui.panels.camera import CameraFeed
@@ -33,8 +33,8 @@ async def test_another_type_is_told_and_not_waited_for(
     topics = tuple(row for row in TOPICS if row.name != gone)
     words = sample(topic, STRING, {"data": "1.5"})
     only = {topic: (words,)}
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(topics=topics, samples=only)))
-    async with opened(pad, size=(160, 60)) as (app, pilot):
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=topics, samples=only)))
+    async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
         widget = app.screen.query_one(kind).children[0]
 
@@ -44,12 +44,12 @@ async def test_another_type_is_told_and_not_waited_for(
         assert "messages come, but of another type" in told()
         assert f"{topic}: std_msgs/String comes; expected: {expected}" in told()
         # A look at which nothing has come changes nothing.
-        pad.graph.show(lesson_update(topics=topics, samples={}))
+        opener.graph.show(lesson_update(topics=topics, samples={}))
         await pilot.pause()
         await pilot.pause()
         assert "of another type" in told()
         right = {topic: lesson_samples()[topic]}
-        pad.graph.show(lesson_update(topics=topics, samples=right))
+        opener.graph.show(lesson_update(topics=topics, samples=right))
         await pilot.pause()
         await pilot.pause()
         assert "std_msgs/String" not in told()
@@ -59,8 +59,8 @@ async def test_what_the_robot_says_in_another_type_leaves_the_talk_and_stands_be
     samples = lesson_samples() | {
         "/audio/speaker_raw": (sample("/audio/speaker_raw", STRING, {"data": "yes"}),)
     }
-    pad = RecordedPad(graph=RecordedGraph(lesson_update(samples=samples)))
-    async with opened(pad, size=(160, 60)) as (app, pilot):
+    opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
+    async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
         told = " ".join(rows(app.screen.query_one(VoiceFeed).children[0]))
         assert "Осмотрись" in told

@@ -13,7 +13,7 @@ from tests.tui.panel_stage import rows
 from tests.tui.recorded import (
     TOPICS,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     lesson_samples,
     lesson_update,
     sample,
@@ -46,17 +46,17 @@ def gone(update: GraphUpdate) -> GraphUpdate:
 
 
 async def test_the_gauge_stops_where_the_safety_node_does() -> None:
-    pad = RecordedPad(graph=RecordedGraph(told(critical_m="0.8", slow_m="1.5")))
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener(graph=RecordedGraph(told(critical_m="0.8", slow_m="1.5")))
+    async with opened(opener) as (app, pilot):
         await pilot.pause()
         gauge = app.screen.query_one("#front", Sonar)
         assert "STOP" in rows(gauge)[0]
         # Somebody sets critical_distance while it runs.
-        pad.graph.show(told(critical_m="0.3", slow_m="1.5"))
+        opener.graph.show(told(critical_m="0.3", slow_m="1.5"))
         await pilot.pause()
         await pilot.pause()
         assert "CLOSE" in rows(gauge)[0]
-        pad.graph.show(told(1.2, critical_m="0.3", slow_m="1.5"))
+        opener.graph.show(told(1.2, critical_m="0.3", slow_m="1.5"))
         await pilot.pause()
         await pilot.pause()
         assert "CLOSE" in rows(gauge)[0]

@@ -10,7 +10,7 @@ import pytest
 from robot.motion.odometry import Pose
 from tests.tui.app_runs import opened
 from tests.tui.panel_stage import rows
-from tests.tui.recorded import RecordedGraph, RecordedPad, RecordedSession
+from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_lesson import NOW_S
 from tests.tui.recorded_map import MAP_SESSION, map_update, odometry, reading
 from tests.tui.snapshots import settle
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 KEPT = {"/sensor/sonar_front", "/sensor/sonar_rear", "/odom"}
 
 
-def pad() -> RecordedPad:
-    return RecordedPad(RecordedSession(MAP_SESSION), RecordedGraph(map_update()))
+def with_map() -> RecordedOpener:
+    return RecordedOpener(RecordedSession(MAP_SESSION), RecordedGraph(map_update()))
 
 
 def said(one: Sample) -> GraphUpdate:
@@ -35,14 +35,14 @@ def said(one: Sample) -> GraphUpdate:
 
 
 async def test_the_trend_of_a_sonar_has_no_gap_where_the_tab_was_another() -> None:
-    own = pad()
-    async with opened(own) as (app, pilot):
+    opener = with_map()
+    async with opened(opener) as (app, pilot):
         gauge = app.screen.query_one("#front", Sonar)
         await pilot.press("2")
         await settle(pilot)
         for second in range(1, 41):
             one = replace(reading("front", 0.2), received_s=NOW_S + second)
-            own.graph.show(said(one))
+            opener.graph.show(said(one))
             await pilot.pause()
         await pilot.press("1")
         await settle(pilot)
@@ -51,8 +51,8 @@ async def test_the_trend_of_a_sonar_has_no_gap_where_the_tab_was_another() -> No
 
 
 async def test_the_path_goes_on_where_the_tab_was_another() -> None:
-    own = pad()
-    async with opened(own) as (app, pilot):
+    opener = with_map()
+    async with opened(opener) as (app, pilot):
         drawing = app.screen.query_one(RoomMap)
         drawing.forget_path()
         await pilot.press("2")
@@ -61,7 +61,7 @@ async def test_the_path_goes_on_where_the_tab_was_another() -> None:
         drawing.settle = lambda: drawn.append(1)  # type: ignore[method-assign]
         for step in range(11):
             one = odometry(Pose(0.1 * step, 0.0, 0.0), at_s=100.0 + step)
-            own.graph.show(said(one))
+            opener.graph.show(said(one))
             await pilot.pause()
         await settle(pilot)
         assert drawing._trail.length_m == pytest.approx(1.0)
@@ -70,14 +70,14 @@ async def test_the_path_goes_on_where_the_tab_was_another() -> None:
 
 
 async def test_only_what_has_a_history_is_asked_for_while_unseen() -> None:
-    own = pad()
-    async with opened(own) as (_app, pilot):
-        assert own.graph.watched > KEPT
+    opener = with_map()
+    async with opened(opener) as (_app, pilot):
+        assert opener.graph.watched > KEPT
         await pilot.press("2")
         await settle(pilot)
-        assert own.graph.watched >= KEPT
-        assert "/map" not in own.graph.watched
-        assert "/odom" not in own.graph.followed
+        assert opener.graph.watched >= KEPT
+        assert "/map" not in opener.graph.watched
+        assert "/odom" not in opener.graph.followed
 
 
 def test_a_panel_without_a_history_keeps_nothing() -> None:

@@ -45,7 +45,7 @@ def test_sound_is_told_by_length_and_loudness() -> None:
 
 
 def test_a_few_odd_bytes_are_shown_as_such() -> None:
-    assert heard(b"\xff\xfe\x00").words == "3 bytes, no text: ff fe 00"
+    assert heard(b"\xff\xfe\x00").words == "3 bytes, not text: ff fe 00"
     assert heard(b"").words == "(an empty message)"
     assert heard(b"\x1b]52;c;AAAA\x07 harmless text that is long enough").words.startswith("␛]52")
 

@@ -15,7 +15,7 @@ from textual.widgets import Static
 from launcher.errors import DomainTakenError, ProfileError, ProfileProblem
 from launcher.status import Who
 from tests.tui.app_runs import opened
-from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedPad
+from tests.tui.recorded import LESSONS, NOW_S, SESSION, RecordedOpener
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
 from text.sentences import say
 from tui.app import DeckApp
@@ -61,23 +61,23 @@ def test_picker_with_a_session_in_the_background_looks(
     look: Look, dump_compare: SnapCompare
 ) -> None:
     """What runs in the background stands above the lessons, is chosen, and is told apart."""
-    pad = RecordedPad(sessions=[RUNNING])
-    assert dump_compare(look.app("picker", pad), terminal_size=look.size, run_before=look.settle)
+    opener = RecordedOpener(sessions=[RUNNING])
+    assert dump_compare(look.app("picker", opener), terminal_size=look.size, run_before=look.settle)
 
 
 async def test_enter_starts_the_first_lesson_for_a_newcomer() -> None:
-    pad = RecordedPad()
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, order=PICK) as (app, pilot):
         assert isinstance(app.screen, PickerScreen)
         await pilot.press("enter")
         await pilot.pause()
-        assert pad.orders == [PICK._replace(profile=LESSONS[0].path)]
+        assert opener.orders == [PICK._replace(profile=LESSONS[0].path)]
         assert app.feed.session is SESSION
 
 
 async def test_the_list_comes_back_on_the_lesson_that_was_opened_last() -> None:
-    pad = RecordedPad()
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, order=PICK) as (app, pilot):
         await pilot.press("down", "down", "enter")
         await settle(pilot)
         assert app.sessions.last_lesson == SESSION.name == "09-brain"
@@ -90,7 +90,7 @@ async def test_the_list_comes_back_on_the_lesson_that_was_opened_last() -> None:
 @pytest.mark.parametrize("last", ["00", "12"])
 async def test_the_whole_list_is_seen_at_80x24_whichever_lesson_is_chosen(last: str) -> None:
     many = [LESSONS[0]._replace(name=f"{at:02}", path=Path(f"{at:02}.yaml")) for at in range(13)]
-    app = DeckApp(RecordedPad(known=many), PICK, "deck")
+    app = DeckApp(RecordedOpener(known=many), PICK, "deck")
     app.sessions.last_lesson = last
     async with app.run_test(size=(80, 24)) as pilot:
         await settle(pilot)
@@ -106,7 +106,7 @@ async def test_a_list_longer_than_the_screen_opens_with_all_above_that_there_is_
         LESSONS[0]._replace(name=f"{at:02}", lesson=f"{at:02}", path=Path(f"{at:02}.yaml"))
         for at in range(31)
     ]
-    app = DeckApp(RecordedPad(known=many), PICK, "deck")
+    app = DeckApp(RecordedOpener(known=many), PICK, "deck")
     app.sessions.last_lesson = last
     async with app.run_test(size=(80, 24)) as pilot:
         await settle(pilot)
@@ -126,46 +126,46 @@ def shown(app: DeckApp) -> str:
 
 
 async def test_another_lesson_is_chosen_by_keys_and_told_about() -> None:
-    pad = RecordedPad()
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, order=PICK) as (app, pilot):
         await pilot.press("home", "down")
         await pilot.pause()
         assert "Starts 1 node: hello_node" in about(app.screen)
         await pilot.press("enter")
         await pilot.pause()
-        assert pad.orders[0].profile == Path("profiles/01-hello.yaml")
+        assert opener.orders[0].profile == Path("profiles/01-hello.yaml")
 
 
 async def test_one_click_chooses_a_lesson_and_two_open_it() -> None:
-    pad = RecordedPad()
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, order=PICK) as (app, pilot):
         await pilot.click(Rows, offset=(10, 4))
         await pilot.pause()
         assert "Topics: sonar" in about(app.screen)
-        assert pad.orders == []
+        assert opener.orders == []
         await pilot.click(Rows, offset=(10, 4), times=2)
         await pilot.pause()
-        assert pad.orders[0].profile == Path("profiles/02-sonar-safety.yaml")
+        assert opener.orders[0].profile == Path("profiles/02-sonar-safety.yaml")
 
 
 async def test_a_broken_profile_says_what_is_wrong_and_is_not_started() -> None:
-    pad = RecordedPad()
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener()
+    async with opened(opener, order=PICK) as (app, pilot):
         await pilot.press("end", "enter")
         await pilot.pause()
         assert "cannot be started" in about(app.screen)
         assert "my-robot.yaml:7:5" in about(app.screen)
-        assert pad.orders == []
+        assert opener.orders == []
 
 
 async def test_what_runs_in_the_background_is_attached_to() -> None:
-    pad = RecordedPad(sessions=[RUNNING])
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener(sessions=[RUNNING])
+    async with opened(opener, order=PICK) as (app, pilot):
         assert "Already running" in about(app.screen)
         assert "started by ann on pts/2 from 10.0.0.7 (pid 4000) at 0" in about(app.screen)
         await pilot.press("enter")
         await pilot.pause()
-        assert pad.orders == [PICK._replace(attach="02-sonar-safety")]
+        assert opener.orders == [PICK._replace(attach="02-sonar-safety")]
 
 
 def taken(*, can_share: bool) -> DomainTakenError:
@@ -174,51 +174,54 @@ def taken(*, can_share: bool) -> DomainTakenError:
 
 
 async def test_a_domain_that_is_taken_is_told_before_and_another_is_offered() -> None:
-    pad = RecordedPad(refusal=taken(can_share=True))
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener(refusal=taken(can_share=True))
+    async with opened(opener, order=PICK) as (app, pilot):
         await pilot.press("enter")
         await settle(pilot)
         assert isinstance(app.screen, DomainTakenScreen)
         words = str(app.screen.words())
         assert "01-hello: ann on pts/2, supervisor 4100" in words
         assert "Domain 43 is free: 01-hello can start in it." in words
-        pad.refusal = None
+        opener.refusal = None
         await pilot.press("enter")
         await settle(pilot)
-        assert [order.domain for order in pad.orders] == [42, 43]
+        assert [order.domain for order in opener.orders] == [42, 43]
         assert app.feed.session is SESSION
 
 
 async def test_it_may_be_started_beside_the_other() -> None:
-    pad = RecordedPad(refusal=taken(can_share=True))
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener(refusal=taken(can_share=True))
+    async with opened(opener, order=PICK) as (app, pilot):
         await pilot.press("enter")
         await settle(pilot)
-        pad.refusal = None
+        opener.refusal = None
         await pilot.press("s")
         await settle(pilot)
-        assert [(order.domain, order.beside) for order in pad.orders] == [(42, False), (42, True)]
+        assert [(order.domain, order.beside) for order in opener.orders] == [
+            (42, False),
+            (42, True),
+        ]
         assert app.feed.session is SESSION
 
 
 async def test_it_may_not_where_both_have_the_same_nodes_and_need_not_be_started() -> None:
-    pad = RecordedPad(refusal=taken(can_share=False))
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener(refusal=taken(can_share=False))
+    async with opened(opener, order=PICK) as (app, pilot):
         await pilot.press("enter")
         await settle(pilot)
         await pilot.press("s")
         await settle(pilot)
         assert isinstance(app.screen, DomainTakenScreen)
         assert "one domain is not enough" in str(app.screen.words())
-        assert len(pad.orders) == 1
+        assert len(opener.orders) == 1
         await pilot.press("escape")
         await settle(pilot)
         assert isinstance(app.screen, PickerScreen)
 
 
 async def test_one_that_was_named_and_is_not_to_start_ends_with_words() -> None:
-    pad = RecordedPad(refusal=taken(can_share=True))
-    async with opened(pad) as (app, pilot):
+    opener = RecordedOpener(refusal=taken(can_share=True))
+    async with opened(opener) as (app, pilot):
         assert isinstance(app.screen, DomainTakenScreen)
         await pilot.press("escape")
         await settle(pilot)
@@ -229,8 +232,8 @@ async def test_one_that_was_named_and_is_not_to_start_ends_with_words() -> None:
 @one_look
 def test_domain_taken_looks(look: Look, dump_compare: SnapCompare) -> None:
     """A dialog that names the session there and a free domain; three keys answer it."""
-    pad = RecordedPad(refusal=taken(can_share=True))
-    assert dump_compare(look.app("deck", pad), terminal_size=look.size, run_before=look.settle)
+    opener = RecordedOpener(refusal=taken(can_share=True))
+    assert dump_compare(look.app("deck", opener), terminal_size=look.size, run_before=look.settle)
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
@@ -238,8 +241,8 @@ async def test_a_lesson_that_cannot_be_opened_says_why_and_the_picker_is_back(
     language: str,
 ) -> None:
     problem = ProfileProblem("a.yaml", 3, 5, "nodes.x", say("unknown key"))
-    pad = RecordedPad(refusal=ProfileError([problem]))
-    async with opened(pad, order=PICK) as (app, pilot):
+    opener = RecordedOpener(refusal=ProfileError([problem]))
+    async with opened(opener, order=PICK) as (app, pilot):
         app.speak(language)
         await pilot.press("enter")
         await pilot.pause()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,10 +11,10 @@ from textual.pilot import Pilot
 from graph.bag.errors import unreadable
 from graph.bag.reading import Bag, TopicInBag
 from graph.replay.replay import Replay
-from tests import waiting
-from tests.tui.replayed import BagPad, replayed
+from tests.tui.replayed import BagOpener, replayed
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look
 from tests.unit.bags import write_bag, write_robot_bag
+from tests.waiting import until
 from text.i18n import set_language
 from tui.app import DeckApp
 from tui.frame.key_bar import KeyBar
@@ -27,12 +27,6 @@ def drive(tmp_path: Path) -> Path:
     return write_robot_bag(tmp_path / "drive")
 
 
-async def until(pilot: Pilot[int], condition: Callable[[], object]) -> None:
-    """Let the app work until the condition holds, and handle what it has to then."""
-    await waiting.until(condition, "what is to come")
-    await pilot.pause()
-
-
 def text_of(app: DeckApp) -> str:
     """What stands on the screen, its lines put one after the other."""
     return "\n".join(strip.text for strip in app.screen._compositor.render_strips())
@@ -40,7 +34,7 @@ def text_of(app: DeckApp) -> str:
 
 def shown(look: Look, bag: Path, screen: str, position_s: float = 6.2) -> DeckApp:
     set_language(look.language)
-    return DeckApp(BagPad(position_s=position_s), OpenRequest(replay=ReplayRequest(bag)), screen)
+    return DeckApp(BagOpener(position_s=position_s), OpenRequest(replay=ReplayRequest(bag)), screen)
 
 
 async def there(pilot: Pilot[int], position_s: float = 6.2) -> None:
@@ -54,7 +48,7 @@ async def there(pilot: Pilot[int], position_s: float = 6.2) -> None:
             replay is not None and replay.state.position_s == position_s and bool(app.feed.update)
         )
 
-    await until(pilot, stands)
+    await until(stands, "the bag at its place")
     await pilot.pause(0.3)
     app.replay_changed()
     await pilot.pause()
@@ -98,31 +92,31 @@ def state_is(replay: Replay, **wanted: object) -> bool:
 async def test_keys_play_pause_step_jump_and_change_the_rate(drive: Path) -> None:
     async with replayed(drive) as (_app, pilot, replay):
         await pilot.press("full_stop")
-        await until(pilot, lambda: replay.state.position_s == pytest.approx(0.1))
+        await until(lambda: replay.state.position_s == pytest.approx(0.1), "0.1 s")
         await pilot.press("shift+right")
-        await until(pilot, lambda: replay.state.position_s == pytest.approx(5.1))
+        await until(lambda: replay.state.position_s == pytest.approx(5.1), "5.1 s")
         await pilot.press("shift+left")
-        await until(pilot, lambda: replay.state.position_s == pytest.approx(0.1))
+        await until(lambda: replay.state.position_s == pytest.approx(0.1), "0.1 s")
         await pilot.press("plus")
-        await until(pilot, lambda: state_is(replay, rate=2.0))
+        await until(lambda: state_is(replay, rate=2.0), "twice the rate")
         await pilot.press("minus", "minus")
-        await until(pilot, lambda: state_is(replay, rate=0.5))
+        await until(lambda: state_is(replay, rate=0.5), "half the rate")
         await pilot.press("L")
-        await until(pilot, lambda: state_is(replay, loop=True))
+        await until(lambda: state_is(replay, loop=True), "the loop")
         await pilot.press("f7")
-        await until(pilot, lambda: state_is(replay, paused=False))
-        await until(pilot, lambda: replay.state.position_s > 0.2)
+        await until(lambda: state_is(replay, paused=False), "the replay at work")
+        await until(lambda: replay.state.position_s > 0.2, "the next messages")
 
 
 async def test_a_click_on_the_track_jumps_there(drive: Path) -> None:
     async with replayed(drive) as (app, pilot, replay):
         bar = app.screen.query_one(ReplayBar)
-        await until(pilot, lambda: bar.track[1])
+        await until(lambda: bar.track[1], "the track")
         begin, width = bar.track
         await pilot.click(ReplayBar, offset=(begin + width - 1, 0))
-        await until(pilot, lambda: state_is(replay, position_s=10.0))
+        await until(lambda: state_is(replay, position_s=10.0), "the end")
         await pilot.click(ReplayBar, offset=(1, 0))
-        await until(pilot, lambda: state_is(replay, paused=False))
+        await until(lambda: state_is(replay, paused=False), "the replay at work")
         assert replay.state.position_s < 5.0, "at the end it begins anew"
 
 
@@ -163,28 +157,28 @@ async def test_no_screen_advises_what_only_a_robot_takes(
     tmp_path: Path, screen: str, told: str, untrue: str
 ) -> None:
     bag = write_robot_bag(tmp_path / "drive", silent=("/ai_command",))
-    app = DeckApp(BagPad(position_s=6.0), OpenRequest(replay=ReplayRequest(bag)), screen)
-    async with app.run_test(size=(120, 40)) as pilot:
-        await until(pilot, lambda: told in text_of(app))
+    app = DeckApp(BagOpener(position_s=6.0), OpenRequest(replay=ReplayRequest(bag)), screen)
+    async with app.run_test(size=(120, 40)):
+        await until(lambda: told in text_of(app), "what is told")
         assert untrue not in text_of(app)
 
 
 async def test_a_bag_without_panels_opens_on_its_topics(tmp_path: Path) -> None:
-    async with replayed(write_bag(tmp_path / "walk")) as (app, pilot, _replay):
-        await until(pilot, lambda: getattr(app.screen, "tab", "") == "topics")
+    async with replayed(write_bag(tmp_path / "walk")) as (app, _pilot, _replay):
+        await until(lambda: getattr(app.screen, "tab", "") == "topics", "the topics")
 
 
 async def test_the_panels_show_what_was_recorded(drive: Path) -> None:
-    async with replayed(drive, size=(80, 24), position_s=10.0) as (app, pilot, _replay):
-        await until(pilot, lambda: "0.26" in app.export_screenshot())
+    async with replayed(drive, size=(80, 24), position_s=10.0) as (app, _pilot, _replay):
+        await until(lambda: "0.26" in app.export_screenshot(), "the distance")
 
 
 @pytest.mark.parametrize("name", ["nothing", "link to itself"])
 async def test_what_is_no_bag_ends_with_a_word_and_two(tmp_path: Path, name: str) -> None:
     (tmp_path / "link to itself").symlink_to(tmp_path / "link to itself")
-    app = DeckApp(BagPad(), OpenRequest(replay=ReplayRequest(tmp_path / name)), "deck")
-    async with app.run_test() as pilot:
-        await until(pilot, lambda: app.sessions.parting_words)
+    app = DeckApp(BagOpener(), OpenRequest(replay=ReplayRequest(tmp_path / name)), "deck")
+    async with app.run_test():
+        await until(lambda: app.sessions.parting_words, "a word")
     assert app.return_code == 2
     assert "there is no such file or folder" in app.sessions.parting_words
 
@@ -199,7 +193,9 @@ async def test_a_bag_that_cannot_be_read_is_not_put_down_to_ros(
     monkeypatch.setattr(Bag, "messages", fail)
     async with replayed(drive) as (app, pilot, _replay):
         await pilot.press(key)
-        await until(pilot, lambda: "The recording cannot be read" in text_of(app))
+        await until(
+            lambda: "The recording cannot be read" in text_of(app), "that it cannot be read"
+        )
         assert "Input/output error" in text_of(app)
         assert "ROS cannot be observed" not in text_of(app)
 
@@ -210,14 +206,14 @@ async def test_a_damaged_place_is_told_when_it_is_come_to(tmp_path: Path) -> Non
     wrong = bytearray(file.read_bytes())
     wrong[len(wrong) // 3 : len(wrong) // 3 + 2000] = b"\xff" * 2000
     file.write_bytes(wrong)
-    async with replayed(bag) as (app, pilot, replay):
+    async with replayed(bag) as (app, _pilot, replay):
         assert "⚠ damaged" not in text_of(app)
         replay.seek(4900.0)
-        await until(pilot, lambda: replay.state.position_s == 4900.0)
+        await until(lambda: replay.state.position_s == 4900.0, "the place behind it")
         replay.seek(1600.0)
         replay.step()
-        await until(pilot, lambda: "⚠ damaged" in text_of(app))
-        await until(pilot, lambda: app._notifications)
+        await until(lambda: "⚠ damaged" in text_of(app), "the mark")
+        await until(lambda: app._notifications, "what is lost")
         (told,) = app._notifications
         assert "is damaged: messages lost: " in told.message
 
@@ -225,14 +221,14 @@ async def test_a_damaged_place_is_told_when_it_is_come_to(tmp_path: Path) -> Non
 async def test_leaving_lets_go_of_the_bag(drive: Path) -> None:
     async with replayed(drive) as (app, pilot, replay):
         await pilot.press("q")
-        await until(pilot, lambda: app._exit)
+        await until(lambda: app._exit, "the end of the app")
         assert replay._thread is not None
         assert not replay._thread.is_alive()
 
 
 async def test_what_nodes_logged_is_in_the_log(drive: Path) -> None:
-    async with replayed(drive) as (app, pilot, _replay):
-        await until(pilot, lambda: app.feed.history)
+    async with replayed(drive) as (app, _pilot, _replay):
+        await until(lambda: app.feed.history, "the log")
         (line,) = app.feed.history.all()
         assert (line.node, line.severity.value, line.text) == ("safety_stop", "warn", "too near")
         assert line.time_s == 1_700_000_000

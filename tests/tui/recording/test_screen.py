@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from graph.recording import recorder as recording
 from graph.recording.recorder import RecordedTopic, RecordingStatus
 from tests.tui.app_runs import opened
 from tests.tui.snapshots import Look, SnapCompare, one_look
+from tests.waiting import until
 from tui.app import DeckApp
 from tui.frame.title_bar import TitleBar
 
@@ -50,14 +50,6 @@ def _stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recording, "Recorder", Recorder)
 
 
-async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
-    for _round in range(600):
-        if condition():
-            return
-        await pilot.pause(0.02)
-    pytest.fail("it has not come")
-
-
 def title(app: DeckApp) -> str:
     return app.screen.query_one(TitleBar).text
 
@@ -69,7 +61,7 @@ def told(app: DeckApp) -> list[str]:
 async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6")
-        await until(pilot, lambda: "● rec 12 s 3.4 MB" in title(app))
+        await until(lambda: "● rec 12 s 3.4 MB" in title(app), "how much is recorded")
         (recorder,) = Recorder.made
         assert app.feed.session is not None
         session = app.feed.session
@@ -77,43 +69,44 @@ async def test_a_key_begins_and_ends_it_and_a_toast_tells_where(tmp_path: Path) 
         assert recorder.status.folder.startswith(str(tmp_path / "recordings" / "09-brain"))
         assert f"Recording into {recorder.status.folder}; f6 ends it." in told(app)
         await pilot.press("f6")
-        await until(pilot, lambda: recorder.stopped)
-        await until(pilot, lambda: "rec" not in title(app))
-        await until(pilot, lambda: any("240 messages" in words for words in told(app)))
+        await until(lambda: recorder.stopped, "the end of the recording")
+        await until(lambda: "rec" not in title(app), "a title without it")
+        await until(lambda: any("240 messages" in words for words in told(app)), "its size")
 
 
 async def test_with_shift_it_records_without_pictures() -> None:
     async with opened() as (app, pilot):
         await pilot.press("shift+f6")
-        await until(pilot, lambda: "● rec" in title(app))
+        await until(lambda: "● rec" in title(app), "the mark in the title")
         (recorder,) = Recorder.made
         assert recorder.asked[2] is False
         # Another press does not end it, and does not begin a second one.
         await pilot.press("shift+f6")
         await pilot.press("f6")
-        await until(pilot, lambda: recorder.stopped)
+        await until(lambda: recorder.stopped, "the end of the recording")
         assert Recorder.made == [recorder]
 
 
 async def test_that_the_disk_will_be_full_is_told_once() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6")
-        await until(pilot, lambda: Recorder.made)
+        await until(lambda: Recorder.made, "the recorder")
         (recorder,) = Recorder.made
         recorder.status = replace(recorder.status, left_s=90.0)
-        await until(pilot, lambda: "Recording: the disk has room for 1:30." in told(app))
+        full = "Recording: the disk has room for 1:30."
+        await until(lambda: full in told(app), "the word that it will be full")
         recorder.status = replace(recorder.status, left_s=80.0, seconds=13.0)
-        await until(pilot, lambda: "● rec 13 s" in title(app))
+        await until(lambda: "● rec 13 s" in title(app), "another second")
         assert not any("1:20" in words for words in told(app))
 
 
 async def stopped_and_recorded(app: DeckApp, pilot: Pilot[Any]) -> tuple[str, str]:
     """Press the stop, then the key that records; return the title before and after."""
     await pilot.press("space")
-    await until(pilot, lambda: "STOP" in title(app).upper())
+    await until(lambda: "STOP" in title(app).upper(), "the stop in the title")
     before = title(app)
     await pilot.press("f6")
-    await until(pilot, lambda: app.recording.words)
+    await until(lambda: app.recording.words, "the words of the recording")
     await pilot.pause()
     return before, title(app)
 
@@ -137,14 +130,14 @@ async def test_the_key_records_from_a_text_field_too() -> None:
     async with opened(screen="composer") as (app, pilot):
         assert isinstance(app.focused, TextArea)
         await pilot.press("f6")
-        await until(pilot, lambda: "● rec 12 s 3.4 MB" in title(app))
+        await until(lambda: "● rec 12 s 3.4 MB" in title(app), "how much is recorded")
         assert app.focused.selected_text == ""
 
 
 async def test_it_ends_with_the_session() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6")
-        await until(pilot, lambda: app.recording.active)
+        await until(lambda: app.recording.active, "the recording")
         await app.sessions.let_go()
         assert Recorder.made[0].stopped
 
@@ -152,20 +145,20 @@ async def test_it_ends_with_the_session() -> None:
 async def test_it_ends_before_the_screen_is_left() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6")
-        await until(pilot, lambda: app.recording.active)
+        await until(lambda: app.recording.active, "the recording")
         await pilot.press("q")
-        await until(pilot, lambda: app._exit)
+        await until(lambda: app._exit, "the end of the app")
         assert Recorder.made[0].stopped
 
 
 async def test_what_goes_wrong_is_said_and_ends_it() -> None:
     async with opened() as (app, pilot):
         await pilot.press("f6")
-        await until(pilot, lambda: app.recording.active)
+        await until(lambda: app.recording.active, "the recording")
         (recorder,) = Recorder.made
         recorder.status = replace(recorder.status, error="the disk is full", dropped=3, lost=3)
-        await until(pilot, lambda: not app.recording.active)
-        await until(pilot, lambda: "the disk is full" in told(app))
+        await until(lambda: not app.recording.active, "the end of the recording")
+        await until(lambda: "the disk is full" in told(app), "the reason")
         assert any(words.startswith("3 messages are missing") for words in told(app))
 
 
@@ -173,7 +166,8 @@ async def test_a_folder_that_cannot_be_made_is_said() -> None:
     Recorder.refusal = not_made(Path("/full"), OSError(28, "No space left on device"))
     async with opened() as (app, pilot):
         await pilot.press("f6")
-        await until(pilot, lambda: "/full cannot be made: No space left on device" in told(app))
+        why = "/full cannot be created: No space left on device"
+        await until(lambda: why in told(app), "the reason")
         assert not app.recording.active
 
 
@@ -186,7 +180,7 @@ def test_recording_looks(look: Look, dump_compare: SnapCompare) -> None:
         assert isinstance(app, DeckApp)
         await look.settle(pilot)
         await pilot.press("f6")
-        await until(pilot, lambda: app.recording.active)
+        await until(lambda: app.recording.active, "the recording")
         # The folder is named by the time.
         app.clear_notifications()
         await pilot.pause()

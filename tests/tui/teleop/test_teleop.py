@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 from textual import events
@@ -19,7 +19,7 @@ from tests.tui.app_runs import LESSON_9, opened
 from tests.tui.recorded import (
     TOPICS,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     RecordedSession,
     lesson_samples,
     lesson_update,
@@ -27,6 +27,7 @@ from tests.tui.recorded import (
     topic,
 )
 from tests.tui.snapshots import Look, SnapCompare, every_look
+from tests.waiting import until
 from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
@@ -36,6 +37,9 @@ from tui.teleop.keys import FIRST_HOLD_S, Move
 from tui.teleop.route import DRIVE_TYPE
 from tui.teleop.widget import TeleopPanel
 from tui.terminal.stall_detector import DRAIN_S
+
+if TYPE_CHECKING:
+    from graph.replay.replay import Replay
 
 STARTED_S = 1.0
 """Long before any key is pressed: a key that is stamped later counts as pressed now."""
@@ -70,31 +74,25 @@ def gated(said: Any = None, **more: Any) -> GraphUpdate:
     return lesson_update(topics=GATED, samples=samples, **more)
 
 
-@dataclass
-class Pad(RecordedPad):
-    """With the graph and the session as what they are."""
-
-    graph: RecordedGraph = field(default_factory=RecordedGraph)
-    link: RecordedSession = field(default_factory=RecordedSession)
-
-
-def pad_of(update: GraphUpdate) -> Pad:
-    return Pad(graph=RecordedGraph(update))
+def opener_of(update: GraphUpdate) -> RecordedOpener:
+    return RecordedOpener(graph=RecordedGraph(update))
 
 
 @asynccontextmanager
 async def driving(
-    pad: Pad, size: tuple[int, int] = (80, 24)
+    opener: RecordedOpener, size: tuple[int, int] = (80, 24)
 ) -> AsyncIterator[tuple[DeckApp, Pilot[Any], TeleopPanel]]:
-    async with opened(pad, size=size) as (app, pilot):
+    async with opened(opener, size=size) as (app, pilot):
         await pilot.press("t")
         await pilot.pause()
         yield app, pilot, app.screen.query_one(TeleopPanel)
 
 
-def held(pad: Pad) -> list[tuple[str, float, float]]:
+def held(opener: RecordedOpener) -> list[tuple[str, float, float]]:
     """(topic, m/s, rad) of what has been held so far."""
-    drives: list[tuple[str, Any]] = [(each[0], each[2].value["drive"]) for each in pad.graph.held]
+    drives: list[tuple[str, Any]] = [
+        (each[0], each[2].value["drive"]) for each in opener.graph.held
+    ]
     return [(name, drive["speed"], drive["steering_angle"]) for name, drive in drives]
 
 
@@ -103,15 +101,15 @@ def text_of(panel: TeleopPanel) -> str:
 
 
 async def test_opening_it_makes_a_publisher_and_publishes_nothing() -> None:
-    pad = pad_of(gated())
-    async with opened(pad) as (_app, pilot):
-        assert [each[0] for each in pad.graph.prepared] == ["/emergency_stop"]
+    opener = opener_of(gated())
+    async with opened(opener) as (_app, pilot):
+        assert [each[0] for each in opener.graph.prepared] == ["/emergency_stop"]
         await pilot.press("t")
         await pilot.pause()
-        assert pad.graph.prepared[1:] == [(DRIVE_TELEOP, DRIVE_TYPE, False)]
-        assert not pad.graph.held
-        assert not pad.graph.published
-        assert not pad.graph.repeated
+        assert opener.graph.prepared[1:] == [(DRIVE_TELEOP, DRIVE_TYPE, False)]
+        assert not opener.graph.held
+        assert not opener.graph.published
+        assert not opener.graph.repeated
 
 
 async def test_each_key_holds_a_command_for_a_while_within_limits_that_keys_change() -> None:
@@ -121,52 +119,52 @@ async def test_each_key_holds_a_command_for_a_while_within_limits_that_keys_chan
         (0.0, 0.3): ("left", "a", "ф"),
         (0.0, -0.3): ("right", "d", "в", "В"),
     }
-    pad = pad_of(gated())
-    async with driving(pad) as (app, pilot, panel):
+    opener = opener_of(gated())
+    async with driving(opener) as (app, pilot, panel):
         for asked, names in keys.items():
             for name in names:
                 panel.release()
                 await pilot.press(name)
-                assert held(pad)[-1] == (DRIVE_TELEOP, *asked), name
-        assert len(pad.graph.held) == sum(map(len, keys.values()))
-        word = pad.graph.held[0][2]
+                assert held(opener)[-1] == (DRIVE_TELEOP, *asked), name
+        assert len(opener.graph.held) == sum(map(len, keys.values()))
+        word = opener.graph.held[0][2]
         assert word.until_s == STARTED_S + FIRST_HOLD_S
         assert word.rest["drive"] == {"speed": 0.0, "steering_angle": 0.0}
         await pilot.press("q", "x", "r", "X", "й", "c", "z")
         await pilot.pause()
         assert app.is_running
-        assert pad.link.asked == []
+        assert opener.link.asked == []
         await pilot.press("plus", "plus", "minus", "right_square_bracket", "up", "a")
-        assert held(pad)[-1] == (DRIVE_TELEOP, 0.25, 0.35)
+        assert held(opener)[-1] == (DRIVE_TELEOP, 0.25, 0.35)
         assert "0.25 m/s" in text_of(panel)
         assert "0.35 rad" in text_of(panel)
 
 
 async def test_where_nobody_listens_nothing_is_held_and_it_says_why() -> None:
     deaf = tuple(replace(row, subscribers=0) for row in TOPICS)
-    pad = pad_of(lesson_update(topics=deaf))
-    async with driving(pad) as (_app, pilot, panel):
+    opener = opener_of(lesson_update(topics=deaf))
+    async with driving(opener) as (_app, pilot, panel):
         await pilot.press("up")
-        assert pad.graph.held == []
+        assert opener.graph.held == []
         assert "Nobody listens to /drive_teleop or /drive: nothing will move." in text_of(panel)
 
 
 async def test_it_drives_by_the_lessons_topic_until_a_gate_comes() -> None:
-    pad = Pad()
-    async with driving(pad) as (_app, pilot, panel):
+    opener = RecordedOpener()
+    async with driving(opener) as (_app, pilot, panel):
         assert str(panel.border_title).endswith("→ /drive")
         await pilot.press("up")
-        assert held(pad) == [(DRIVE, 0.2, 0.0)]
-        pad.graph.show(gated())
+        assert held(opener) == [(DRIVE, 0.2, 0.0)]
+        opener.graph.show(gated())
         await pilot.pause()
-        assert pad.graph.let_go_of == [DRIVE]
+        assert opener.graph.let_go_of == [DRIVE]
         await pilot.press("up")
-        assert [name for name, *_asked in held(pad)] == [DRIVE, DRIVE_TELEOP]
+        assert [name for name, *_asked in held(opener)] == [DRIVE, DRIVE_TELEOP]
 
 
 async def test_whatever_takes_the_keys_away_stops() -> None:
-    pad = pad_of(gated())
-    async with driving(pad) as (app, pilot, _panel):
+    opener = opener_of(gated())
+    async with driving(opener) as (app, pilot, _panel):
         for leave, back in {
             "tab": (),
             "f1": ("escape",),
@@ -180,10 +178,10 @@ async def test_whatever_takes_the_keys_away_stops() -> None:
             await pilot.press("up")
             panel = app.screen.query_one(TeleopPanel)
             assert panel.asked.speed_m_s, leave
-            before = len(pad.graph.let_go_of)
+            before = len(opener.graph.let_go_of)
             await pilot.press(leave)
             await pilot.pause()
-            assert set(pad.graph.let_go_of[before:]) == {DRIVE_TELEOP}, leave
+            assert set(opener.graph.let_go_of[before:]) == {DRIVE_TELEOP}, leave
             assert panel.asked.speed_m_s == 0, leave
             if leave == "tab":
                 assert "the keys go elsewhere now; t, or a click" in text_of(panel)
@@ -193,12 +191,12 @@ async def test_whatever_takes_the_keys_away_stops() -> None:
 
 
 async def test_a_terminal_that_loses_the_focus_stops() -> None:
-    pad = pad_of(gated())
-    async with driving(pad) as (app, pilot, panel):
+    opener = opener_of(gated())
+    async with driving(opener) as (app, pilot, panel):
         await pilot.press("up")
         app.post_message(events.AppBlur())
         await pilot.pause()
-        assert pad.graph.let_go_of == [DRIVE_TELEOP]
+        assert opener.graph.let_go_of == [DRIVE_TELEOP]
         assert panel.asked.speed_m_s == 0
         app.post_message(events.AppFocus())
         await pilot.pause()
@@ -206,31 +204,27 @@ async def test_a_terminal_that_loses_the_focus_stops() -> None:
 
 
 async def test_the_end_of_the_session_takes_it_away() -> None:
-    pad = pad_of(gated())
-    async with driving(pad) as (app, pilot, _panel):
+    opener = opener_of(gated())
+    async with driving(opener) as (app, pilot, _panel):
         await pilot.press("up")
-        pad.link.say(ClosedEvent("gone"))
-        for _round in range(50):
-            await pilot.pause(0.01)
-            if not app.screen.query(TeleopPanel):
-                break
-        assert not app.screen.query(TeleopPanel)
-        assert pad.graph.stopped
+        opener.link.say(ClosedEvent("gone"))
+        await until(lambda: not app.screen.query(TeleopPanel), "the panel gone")
+        assert opener.graph.stopped
 
 
 async def test_a_key_that_has_waited_too_long_moves_nothing() -> None:
-    pad = pad_of(gated())
-    async with driving(pad) as (_app, pilot, panel):
+    opener = opener_of(gated())
+    async with driving(opener) as (_app, pilot, panel):
         late = events.Key("up", None)
         late.time = STARTED_S - FIRST_HOLD_S
         panel.post_message(late)
         await pilot.pause()
-        assert pad.graph.held == []
+        assert opener.graph.held == []
         late = events.Key("up", None)
         late.time = STARTED_S - 0.4
         panel.post_message(late)
         await pilot.pause()
-        assert pad.graph.held[0][2].until_s == pytest.approx(STARTED_S + 0.2)
+        assert opener.graph.held[0][2].until_s == pytest.approx(STARTED_S + 0.2)
 
 
 async def test_a_key_that_may_have_been_typed_while_the_process_slept_moves_nothing(
@@ -239,11 +233,11 @@ async def test_a_key_that_may_have_been_typed_while_the_process_slept_moves_noth
     def move_hand(to_s: float) -> None:
         monkeypatch.setattr(clock, "steady", lambda: to_s)
 
-    pad = pad_of(gated())
-    async with driving(pad) as (_app, pilot, panel):
+    opener = opener_of(gated())
+    async with driving(opener) as (_app, pilot, panel):
         move_hand(STARTED_S + 0.4)
         panel.press(Move.FORWARD)
-        assert len(pad.graph.held) == 1
+        assert len(opener.graph.held) == 1
         panel.release()
         # Read on waking, so stamped as if it were new: by then, or a moment later.
         woke_s = STARTED_S + 6.0
@@ -251,29 +245,29 @@ async def test_a_key_that_may_have_been_typed_while_the_process_slept_moves_noth
         await pilot.press("up")
         move_hand(woke_s + DRAIN_S - 0.1)
         await pilot.press("up")
-        assert len(pad.graph.held) == 1
+        assert len(opener.graph.held) == 1
         # Handled later than that it is no newer.
         move_hand(woke_s + DRAIN_S + 0.1)
         panel.press(Move.FORWARD, woke_s + 0.2)
-        assert len(pad.graph.held) == 1
+        assert len(opener.graph.held) == 1
         await pilot.press("up")
-        assert len(pad.graph.held) == 2
+        assert len(opener.graph.held) == 2
 
 
 async def test_while_stopped_the_keys_ask_for_nothing() -> None:
-    pad = pad_of(gated())
-    async with driving(pad) as (_app, pilot, panel):
+    opener = opener_of(gated())
+    async with driving(opener) as (_app, pilot, panel):
         await pilot.press("space", "up")
-        assert pad.graph.held == []
+        assert opener.graph.held == []
         assert "emergency stop: nothing moves; ^r releases" in text_of(panel)
         await pilot.press("ctrl+r", "up")
-        assert len(pad.graph.held) == 1
+        assert len(opener.graph.held) == 1
 
 
 async def test_what_cannot_be_published_is_told() -> None:
-    pad = pad_of(gated())
-    pad.graph.publish_error = RuntimeError("/drive_teleop carries \x1b[31mother")
-    async with driving(pad) as (_app, pilot, panel):
+    opener = opener_of(gated())
+    opener.graph.publish_error = RuntimeError("/drive_teleop carries \x1b[31mother")
+    async with driving(opener) as (_app, pilot, panel):
         await pilot.press("up")
         await pilot.pause()
         await pilot.pause()
@@ -281,12 +275,12 @@ async def test_what_cannot_be_published_is_told() -> None:
 
 
 async def test_it_is_offered_only_where_there_is_a_robot() -> None:
-    app = DeckApp(Pad(), LESSON_9)
+    app = DeckApp(RecordedOpener(), LESSON_9)
     screen = cast("LessonDeck", SimpleNamespace(feed=app.feed))
     assert not OpenTeleop.possible(screen)
     app.feed.link = RecordedSession()
     assert OpenTeleop.possible(screen)
-    app.feed.link.replay = object()  # type: ignore[attr-defined]
+    app.feed.replay = cast("Replay", object())
     assert not OpenTeleop.possible(screen)
 
 
@@ -339,5 +333,5 @@ def test_driving_looks(look: Look, snap_compare: SnapCompare) -> None:
         await pilot.press("t", "up", "left")
         await pilot.pause()
 
-    app = look.app(pad=pad_of(gated(SLOWED)))
+    app = look.app(opener=opener_of(gated(SLOWED)))
     assert snap_compare(app, terminal_size=look.size, run_before=drive_on)

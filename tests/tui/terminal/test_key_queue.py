@@ -8,7 +8,7 @@ import pytest
 from textual.events import Key, Paste
 from textual.widgets import Input, Static
 
-from tests.tui.recorded import RecordedGraph, RecordedPad
+from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.snapshots import Look, settle
 from tests.waiting import until
 from tui.terminal import key_queue
@@ -27,7 +27,7 @@ SIGNS = {"slash": "/", "space": " "}
 
 @pytest.fixture
 async def app() -> AsyncIterator[DeckApp]:
-    app = HOME.app("deck", RecordedPad(graph=RecordedGraph()))
+    app = HOME.app("deck", RecordedOpener(graph=RecordedGraph()))
     async with app.run_test(size=HOME.size) as pilot:
         await settle(pilot)
         yield app

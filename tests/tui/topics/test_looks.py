@@ -11,9 +11,10 @@ import pytest
 from textual.pilot import Pilot
 
 from graph.data import EndpointInfo, GraphUpdate, Trouble
-from tests.tui.recorded import NOW_S, TOPICS, RecordedPad, lesson_update, sample
+from tests.tui.recorded import NOW_S, TOPICS, RecordedOpener, lesson_update, sample
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
-from tests.tui.topics_room import CAMERA, depth_message, jpeg_message, with_camera
+from tests.tui.topics_stage import CAMERA, depth_message, jpeg_message, with_camera
+from tests.waiting import until
 from tui.app import DeckApp
 from tui.topics.detail import TopicDetail
 from tui.topics.screen import TopicsScreen
@@ -148,10 +149,9 @@ def test_a_plot_of_two_fields(look: Look, snap_compare: SnapCompare) -> None:
 async def drawn(pilot: Pilot[Any]) -> None:
     """Wait until the picture, or why there is none, is on the screen."""
     view = pilot.app.screen.query_one(TopicDetail).query_one(ImageView)
-    for _round in range(500):
-        await pilot.pause(0.01)
-        if view.has_picture or view.words[0] not in {"", AWAITED}:
-            break
+    await until(
+        lambda: view.has_picture or view.words[0] not in {"", AWAITED}, "a picture or a word"
+    )
     for _round in range(3):
         await pilot.pause()
 
@@ -233,5 +233,5 @@ def test_hostile_text(language: str, dump_compare: SnapCompare) -> None:
 
 def test_a_tiny_terminal(dump_compare: SnapCompare) -> None:
     """At 40x12 name and rate are left of the table, and a few lines of the message."""
-    app = Look((40, 12), "en").app("topics", RecordedPad())
+    app = Look((40, 12), "en").app("topics", RecordedOpener())
     assert dump_compare(app, terminal_size=(40, 12), run_before=shown("/drive"))

@@ -14,7 +14,8 @@ from graph.messages.yaml_form import check
 from graph.publishing.outbox import PublishError
 from robot.topics import EMERGENCY_STOP
 from tests.tui.app_runs import opened
-from tests.tui.recorded import NOW_S, RecordedGraph, RecordedPad, lesson_update
+from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_update
+from tests.waiting import until
 from tui.emergency.state import TOPIC_TYPE
 from tui.frame.title_bar import TitleBar
 from tui.help.page import Page
@@ -59,23 +60,12 @@ class Desk:
         self.graph.show(replace(lesson_update(), publications=before.publications))
         await self.pilot.pause()
         await self.pilot.press(key)
-        await self.until(lambda: self.dialog.form.value is not None)
-
-    async def until(self, true: Any) -> None:
-        """Wait until this is so."""
-        for _round in range(500):
-            await self.pilot.pause(0.02)
-            if true():
-                return
-        pytest.fail("it did not come to that")
+        await until(lambda: self.dialog.form.value is not None, "a form that is right")
 
     async def says(self, words: str) -> None:
         """Wait until this is said beside the rate."""
-        for _round in range(500):
-            await self.pilot.pause(0.02)
-            if words in self.dialog.rate.said:
-                return
-        pytest.fail(f"it says {self.dialog.rate.said!r}")
+        rate = self.dialog.rate
+        await until(lambda: words in rate.said, lambda: f"{words!r}, but {rate.said!r}")
 
     def fill(self, old: str, new: str) -> None:
         """Change what stands in the form."""
@@ -93,7 +83,7 @@ def graph() -> RecordedGraph:
 @pytest.fixture
 async def desk(graph: RecordedGraph) -> AsyncIterator[Desk]:
     """The screen of topics, the dialog not yet open."""
-    async with opened(RecordedPad(graph=graph), "topics") as (app, pilot):
+    async with opened(RecordedOpener(graph=graph), "topics") as (app, pilot):
         yield Desk(app, pilot, graph)
 
 
@@ -122,13 +112,13 @@ async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> Non
     assert desk.dialog.focused is desk.dialog.form.editor
     assert desk.dialog.form.editor.cursor_location == (6, 9)
     desk.fill("fast", "1")
-    await desk.until(lambda: desk.dialog.rate.said == "")
+    await until(lambda: desk.dialog.rate.said == "", "the word gone that it was not sent")
 
 
 async def test_the_newest_message_fills_the_form(desk: Desk) -> None:
     await desk.open()
     await desk.pilot.press("ctrl+t")
-    await desk.until(lambda: "speed: 0.3" in desk.dialog.form.text)
+    await until(lambda: "speed: 0.3" in desk.dialog.form.text, "the newest message in the form")
     assert "frame_id: base_link  # string" in desk.dialog.form.text
     await desk.pilot.press("ctrl+s")
     await desk.says("Sent")
@@ -139,7 +129,9 @@ async def test_a_picture_is_cut_and_that_is_said(desk: Desk) -> None:
     await desk.open("/camera/color/image_raw")
     await desk.pilot.press("ctrl+t")
     await desk.says("Its long arrays were cut")
-    await desk.until(lambda: "# the first 1000 of" in desk.dialog.form.text)
+    await until(
+        lambda: "# the first 1000 of" in desk.dialog.form.text, "the cut message in the form"
+    )
 
 
 async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) -> None:
@@ -148,16 +140,21 @@ async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) 
     await desk.pilot.press("ctrl+g")
     await desk.says("Publishing to /drive at 2.5 Hz.")
     assert [(topic, hz) for topic, _type, _value, hz in desk.graph.repeated] == [("/drive", 2.5)]
-    await desk.until(lambda: desk.dialog.query_one(PublicationList).chosen_number == 1)
+    await until(
+        lambda: desk.dialog.query_one(PublicationList).chosen_number == 1,
+        "the publication in the list",
+    )
     assert desk.dialog.query_one(PublicationList).display
     # Another on the same topic takes its place.
     await desk.pilot.press("ctrl+g")
-    await desk.until(lambda: desk.graph.stopped_publications == [1])
-    await desk.until(lambda: desk.dialog.query_one(PublicationList).chosen_number == 2)
+    await until(lambda: desk.graph.stopped_publications == [1], "the end of the first")
+    await until(
+        lambda: desk.dialog.query_one(PublicationList).chosen_number == 2, "the second in the list"
+    )
     await desk.pilot.press("f12")
     await desk.says("Stopped: /drive")
     assert desk.graph.stopped_publications == [1, 2]
-    await desk.until(lambda: not desk.dialog.is_publishing)
+    await until(lambda: not desk.dialog.is_publishing, "the end of all that is published")
     assert not desk.dialog.query_one(PublicationList).display
 
 
@@ -171,7 +168,7 @@ async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter
     assert isinstance(desk.app.screen, TopicsScreen)
     assert desk.graph.stopped_publications == []
     await desk.open("/ai_command")
-    await desk.until(lambda: desk.dialog.is_publishing)
+    await until(lambda: desk.dialog.is_publishing, "what is published")
     desk.dialog.query_one(PublicationList).focus()
     await desk.pilot.press("enter")
     assert desk.graph.stopped_publications == [1]
@@ -182,7 +179,7 @@ async def test_a_publication_that_ended_by_itself_says_why(desk: Desk) -> None:
     gone = Publication(7, "/drive", DRIVE, 10.0, 3, 0, "the type has changed")
     desk.graph.show(replace(lesson_update(), publications=(gone,)))
     listed = desk.dialog.query_one(PublicationList)
-    await desk.until(lambda: "the type has changed" in listed.render_line(1).text)
+    await until(lambda: "the type has changed" in listed.render_line(1).text, "why it ended")
 
 
 async def test_a_rate_that_is_none_is_refused(desk: Desk) -> None:
@@ -204,13 +201,13 @@ async def test_a_new_topic_needs_a_type_which_is_completed(desk: Desk) -> None:
     target.field.value = "my/new_one"
     target.type.field.focus()
     target.type.field.value = "float3"
-    await desk.until(lambda: target.type.is_listing)
+    await until(lambda: target.type.is_listing, "the types that fit")
     assert target.type.fitting()[0] == "std_msgs/msg/Float32"
     # What is only half typed is no type yet.
     await desk.pilot.press("ctrl+s")
     await desk.says("Choose the type of /my/new_one.")
     await desk.pilot.press("down", "up", "enter")
-    await desk.until(lambda: desk.dialog.form.text == "data: 0.0  # float32\n")
+    await until(lambda: desk.dialog.form.text == "data: 0.0  # float32\n", "the form of a number")
     assert desk.dialog.focused is desk.dialog.form.editor
     await desk.pilot.press("ctrl+s")
     await desk.says("Sent")
@@ -220,7 +217,7 @@ async def test_a_new_topic_needs_a_type_which_is_completed(desk: Desk) -> None:
 async def test_another_topic_that_is_there_brings_its_type(desk: Desk) -> None:
     await desk.open()
     desk.dialog.target.field.value = "/ai_command"
-    await desk.until(lambda: desk.dialog.form.text == 'data: ""  # string\n')
+    await until(lambda: desk.dialog.form.text == 'data: ""  # string\n', "the form of a text")
     assert desk.dialog.target.type.value == "std_msgs/msg/String"
     # The message that is shown is not of this topic.
     assert desk.dialog.newest is None
@@ -232,7 +229,10 @@ async def test_a_type_that_is_not_installed_says_so_and_publishes_nothing(desk: 
     desk.dialog.target.type.field.focus()
     desk.dialog.target.type.field.value = "nope_msgs/msg/Thing"
     await desk.pilot.press("enter")
-    await desk.until(lambda: "nope_msgs is not installed" in desk.dialog.form.verdict)
+    await until(
+        lambda: "nope_msgs is not installed" in desk.dialog.form.verdict,
+        "the word that it is not there",
+    )
     await desk.pilot.press("ctrl+s")
     await desk.says("Not sent")
     assert desk.graph.published == []
@@ -261,7 +261,7 @@ async def test_the_emergency_stop_works_from_the_form_and_shows(desk: Desk) -> N
     desk.dialog.form.editor.focus()
     before = desk.dialog.form.text
     await desk.pilot.press("ctrl+x")
-    await desk.until(lambda: desk.dialog.query_one(TitleBar).has_class("-stop"))
+    await until(lambda: desk.dialog.query_one(TitleBar).has_class("-stop"), "the stop in the title")
     assert "EMERGENCY STOP" in desk.dialog.query_one(TitleBar).text
     assert desk.dialog.form.text == before
     topic, _type, value, _latched = desk.graph.published[0]
@@ -272,7 +272,7 @@ async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Des
     await desk.open("/ai_command")
     await desk.pilot.press("ctrl+g")
     await desk.says("Publishing to /ai_command")
-    await desk.until(lambda: desk.dialog.is_publishing)
+    await until(lambda: desk.dialog.is_publishing, "what is published")
     await desk.pilot.press("escape", "space")
     await desk.pilot.pause()
     assert desk.graph.stopped_all == 1
@@ -286,12 +286,12 @@ async def test_the_emergency_stop_ends_what_deck_publishes_and_says_so(desk: Des
 async def test_the_emergency_stop_of_another_ends_it_too(desk: Desk) -> None:
     await desk.open("/ai_command")
     await desk.pilot.press("ctrl+g")
-    await desk.until(lambda: desk.dialog.is_publishing)
+    await until(lambda: desk.dialog.is_publishing, "what is published")
     stop = Sample(EMERGENCY_STOP, TOPIC_TYPE, NOW_S + 1, 0.0, 4, {"data": True})
     assert desk.graph.update is not None
     desk.graph.show(replace(desk.graph.update, samples={EMERGENCY_STOP: (stop,)}))
-    await desk.until(lambda: desk.graph.stopped_all == 1)
-    await desk.until(lambda: not desk.dialog.is_publishing)
+    await until(lambda: desk.graph.stopped_all == 1, "the end of all that Deck publishes")
+    await until(lambda: not desk.dialog.is_publishing, "the end of all that is published")
     # It is told once, however long the stop is there.
     desk.graph.show(replace(desk.graph.update, samples={EMERGENCY_STOP: (stop,)}))
     await desk.pilot.pause()
@@ -303,12 +303,12 @@ async def test_what_is_published_in_spite_of_a_stop_ends_with_its_release(desk: 
     await desk.pilot.press("space")
     await desk.open("/ai_command")
     await desk.pilot.press("ctrl+g")
-    await desk.until(lambda: desk.dialog.is_publishing)
+    await until(lambda: desk.dialog.is_publishing, "what is published")
     before = desk.graph.stopped_all
     await desk.pilot.press("ctrl+r")
-    await desk.until(lambda: desk.graph.stopped_all == before + 1)
+    await until(lambda: desk.graph.stopped_all == before + 1, "the end of all that Deck publishes")
     assert desk.graph.published[-1][:3] == (EMERGENCY_STOP, TOPIC_TYPE, {"data": False})
-    await desk.until(lambda: not desk.dialog.is_publishing)
+    await until(lambda: not desk.dialog.is_publishing, "the end of all that is published")
 
 
 async def test_a_click_on_a_tab_leaves_the_dialog_where_it_is(desk: Desk) -> None:
@@ -322,7 +322,7 @@ async def test_the_verdict_leads_to_what_is_wrong(desk: Desk) -> None:
     await desk.open()
     desk.fill("stamp: now", "stamp: {sec: 0, nanosec: -1}")
     desk.dialog.rate.field.focus()
-    await desk.until(lambda: desk.dialog.form.error is not None)
+    await until(lambda: desk.dialog.form.error is not None, "the error")
     await desk.pilot.click("YamlForm > Static")
     assert desk.dialog.form.editor.cursor_location == (1, 27)
 
@@ -340,7 +340,7 @@ async def test_what_is_typed_is_checked_beside_the_screen(
     monkeypatch.setattr(yaml_form, "check", noted)
     desk.dialog.form.editor.focus()
     await desk.pilot.press("x")
-    await desk.until(lambda: threads)
+    await until(lambda: threads, "a check")
     assert threading.get_ident() not in threads
 
 

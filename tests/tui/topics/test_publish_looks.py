@@ -6,12 +6,12 @@ from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from typing import Any
 
-import pytest
 from textual.pilot import Pilot
 
 from graph.data import Publication
 from tests.tui.recorded import lesson_update
 from tests.tui.snapshots import Look, SnapCompare, every_look, one_look, settle
+from tests.waiting import until
 from tui.app import DeckApp
 from tui.topics.publish.dialog import PublishDialog
 from tui.topics.screen import TopicsScreen
@@ -42,23 +42,18 @@ def filled(change: Callable[[PublishDialog], None], *keys: str) -> Before:
         await pilot.press("P")
         dialog = app.screen
         assert isinstance(dialog, PublishDialog)
-        await until(pilot, lambda: dialog.form.value is not None)
+        await drawn(pilot, lambda: dialog.form.value is not None, "a form that is right")
         change(dialog)
         await pilot.pause()
         await pilot.press(*keys)
-        await until(pilot, lambda: dialog.form.text == dialog.form._checked)
+        await drawn(pilot, lambda: dialog.form.text == dialog.form._checked, "a form looked at")
 
     return before
 
 
-async def until(pilot: Pilot[Any], true: Callable[[], bool]) -> None:
+async def drawn(pilot: Pilot[Any], condition: Callable[[], bool], what: str) -> None:
     """Wait until this is so, and drawn."""
-    for _round in range(500):
-        await pilot.pause(0.01)
-        if true():
-            break
-    else:
-        pytest.fail("it did not come to that")
+    await until(condition, what)
     for _round in range(3):
         await pilot.pause()
 
@@ -107,7 +102,7 @@ def test_running(look: Look, dump_compare: SnapCompare) -> None:
         await filled(running)(pilot)
         dialog = pilot.app.screen
         assert isinstance(dialog, PublishDialog)
-        await until(pilot, lambda: dialog.is_publishing)
+        await drawn(pilot, lambda: dialog.is_publishing, "what is published")
 
     assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
@@ -121,7 +116,7 @@ def test_a_new_topic(look: Look, dump_compare: SnapCompare) -> None:
         dialog = pilot.app.screen
         assert isinstance(dialog, PublishDialog)
         kind = dialog.target.type
-        await until(pilot, lambda: kind.is_listing and kind.value == "float")
+        await drawn(pilot, lambda: kind.is_listing and kind.value == "float", "a list of types")
 
     assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)
 
@@ -134,6 +129,6 @@ def test_stopped(look: Look, dump_compare: SnapCompare) -> None:
         await filled(nothing, "ctrl+x")(pilot)
         dialog = pilot.app.screen
         assert isinstance(dialog, PublishDialog)
-        await until(pilot, lambda: bool(dialog.query("TitleBar.-stop")))
+        await drawn(pilot, lambda: bool(dialog.query("TitleBar.-stop")), "the stop")
 
     assert dump_compare(look.app("topics"), terminal_size=look.size, run_before=before)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from textual.app import App, ComposeResult
 
 from graph.messages.yaml_form import prefilled
+from tests.waiting import until
 from text.i18n import set_language
 from tui.yaml_form import form as yaml_form
 from tui.yaml_form.form import YamlForm
@@ -47,11 +48,8 @@ class FormApp(App[None]):
 async def checked(pilot: Pilot[Any]) -> None:
     """Wait until what stands in the form has been checked."""
     form = pilot.app.query_one(YamlForm)
-    for _round in range(500):
-        await pilot.pause(0.02)
-        if form.text and form.text == form._checked:
-            return
-    pytest.fail("the form was not checked")
+    await until(lambda: form.text and form.text == form._checked, "a form that is checked")
+    await pilot.pause()
 
 
 def kinds(line: str) -> list[tuple[str, str]]:
@@ -140,11 +138,8 @@ async def test_no_yaml_is_marked_too() -> None:
 
 async def test_a_type_that_is_not_there_says_so() -> None:
     app = FormApp("nope_msgs/msg/Thing")
-    async with app.run_test(size=(80, 24)) as pilot:
-        for _round in range(500):
-            await pilot.pause(0.02)
-            if app.form.error is not None:
-                break
+    async with app.run_test(size=(80, 24)):
+        await until(lambda: app.form.error is not None, "the error")
         assert "package nope_msgs is not installed" in app.form.verdict
         assert app.form.value is None
 

@@ -1,4 +1,4 @@
-"""What can be done on every screen."""
+"""The actions of the app, available on every screen."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 
 
 class AppAction(Action["Host"]):
-    """Something that the app does, whichever screen is in front."""
+    """An action of the app, whichever screen is in front."""
 
 
 class SessionAction(AppAction):
-    """Something that needs a session."""
+    """An action that needs a session."""
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
@@ -36,12 +36,12 @@ class EmergencyStop(SessionAction):
 
     @classmethod
     def shown(cls, target: Host) -> bool:
-        """Not beside a recording."""
+        """Not in a replay."""
         return target.feed.replay is None
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Engage it; an engaged one is told again."""
+        """Engage it; if it is already engaged, publish it again."""
         if target.feed.replay is None:
             target.emergency.engage()
         else:
@@ -71,11 +71,11 @@ class EmergencyRelease(SessionAction):
 
 
 class OpenedAction(AppAction):
-    """Something that needs a session, which may have ended."""
+    """An action that needs a session, which may have ended."""
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
-        """Only while a session is shown, be it one that has ended."""
+        """Only while a session is shown, even one that has ended."""
         return target.feed.opened
 
 
@@ -91,7 +91,7 @@ class ShowScreen(OpenedAction):
 
 
 class ShowDeck(ShowScreen):
-    """The lesson at work."""
+    """The running lesson."""
 
     id = "screen.deck"
     key = "1,f2"
@@ -161,7 +161,7 @@ class ShowDevices(ShowScreen):
 
 
 class ShowHelp(AppAction):
-    """The keys and what the screen shows."""
+    """The keys, and what the screen shows."""
 
     id = "app.help"
     key = "f1,question_mark"
@@ -177,7 +177,7 @@ class ShowHelp(AppAction):
 
 
 class ShowPalette(AppAction):
-    """Everything by its name."""
+    """Every action by its name."""
 
     id = "app.palette"
     key = "ctrl+p"
@@ -204,12 +204,12 @@ class SwitchLanguage(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Speak the other language."""
+        """Switch to the other language."""
         target.switch_language()
 
 
 class SwitchTheme(AppAction):
-    """The next theme."""
+    """Switch to the next theme."""
 
     id = "app.theme"
     key = "f10"
@@ -219,7 +219,7 @@ class SwitchTheme(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Take the next theme."""
+        """Switch to it."""
         target.next_theme()
 
 
@@ -233,26 +233,26 @@ class CloseSession(OpenedAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Stop, or let go of, the session and show the picker."""
+        """Stop the session, or detach from it, and show the picker."""
         target.sessions.close()
 
 
 class EndSession(SessionAction):
-    """End what somebody else has started."""
+    """End a session that somebody else has started."""
 
     id = "session.end"
     key = "shift+f8"
     title = N_("End the session")
-    tooltip = N_("End a session that was started elsewhere; says whose it is, and asks.")
+    tooltip = N_("End a session that was started elsewhere, after saying whose it is and asking.")
 
     @classmethod
     def possible(cls, target: Host) -> bool | None:
-        """Only beside a session of a supervisor that is not this screen's."""
+        """Only with a session whose supervisor was not started by this screen."""
         return target.feed.of_others
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Ask, and end it."""
+        """Ask, and then end it."""
         target.sessions.end_of_others()
 
 
@@ -267,7 +267,7 @@ class Redraw(AppAction):
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Draw."""
+        """Redraw it."""
         target.redraw()
 
 
@@ -284,12 +284,12 @@ class Quit(AppAction):
 
     @classmethod
     def label(cls, target: Host) -> str:
-        """By whether anything ends by it."""
+        """Named after whether anything is stopped by it."""
         return N_("Detach") if target.feed.of_others else cls.title
 
     @classmethod
     async def run(cls, target: Host) -> None:
-        """Stop orderly; asked again, stop at once."""
+        """Stop cleanly; if asked again, stop at once."""
         target.sessions.leave()
 
 

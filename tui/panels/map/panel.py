@@ -1,4 +1,4 @@
-"""Where the robot is, what it has driven and what is around it."""
+"""Where the robot is, where it has driven, and what is around it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class MapFeed(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._pose_topic = ""
-        """Where the pose comes from; empty until there is one."""
+        """The topic of the pose; empty until there is one."""
         self._heard_s = -math.inf
         self._instead: Instead | None = None
         self._bounds = COURSE
@@ -47,21 +47,21 @@ class MapFeed(Panel):
         yield RoomMap()
 
     def watched(self) -> set[str]:
-        """The newest of everything; the path is what of it was seen."""
+        """The topics of the map; the path is built from the poses received."""
         return {ODOMETRY, MOCK_POSE, MAP, GOAL_POSE, SAFETY_STATE, *SONARS.values()}
 
     def kept(self) -> set[str]:
-        """Where the robot is: the path goes on."""
+        """The pose, so that the path continues."""
         return {ODOMETRY, MOCK_POSE}
 
     def keep(self, update: GraphUpdate) -> None:
-        """Go on with the path, and draw nothing."""
+        """Continue the path without drawing it."""
         drawing = self.query_one(RoomMap)
         self._choose_pose(update, drawing)
         self._show_pose(update, drawing)
 
     def show(self, update: GraphUpdate) -> None:
-        """Show what has come."""
+        """Show the new values."""
         drawing = self.query_one(RoomMap)
         self._choose_pose(update, drawing)
         room = newest(update, MAP)
@@ -80,7 +80,7 @@ class MapFeed(Panel):
         drawing.show_trouble(*self._trouble(update))
 
     def _choose_pose(self, update: GraphUpdate, drawing: RoomMap) -> None:
-        """Odometry, once there is one; until then the truth of a simulated robot, if it is told."""
+        """Use odometry if there is any, otherwise the true pose of a simulated robot."""
         topic = next((one for one in (ODOMETRY, MOCK_POSE) if _is_published(update, one)), "")
         if not topic or self._pose_topic in {topic, ODOMETRY}:
             return
@@ -98,7 +98,7 @@ class MapFeed(Panel):
                 continue
             self._instead = None
             if sample.received_s < self._heard_s:
-                # A recording was turned back.
+                # Time went back: somebody jumped back in a recording.
                 drawing.forget_path()
             self._heard_s = sample.received_s
             drawing.show_pose(*found)
@@ -124,7 +124,7 @@ class MapFeed(Panel):
         if row is None or not row.publishers:
             drawing.show_ray(place, None)
         elif row.trouble is not None:
-            # What a sonar that has fallen silent said last is no longer true.
+            # The last reading of a sonar that has gone silent is no longer valid.
             drawing.show_ray(place, math.nan)
         else:
             sample = newest(update, topic)
@@ -139,13 +139,13 @@ class MapFeed(Panel):
             hint = _("Start chassis; drive_to_point brings a simulated base.")
             detail = f"{detail}. {hint}"
         elif trouble is Trouble.QUIET:
-            hint = _("Its log says what it waits for.")
+            hint = _("Its log says what it is waiting for.")
             detail = f"{detail}. {hint}"
-        # The age is told in whole seconds, and drawn anew no more often.
+        # The age is shown in whole seconds, and not redrawn more often.
         return trouble, detail, None if age_s is None else age_s // 1
 
     def words_changed(self) -> None:
-        """Draw anew in another language."""
+        """Redraw in the current language."""
         super().words_changed()
         self.query_one(RoomMap).words_changed()
 

@@ -1,4 +1,4 @@
-"""What a message of sound says: text, as in the lessons, or PCM samples, or neither."""
+"""The content of a sound message: text, as in the lessons, or PCM samples, or neither."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 LONGEST_TEXT = 2_000
 SHOWN_BYTES = 12
 LEAST_PCM = 64
-"""Bytes; fewer are no sound that anybody could hear."""
+"""In bytes; anything shorter is not audible."""
 SLICES = 8
 QUIETEST_DB = -60.0
 LEVELS = "▁▂▃▄▅▆▇█"
@@ -25,7 +25,7 @@ LEVELS = "▁▂▃▄▅▆▇█"
 
 @dataclass(frozen=True)
 class Heard:
-    """One message: its text, or how long it sounds and how loud."""
+    """One message: its text, or the duration and loudness of its sound."""
 
     text: str = ""
     seconds: float = 0.0
@@ -33,12 +33,12 @@ class Heard:
 
     @property
     def is_sound(self) -> bool:
-        """Whether it is samples."""
+        """Whether it consists of samples."""
         return bool(self.levels)
 
     @property
     def words(self) -> str:
-        """What is shown."""
+        """The text to be shown."""
         if not self.is_sound:
             return self.text
         return _("PCM {seconds} s {levels}").format(
@@ -46,20 +46,20 @@ class Heard:
         )
 
     def and_then(self, later: Heard) -> Heard:
-        """Two pieces of one sound."""
+        """Join two pieces of one sound."""
         levels = (self.levels + later.levels)[-SLICES:]
         return Heard("", self.seconds + later.seconds, levels)
 
 
 def heard(data: bytes, sample_rate_hz: int = RATE_HZ) -> Heard:
-    """Read the bytes of a message; whatever they are, the result can be shown."""
+    """Read the bytes of a message; any input gives a result that can be shown."""
     if not data:
         return Heard(_("(an empty message)"))
     text = _text_in(data)
     if text is not None:
         return Heard(text)
     if len(data) < LEAST_PCM:
-        count = ngettext("{count} byte, no text:", "{count} bytes, no text:", len(data))
+        count = ngettext("{count} byte, not text:", "{count} bytes, not text:", len(data))
         more = "…" if len(data) > SHOWN_BYTES else ""
         return Heard(f"{count.format(count=len(data))} {data[:SHOWN_BYTES].hex(' ')}{more}")
     samples = samples_of(data)
@@ -72,7 +72,7 @@ def _text_in(data: bytes) -> str | None:
 
 
 def _levels(samples: NDArray[np.int16]) -> str:
-    """Loudness of each slice of the sound as a column."""
+    """The loudness of each slice of the sound as a column."""
     levels = ""
     for part in np.array_split(samples, SLICES):
         share = 1 - max(QUIETEST_DB, level_dbfs(part.tobytes())) / QUIETEST_DB

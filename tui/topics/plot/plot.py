@@ -1,8 +1,8 @@
-"""Numeric fields of topics against time, several in one picture.
+"""Numeric fields of topics against time, several in one plot.
 
-Drawn by hand: textual-plot and plotext draw the whole picture anew for each update, and over SSH a
-picture must cost no more than the cells that have changed. Here the window moves by whole cells,
-the axis keeps its numbers while they suit, and what does not change is not sent.
+Drawn without a library: textual-plot and plotext redraw the whole plot for each update, but over
+SSH a plot must cost no more than the cells that have changed. Here the window moves by whole cells,
+the axis keeps its numbers while they suit, and what has not changed is not sent.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ if TYPE_CHECKING:
 WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
 LOOKS = ("accent", "second", "good", "warn", "bad", "strong")
 NAMES = "ABCDEF"
-"""A curve is known by its letter, whatever its colour."""
+"""A curve is identified by its letter, whatever its colour."""
 _TICKS_S = {10.0: 1.0, 30.0: 5.0, 60.0: 10.0, 300.0: 30.0}
 WIDE = 100
-"""Cells from which on every tick of time has its label, else every other one."""
+"""Width from which on every tick of time has a label, otherwise every other one."""
 ROWS_PER_TICK = 4
 LEAST_ROWS = 8
-"""Fewer rows than these for the curves: the legend gives way."""
+"""If fewer rows than these remain for the curves, the legend gets shorter."""
 LABEL_LEAST = 5
 
 
 class TopicPlot(Drawing):
-    """Shows up to six fields; they are those of any topics and stay until they are taken out."""
+    """Shows up to six fields of any topics, which stay until they are removed."""
 
     class PlotChanged(Message):
-        """Other fields, another window, or a pause."""
+        """The fields, the window or the pause have changed."""
 
     DEFAULT_CSS = """
     TopicPlot { height: 1fr; }
@@ -57,27 +57,22 @@ class TopicPlot(Drawing):
 
     @property
     def fields(self) -> tuple[PlotField, ...]:
-        """What is plotted."""
+        """The plotted fields."""
         return tuple(series.field for series in self._series)
 
     @property
     def topics(self) -> set[str]:
-        """The topics of which every message is wanted."""
+        """The topics of which every message is needed."""
         return {series.field.topic for series in self._series}
 
     @property
     def is_full(self) -> bool:
-        """Whether no more fields are taken."""
+        """Whether no more fields can be added."""
         return len(self._series) >= len(NAMES)
 
     @property
-    def window_s(self) -> float:
-        """Seconds from the left edge to the right."""
-        return self._window_s
-
-    @property
     def paused(self) -> bool:
-        """Whether the picture stands still; what comes meanwhile is kept."""
+        """Whether the plot is paused; new messages are kept meanwhile."""
         return self._paused_s is not None
 
     @property
@@ -86,7 +81,7 @@ class TopicPlot(Drawing):
         return bool(self._series)
 
     def marks(self, topic: str) -> Mapping[tuple[str | int, ...], str]:
-        """The letters of a topic's fields, by their paths."""
+        """The letters of a topic's fields, by path."""
         return {
             series.field.path: series.letter
             for series in self._series
@@ -94,10 +89,10 @@ class TopicPlot(Drawing):
         }
 
     def toggle(self, wanted: PlotField, newest: Sample | None = None) -> bool:
-        """Take a field into the picture, or out of it; tell whether it is in now.
+        """Add a field to the plot, or remove it; return whether it is plotted now.
 
-        `newest` is the message that is there already. One more field than there are letters is
-        not taken.
+        `newest` is the message that is already known. A field is not added if there is no letter
+        left.
         """
         from tui.topics.plot.history import History
 
@@ -117,14 +112,14 @@ class TopicPlot(Drawing):
         return added
 
     def clear(self) -> None:
-        """Take everything out."""
+        """Remove all fields."""
         self._series = []
         self._axis = self._paused_s = None
         self.refresh()
         self.post_message(self.PlotChanged())
 
     def take(self, update: GraphUpdate) -> None:
-        """Add the messages of an update and draw what has changed."""
+        """Add the messages of an update and redraw what has changed."""
         self._now_s = update.time_s
         for series in self._series:
             for sample in update.samples.get(series.field.topic, ()):
@@ -133,7 +128,7 @@ class TopicPlot(Drawing):
             self.redraw()
 
     def next_window(self) -> None:
-        """Look at more seconds, after the most at the fewest again."""
+        """Show a longer window, or the shortest after the longest."""
         at = WINDOWS_S.index(self._window_s)
         self._window_s = WINDOWS_S[(at + 1) % len(WINDOWS_S)]
         self._axis = None
@@ -141,14 +136,14 @@ class TopicPlot(Drawing):
         self.post_message(self.PlotChanged())
 
     def pause(self, paused: bool) -> None:
-        """Let the picture stand, or go on."""
+        """Pause the plot, or resume."""
         if paused != self.paused:
             self._paused_s = self._now_s if paused else None
             self.redraw()
             self.post_message(self.PlotChanged())
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """A title, what the letters stand for, and the curves between their axes."""
+        """Draw a title, the legend, and the curves between their axes."""
         end_s = self._now_s if self._paused_s is None else self._paused_s
         title = f"{_('Plot')} · {window_text(self._window_s)}"
         if self.paused:
@@ -161,7 +156,7 @@ class TopicPlot(Drawing):
         return [*legend, *(self._picture(end_s, width, rows) if rows >= 1 else [])]
 
     def _picture(self, end_s: float, width: int, rows: int) -> list[Line]:
-        """Curves and axes in so many rows of cells, and the times below."""
+        """Return curves and axes in this many rows of cells, and the times below them."""
         from tui.topics.plot.curve import curve
         from tui.topics.plot.grid import PlotGrid
 
@@ -201,7 +196,7 @@ class TopicPlot(Drawing):
     def _letter(
         self, series: Series, columns: HistoryDots, axis: ValueAxis, rows: int, ends: dict[int, Ink]
     ) -> None:
-        """Write the letter beside the curve's end; where one stands already, above or below."""
+        """Write the letter beside the curve's end, or above or below it if another is there."""
         numbers = [number for number in columns.last.tolist() if math.isfinite(number)]
         if not numbers:
             return
@@ -211,7 +206,7 @@ class TopicPlot(Drawing):
             ends[free[0]] = Ink(series.letter, series.look)
 
     def _times(self, left: int, across: int) -> Line:
-        """Seconds before now below the picture, at round places."""
+        """Seconds before now below the plot, at round places."""
         text = " " * (left + across + 1)
         ticks_s = _TICKS_S[self._window_s] * (1 if across >= WIDE else 2)
         for tick in range(int(self._window_s / ticks_s) + 1):

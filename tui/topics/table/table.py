@@ -1,6 +1,6 @@
-"""Every topic in a table: sorted, filtered, and one of them chosen.
+"""All topics in a table: sorted, filtered, and one of them chosen.
 
-Drawn cell by cell, where a text has changed.
+Only cells whose text has changed are redrawn.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ MARK = 2
 """Cells left of the first column, for the mark of the chosen row."""
 FAR = 1_000_000
 _Drawn: TypeAlias = "tuple[bool, tuple[str, ...]]"
-"""Whether the row was the chosen one, and the texts of its cells, as they were last drawn."""
+"""Whether the row was the chosen one, and the texts of its cells, as last drawn."""
 
 
 class TopicsTable(OneStyle, ScrollView, can_focus=True):
-    """Shows `TopicRow`s; one of them is chosen, and stays so while rows come, go and are sorted."""
+    """Shows `TopicRow`s; one is chosen, and stays chosen while rows come, go and are sorted."""
 
     class TopicChosen(Message):
-        """Another topic is the chosen one; None when there is none."""
+        """Another topic was chosen; None if there is none."""
 
         def __init__(self, topic: str | None) -> None:
             super().__init__()
@@ -51,7 +51,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         """Enter was pressed on the chosen topic."""
 
     class Arranged(Message):
-        """Another order, filter or set of topics is shown."""
+        """The order, the filter or the set of topics has changed."""
 
     ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {
@@ -92,7 +92,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         self._words = ("", "")
         self._places: tuple[PlacedColumn, ...] = ()
         self._drawn: dict[int, _Drawn] = {}
-        """By the line of the widget."""
+        """By line of the widget."""
 
     def show(self, rows: Sequence[TopicRow]) -> None:
         """Show these topics."""
@@ -100,7 +100,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         self._arrange()
 
     def show_words(self, headline: str, detail: str = "") -> None:
-        """Say why there is no row at all, for as long as there is none."""
+        """Set the words that are shown while there are no rows."""
         if (headline, detail) != self._words:
             self._words = (headline, detail)
             if not self._shown:
@@ -108,11 +108,11 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
 
     @property
     def order(self) -> TopicsOrder:
-        """What is sorted by and what is left out."""
+        """The column to sort by, and what is left out."""
         return self._order
 
     def reorder(self, order: TopicsOrder) -> None:
-        """Sort and filter in another way."""
+        """Change the order and the filter."""
         if order != self._order:
             self._order = order
             self._arrange()
@@ -120,11 +120,11 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
             self.post_message(self.Arranged())
 
     def filter(self, words: str) -> None:
-        """Show only topics whose name or type has each of these words in it."""
+        """Show only topics whose name or type contains each of these words."""
         self.reorder(replace(self._order, words=words))
 
     def sort_by_next(self) -> None:
-        """Sort by the next column of those that are shown."""
+        """Sort by the next one of the columns that are shown."""
         self.reorder(self._order.next_column([place.column.id for place in self._places]))
 
     @property
@@ -134,7 +134,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
 
     @property
     def chosen_row(self) -> TopicRow | None:
-        """The chosen topic as it is now."""
+        """The current row of the chosen topic."""
         return next((row for row in self._shown if row.name == self._chosen), None)
 
     @property
@@ -143,17 +143,13 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         return self._shown
 
     def choose(self, topic: str) -> None:
-        """Choose a topic by its name, if it is shown."""
+        """Choose a topic by name, if it is shown."""
         index = self._index(topic)
         if index is not None:
             self._choose(index)
 
-    def relabel(self) -> None:
-        """Draw again, after the language changed."""
-        self.refresh()
-
     def action_move(self, by: int) -> None:
-        """Choose the row so many below."""
+        """Choose the row this many below."""
         if self._shown:
             at = self._index(self._chosen) or 0
             self._choose(max(0, min(at + by, len(self._shown) - 1)))
@@ -163,7 +159,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         self.action_move(pages * max(1, self.size.height - HEADER - 1))
 
     def action_open(self) -> None:
-        """Tell that the chosen topic is wanted."""
+        """Report that the chosen topic was opened."""
         if self._chosen is not None:
             self.post_message(self.TopicOpened())
 
@@ -194,7 +190,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         self._refresh_changed()
 
     def _keep_chosen(self, before: int | None) -> None:
-        """Where the chosen topic has gone, take the one that has come in its place."""
+        """If the chosen topic has gone, choose the one that has taken its place."""
         if self._index(self._chosen) is not None:
             return
         if self._shown:
@@ -216,7 +212,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         top, rows = self.scroll_offset.y, max(1, self.size.height - HEADER)
         target = min(index, max(top, index - rows + 1))
         if target != top:
-            # Rows that have just come have no scroll bar yet, without which nothing would scroll.
+            # New rows have no scroll bar yet, and without it Textual would not scroll.
             self.scroll_to(y=target, animate=False, immediate=True, force=True)
 
     def _empty_words(self) -> tuple[str, str]:
@@ -227,7 +223,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
     # Drawing
 
     def render_line(self, y: int) -> Strip:
-        """The header, a topic, or words where there are none."""
+        """The header, a topic, or words if there are none."""
         width = self.size.width
         base = self.rich_style
         if y < HEADER:
@@ -242,23 +238,23 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         return Strip.blank(width, base)
 
     def on_resize(self) -> None:
-        """PlacedColumn the columns anew."""
+        """Lay out the columns again."""
         self._place()
 
     def watch_show_vertical_scrollbar(self) -> None:
-        """Make room for the scroll bar, or use what it has left."""
+        """Lay out the columns with or without the scroll bar."""
         self._place()
 
     def on_focus(self) -> None:
-        """Draw the cursor as that of the focused widget."""
+        """Draw the cursor as focused."""
         self._refresh_chosen()
 
     def on_blur(self) -> None:
-        """Draw the cursor as that of a widget in the background."""
+        """Draw the cursor as unfocused."""
         self._refresh_chosen()
 
     def _place(self) -> None:
-        """PlacedColumn the columns, anew only if the room or the longest name has changed."""
+        """Lay out the columns, but only if the width or the longest name has changed."""
         longest = max((len(row.name) for row in self._shown), default=0)
         places = placed(max(1, self.scrollable_size.width - MARK), longest)
         if places != self._places:
@@ -311,7 +307,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
 
     def _header(self, width: int) -> Strip:
         style = self.get_component_rich_style("topics-table--header")
-        # A partial style would not know whether it stands on a dark or on a light ground.
+        # A partial style would not know whether its background is dark or light.
         sorted_by = self.get_component_rich_style("topics-table--sorted")
         by_style = style + type(style)(color=sorted_by.color)
         by, arrow = self._order.column, "▼" if self._order.falling else "▲"
@@ -330,7 +326,7 @@ class TopicsTable(OneStyle, ScrollView, can_focus=True):
         for place, text, style in zip(self._places, cells, styles, strict=True):
             padded = " " * (place.x - end) + text
             end = place.x + place.width
-            # Every segment costs the terminal some forty bytes of colours.
+            # Every segment costs about forty bytes of colour sequences.
             if style == runs[-1][1]:
                 runs[-1] = (runs[-1][0] + padded, style)
             else:

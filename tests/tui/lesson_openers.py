@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from graph.data import NodeRow, Trouble
-from launcher.status import NodeState
+from launcher.status import NodeState, NodeStatus
 from robot.topics import LLM_RAW_JSON
 from tests.tui.recorded import (
     NODES,
@@ -13,7 +14,7 @@ from tests.tui.recorded import (
     SESSION,
     TOPICS,
     RecordedGraph,
-    RecordedPad,
+    RecordedOpener,
     RecordedSession,
     lesson_samples,
     lesson_update,
@@ -24,13 +25,13 @@ from tests.tui.recorded import (
 HELLO = replace(SESSION, name="01-hello", lesson="1", title={"en": "The first node"}, panels=())
 
 
-def hello() -> RecordedPad:
+def hello() -> RecordedOpener:
     """Lesson 1: one node, no panels."""
     node = replace(NODES["camera"], name="hello_node", command="nodes.hello")
     lines = [line("hello_node", n, f"I have worked for {n} s", at_s=n) for n in range(1, 12)]
     session = RecordedSession(HELLO, {"hello_node": node}, lines)
     graph = lesson_update(topics=(), samples={}, nodes=(NodeRow("/hello_node"),))
-    return RecordedPad(session, RecordedGraph(graph))
+    return RecordedOpener(session, RecordedGraph(graph))
 
 
 LLM_JSON = (
@@ -39,7 +40,7 @@ LLM_JSON = (
 )
 
 
-def llm() -> RecordedPad:
+def llm() -> RecordedOpener:
     """Lesson 10: a message to the parser, and what came of it."""
     panels = ("composer", "wheels", "head")
     lesson = replace(SESSION, name="10-llm-json", lesson="10", panels=panels)
@@ -62,42 +63,32 @@ def llm() -> RecordedPad:
         for topic, each in samples.items()
     }
     graph = RecordedGraph(lesson_update(samples=just_now))
-    return RecordedPad(RecordedSession(lesson), graph)
+    return RecordedOpener(RecordedSession(lesson), graph)
 
 
-def troubled() -> RecordedPad:
+def without_process(name: str, **told: Any) -> NodeStatus:
+    """A node of lesson 9 that does not run now."""
+    return replace(
+        NODES[name], pid=None, uptime_s=None, cpu_percent=None, memory_bytes=None, **told
+    )
+
+
+def troubled() -> RecordedOpener:
     """Lesson 9 on a bad day: nodes waiting, restarting, failed; every panel without data."""
     session = RecordedSession()
-    session.nodes["camera"] = replace(
-        NODES["camera"],
-        state=NodeState.FAILED,
-        pid=None,
-        uptime_s=None,
-        cpu_percent=None,
-        memory_bytes=None,
-        exit_code=1,
-        restarts=5,
-        detail="given up after 5 ends in 12 s",
-    )
-    session.nodes["audio"] = replace(
-        NODES["audio"],
-        state=NodeState.BACKOFF,
-        pid=None,
-        uptime_s=None,
-        restarts=2,
-        cpu_percent=None,
-        memory_bytes=None,
-        signal="SIGKILL",
-    )
-    session.nodes["ai_brain"] = replace(
-        NODES["ai_brain"],
-        state=NodeState.WAITING,
-        pid=None,
-        uptime_s=None,
-        cpu_percent=None,
-        memory_bytes=None,
-        detail="waits for camera, audio",
-    )
+    session.nodes |= {
+        "camera": without_process(
+            "camera",
+            state=NodeState.FAILED,
+            exit_code=1,
+            restarts=5,
+            detail="given up after 5 ends in 12 s",
+        ),
+        "audio": without_process("audio", state=NodeState.BACKOFF, restarts=2, signal="SIGKILL"),
+        "ai_brain": without_process(
+            "ai_brain", state=NodeState.WAITING, detail="waits for camera, audio"
+        ),
+    }
     troubles = {
         "/sensor/sonar_front": (Trouble.QUIET, ""),
         "/wheel_commands": (Trouble.QOS_MISMATCH, "reliable here, best effort there"),
@@ -110,4 +101,4 @@ def troubled() -> RecordedPad:
         else row
         for row in TOPICS
     )
-    return RecordedPad(session, RecordedGraph(lesson_update(topics=rows, samples={})))
+    return RecordedOpener(session, RecordedGraph(lesson_update(topics=rows, samples={})))

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
-import pytest
 from textual.widgets import Static
 
 from graph.data import GraphUpdate, TopicRow
-from tests.tui.recorded import TOPICS, RecordedGraph, RecordedPad, lesson_update, sample
+from tests.tui.recorded import TOPICS, RecordedGraph, RecordedOpener, lesson_update, sample
 from tests.tui.recorded_image import colour_bars
 from tests.tui.snapshots import Look, settle
+from tests.waiting import until
 from tui.topics.detail import TopicHead
 from tui.topics.screen import TopicsScreen
 
@@ -28,7 +28,7 @@ HOME = Look((120, 40), "en")
 SONAR, CAMERA = "/sensor/sonar_front", "/camera/color/image_raw"
 
 
-class Room:
+class Stage:
     """The screen of topics over a recorded graph, under a pilot."""
 
     def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
@@ -52,11 +52,10 @@ class Room:
     async def choose(self, topic: str) -> None:
         """Choose a topic and wait until it is asked for."""
         self.screen.table.choose(topic)
-        for _round in range(100):
-            await self.pilot.pause(0.02)
-            if self.graph.watched == {topic}:
-                return
-        pytest.fail(f"{topic} is not watched: {self.graph.watched}")
+        await until(
+            lambda: self.graph.watched == {topic}, lambda: f"{topic}, but {self.graph.watched}"
+        )
+        await self.pilot.pause()
 
     async def show(self, update: GraphUpdate) -> None:
         """Let the graph be this, and wait until it is drawn."""
@@ -86,13 +85,13 @@ class Room:
 
 
 @asynccontextmanager
-async def opened(look: Look = HOME) -> AsyncIterator[Room]:
+async def opened(look: Look = HOME) -> AsyncIterator[Stage]:
     """Open the screen of topics of lesson 9."""
     graph = RecordedGraph()
-    app = look.app("topics", RecordedPad(graph=graph))
+    app = look.app("topics", RecordedOpener(graph=graph))
     async with app.run_test(size=look.size) as pilot:
         await settle(pilot)
-        yield Room(app, pilot, graph)
+        yield Stage(app, pilot, graph)
 
 
 def row(name: str, **more: Any) -> TopicRow:

@@ -6,11 +6,10 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any
 
-import pytest
-
-from tests.tui.recorded import RecordedGraph, RecordedPad
+from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_nodes import graph_update
 from tests.tui.snapshots import Look, settle
+from tests.waiting import until
 from tui.graph.screen import GraphScreen
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 HOME = Look((120, 40), "en")
 
 
-class Room:
+class Stage:
     """What a test does and sees."""
 
     def __init__(self, app: DeckApp, pilot: Pilot[Any], graph: RecordedGraph) -> None:
@@ -61,11 +60,7 @@ class Room:
 
     async def wait(self, told: Callable[[], object]) -> None:
         """Wait until this is so."""
-        for _round in range(500):
-            if told():
-                return
-            await self.pilot.pause(0.02)
-        pytest.fail(f"waited in vain; on the terminal:\n{self.seen()}")
+        await until(told, lambda: f"what was awaited; on the terminal:\n{self.seen()}")
 
     async def wait_for(self, words: str) -> None:
         """Wait until these words are on the terminal, with as many blanks as may be."""
@@ -73,10 +68,10 @@ class Room:
 
 
 @asynccontextmanager
-async def opened(graph: RecordedGraph | None = None, look: Look = HOME) -> AsyncIterator[Room]:
+async def opened(graph: RecordedGraph | None = None, look: Look = HOME) -> AsyncIterator[Stage]:
     """Open the screen of the graph of lesson 9."""
     graph = graph or RecordedGraph(update=graph_update())
-    app = look.app("graph", RecordedPad(graph=graph))
+    app = look.app("graph", RecordedOpener(graph=graph))
     async with app.run_test(size=look.size) as pilot:
         await settle(pilot)
-        yield Room(app, pilot, graph)
+        yield Stage(app, pilot, graph)

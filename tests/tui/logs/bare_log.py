@@ -1,0 +1,68 @@
+"""A bare app with nothing but the log, and lines for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from textual.app import App, ComposeResult
+
+from launcher.status import LogLine, Severity
+from tui.log_view.pane import LogPane
+from tui.log_view.view import LogView
+
+if TYPE_CHECKING:
+    from textual.pilot import Pilot
+
+HOSTILE = (
+    "\x1b[31mred\x1b[0m \x1b]52;c;cm0gLXJm\x07",
+    "[red]markup[/red] [@click=app.quit]quit[/]",
+    "nul \x00, bell \x07, c1 \x9b31m, \udcff half",
+    "right to left \u202egnp.exe\u202c",
+    "ｗｉｄｅ 你好 e\u0301 \U0001f9e0 \U0001f399\ufe0f \U0001f469\u200d\U0001f680" * 4,
+    "x" * 1_000_000,
+    "",
+)
+
+
+class LogApp(App[None]):
+    """A bare app with nothing but the log."""
+
+    def __init__(self, period_s: float = 0.0) -> None:
+        super().__init__()
+        self.pane = LogPane(LogView(period_s=period_s, file_of=lambda node: f"/logs/{node}.log"))
+
+    def compose(self) -> ComposeResult:
+        """The log fills the screen."""
+        yield self.pane
+
+    def on_mount(self) -> None:
+        """Keys go to the lines."""
+        self.pane.view.focus()
+
+
+def line(
+    seq: int, text: str = "", node: str = "sonar_front", severity: Severity = Severity.INFO
+) -> LogLine:
+    return LogLine(node, seq, 1_767_225_600.0 + seq, severity, text or f"line {seq}")
+
+
+def lines(first: int, count: int) -> list[LogLine]:
+    return [line(seq) for seq in range(first, first + count)]
+
+
+def rows(view: LogView) -> list[str]:
+    return [view.render_line(y).text.rstrip() for y in range(view.size.height)]
+
+
+def texts(view: LogView) -> list[str]:
+    """The text column of what is on screen."""
+    return [row.split("sonar_front ", 1)[-1] for row in rows(view) if row]
+
+
+async def shown(pilot: Pilot[None], lines: Sequence[LogLine]) -> LogView:
+    app = pilot.app
+    assert isinstance(app, LogApp)
+    app.pane.view.append(lines)
+    await pilot.pause()
+    return app.pane.view
