@@ -22,12 +22,12 @@ LESSON = "04b-electronic-differential"
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 BROKEN = """
 import sys
-from tui.panels.wheels.widget import WheelsPanel
+from tui.panels.wheels.widget import WheelsView
 
 def fail(self, width, height):
     raise OverflowError("broken on purpose")
 
-WheelsPanel.draw = fail
+WheelsView.draw = fail
 from cli import main
 sys.exit(main())
 """

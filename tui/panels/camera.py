@@ -25,7 +25,7 @@ PERIOD_S = 0.3
 """Three pictures a second are enough for a terminal, and for SSH."""
 
 
-class CameraFeed(Panel):
+class CameraPanel(Panel):
     """The newest picture."""
 
     title = N_("Camera")

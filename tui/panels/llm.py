@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robot.commands.schema import LlmResponse
 
 
-class LlmFeed(Panel):
+class LlmPanel(Panel):
     """The trail of the newest message: accepted or refused, drive, wheels, head."""
 
     title = N_("LLM commands")

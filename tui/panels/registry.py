@@ -39,16 +39,16 @@ class PanelEntry(NamedTuple):
 
 PANELS: dict[PanelName, PanelEntry] = {
     "sonar": PanelEntry(
-        N_("sonar"), "tui.panels.sonar.panel", "SonarFeed", (SONAR_FRONT, SONAR_REAR)
+        N_("sonar"), "tui.panels.sonar.panel", "SonarPanel", (SONAR_FRONT, SONAR_REAR)
     ),
     "wheels": PanelEntry(
-        N_("wheels"), "tui.panels.wheels.panel", "WheelsFeed", (WHEEL_COMMANDS, JOINT_STATES)
+        N_("wheels"), "tui.panels.wheels.panel", "WheelsPanel", (WHEEL_COMMANDS, JOINT_STATES)
     ),
-    "map": PanelEntry(N_("map"), "tui.panels.map.panel", "MapFeed", (ODOMETRY, MAP)),
-    "camera": PanelEntry(N_("camera"), "tui.panels.camera", "CameraFeed", (CAMERA,)),
-    "head": PanelEntry(N_("head"), "tui.panels.head.panel", "HeadFeed", (HEAD_STATE,)),
-    "voice": PanelEntry(N_("voice"), "tui.panels.voice.panel", "VoiceFeed", (MICROPHONE, SPEAKER)),
-    "composer": PanelEntry(N_("composer"), "tui.panels.llm", "LlmFeed"),
+    "map": PanelEntry(N_("map"), "tui.panels.map.panel", "MapPanel", (ODOMETRY, MAP)),
+    "camera": PanelEntry(N_("camera"), "tui.panels.camera", "CameraPanel", (CAMERA,)),
+    "head": PanelEntry(N_("head"), "tui.panels.head.panel", "HeadPanel", (HEAD_STATE,)),
+    "voice": PanelEntry(N_("voice"), "tui.panels.voice.panel", "VoicePanel", (MICROPHONE, SPEAKER)),
+    "composer": PanelEntry(N_("composer"), "tui.panels.llm", "LlmPanel"),
 }
 """The panels that a profile may name in `panels`, in the order in which they are shown."""
 

@@ -33,11 +33,11 @@ from tui.faults import COMPOSING, LAYING_OUT, MOST_UNDRAWN
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.isolation import isolating
-from tui.panels.head.widget import HeadPanel
+from tui.panels.head.widget import HeadView
 from tui.panels.panel import Panel
 from tui.panels.sonar.widget import Sonar
-from tui.panels.wheels.panel import WheelsFeed
-from tui.panels.wheels.widget import WheelsPanel
+from tui.panels.wheels.panel import WheelsPanel
+from tui.panels.wheels.widget import WheelsView
 from tui.topics.screen import TopicsScreen
 from tui.topics.table.table import TopicsTable
 
@@ -106,13 +106,13 @@ def flat(text: str) -> str:
 
 async def test_a_panel_that_cannot_show_says_so_until_it_can() -> None:
     async with isolated() as deck:
-        wheels = deck.app.screen.query_one(WheelsFeed)
-        head = deck.app.screen.query_one(HeadPanel)
-        with broken(WheelsPanel, "show"):
+        wheels = deck.app.screen.query_one(WheelsPanel)
+        head = deck.app.screen.query_one(HeadView)
+        with broken(WheelsView, "show"):
             await deck.look()
             assert f"Wheels {FAULT}" in flat(shown(wheels))
             assert "45° left" in shown(head)
-            assert not wheels.query_one(WheelsPanel).region
+            assert not wheels.query_one(WheelsView).region
             await deck.look()
         assert [words for words, _trace in deck.journal] == [f"Wheels {FAULT}"]
         assert "broken on purpose" in deck.journal[0][1]
@@ -120,13 +120,13 @@ async def test_a_panel_that_cannot_show_says_so_until_it_can() -> None:
         assert await deck.stops()
         await deck.look()
         assert "has failed" not in shown(wheels)
-        assert "29° left" in shown(wheels.query_one(WheelsPanel))
+        assert "29° left" in shown(wheels.query_one(WheelsView))
 
 
 async def test_a_drawing_that_fails_says_so_in_its_place_until_it_can_be_drawn() -> None:
     async with isolated() as deck:
-        drawing = deck.app.screen.query_one(WheelsPanel)
-        with broken(WheelsPanel, "draw"):
+        drawing = deck.app.screen.query_one(WheelsView)
+        with broken(WheelsView, "draw"):
             drawing.redraw()
             await deck.pilot.pause()
             assert f"Wheels {FAULT}" in flat(shown(drawing))
@@ -148,7 +148,7 @@ async def test_what_cannot_be_rendered_leaves_the_others_on_the_screen(
             await deck.pilot.pause()
             assert "ZeroDivisionError" in shown(widget)
             await deck.look()
-            assert "45° left" in shown(deck.app.screen.query_one(HeadPanel))
+            assert "45° left" in shown(deck.app.screen.query_one(HeadView))
             assert await deck.stops()
         widget.refresh()
         await deck.pilot.pause()
@@ -202,13 +202,13 @@ async def test_a_key_whose_action_fails_is_told_and_the_next_key_works() -> None
 
 async def test_a_panel_that_cannot_be_laid_out_says_so_and_its_screen_stays() -> None:
     async with isolated() as deck:
-        wheels = deck.app.screen.query_one(WheelsFeed)
-        with broken(WheelsPanel, "_get_box_model"):
-            wheels.query_one(WheelsPanel).refresh(layout=True)
+        wheels = deck.app.screen.query_one(WheelsPanel)
+        with broken(WheelsView, "_get_box_model"):
+            wheels.query_one(WheelsView).refresh(layout=True)
             await until(lambda: f"Wheels {FAULT}" in flat(shown(wheels)), "the fault in its place")
             assert await deck.stops()
         await deck.look()
-        await until(lambda: "29° left" in shown(wheels.query_one(WheelsPanel)), "the wheels")
+        await until(lambda: "29° left" in shown(wheels.query_one(WheelsView)), "the wheels")
         assert isinstance(deck.app.screen, LessonDeck)
 
 
@@ -274,7 +274,7 @@ async def test_a_fault_of_the_emergency_stop_does_not_keep_the_panels_waiting() 
             )
             deck.graph.show(lesson_update(samples={**samples, "/head_state": (turned,)}))
             await deck.pilot.pause()
-            assert "29° right" in shown(deck.app.screen.query_one(HeadPanel))
+            assert "29° right" in shown(deck.app.screen.query_one(HeadView))
         assert "Deck has failed" in deck.journal[0][0]
 
 
@@ -300,8 +300,8 @@ async def test_without_isolation_a_fault_makes_a_test_red() -> None:
     with pytest.raises(ZeroDivisionError):  # noqa: PT012 - it is raised when the app has gone
         async with app.run_test(size=(120, 40)) as pilot:
             await settle(pilot)
-            with broken(WheelsPanel, "draw"):
-                app.screen.query_one(WheelsPanel).redraw()
+            with broken(WheelsView, "draw"):
+                app.screen.query_one(WheelsView).redraw()
                 await pilot.pause()
 
 

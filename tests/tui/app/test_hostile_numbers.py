@@ -24,15 +24,15 @@ from tui.clock import time_of_day
 from tui.frame.screen import DeckScreen
 from tui.outcome.view import delay_text
 from tui.panels.head.reading import HeadReading, head_in
-from tui.panels.head.widget import HeadPanel
+from tui.panels.head.widget import HeadView
 from tui.panels.map.reading import goal_in, ground_in, pose_in
 from tui.panels.map.widget import RoomMap
 from tui.panels.registry import PANELS
 from tui.panels.sonar.widget import Sonar
-from tui.panels.voice.widget import VoicePanel
+from tui.panels.voice.widget import VoiceView
 from tui.panels.wheels.panel import would_be
 from tui.panels.wheels.reading import wheels_in
-from tui.panels.wheels.widget import WheelsPanel, angle_words, radius_words, speed_words
+from tui.panels.wheels.widget import WheelsView, angle_words, radius_words, speed_words
 from tui.topics.plot.field import PlotField
 from tui.topics.plot.legend import number_text
 from tui.topics.plot.plot import TopicPlot
@@ -53,10 +53,10 @@ LONGEST = 24
 quick = settings(max_examples=60, deadline=None, derandomize=True, database=None)
 
 
-def drawn(panel: Drawing) -> None:
+def drawn(view: Drawing) -> None:
     """Draw it as the screen would, at every size that it has another drawing for."""
     for width, height in SIZES:
-        for line in panel.draw(width, height):
+        for line in view.draw(width, height):
             assert all(isinstance(ink.text, str) for ink in line)
 
 
@@ -68,19 +68,19 @@ def message(topic: str) -> st.SearchStrategy[Any]:
 @given(message("/wheel_commands"), message("/drive"))
 def test_wheels_are_drawn(joints: Any, drive: Any) -> None:
     for wheels in (wheels_in(joints), would_be(drive)):
-        panel = WheelsPanel()
+        view = WheelsView()
         if wheels is not None:
-            panel.show(wheels)
-        drawn(panel)
+            view.show(wheels)
+        drawn(view)
 
 
 @quick
 @given(st.lists(st.tuples(strategies.doubles, strategies.doubles), min_size=1, max_size=5))
 def test_distances_are_drawn(readings: list[tuple[float, float]]) -> None:
-    panel = Sonar("front")
+    view = Sonar("front")
     for metres, time_s in readings:
-        panel.show(metres, time_s)
-        drawn(panel)
+        view.show(metres, time_s)
+        drawn(view)
 
 
 @quick
@@ -90,13 +90,13 @@ def test_distances_are_drawn(readings: list[tuple[float, float]]) -> None:
     strategies.texts,
 )
 def test_heads_are_drawn(state: Any, told: HeadReading, answer: str) -> None:
-    panel = HeadPanel()
+    view = HeadView()
     pose = head_in(state)
     for one in filter(None, (pose, told, pose)):
-        panel.show(one)
-        panel.command(told)
-        panel.answer(answer)
-        drawn(panel)
+        view.show(one)
+        view.command(told)
+        view.answer(answer)
+        drawn(view)
 
 
 places = strategies.pose_stamped | strategies.odometry
@@ -112,25 +112,25 @@ near = st.floats(-20, 20) | strategies.doubles
     st.lists(near, min_size=2, max_size=4),
 )
 def test_maps_are_drawn(poses: list[Any], room: Any, goal: Any, rays: list[float]) -> None:
-    panel = RoomMap()
+    view = RoomMap()
     usual = {"position": {"x": 1.0, "y": 2.0, "z": 0.0}, "orientation": dict.fromkeys("xyzw", 0.5)}
     for pose in ({"header": {"frame_id": "odom"}, "pose": usual}, *poses):
         found = pose_in(pose)
         if found is not None:
-            panel.show_pose(*found)
-            panel.show_truth(found[0])
+            view.show_pose(*found)
+            view.show_truth(found[0])
         ground = ground_in(room)
         if ground is not None:
-            panel.show_ground(ground)
-        panel.show_goal(goal_in(goal))
+            view.show_ground(ground)
+        view.show_goal(goal_in(goal))
         for place, metres in zip(("front", "rear"), rays, strict=False):
-            panel.show_ray(place, metres)
-        panel.settle()
-        drawn(panel)
+            view.show_ray(place, metres)
+        view.settle()
+        drawn(view)
 
 
 def test_one_reading_of_a_sonar_does_not_make_the_map_useless() -> None:
-    panel = RoomMap()
+    view = RoomMap()
     found = pose_in(
         {
             "header": {"frame_id": "odom"},
@@ -141,12 +141,12 @@ def test_one_reading_of_a_sonar_does_not_make_the_map_useless() -> None:
         }
     )
     assert found is not None
-    panel.show_pose(*found)
-    panel.show_ray("front", 3.4e38)
-    panel.settle()
-    panel.draw(60, 20)
-    assert panel._view is not None
-    assert panel._view.columns / panel._view.dots_per_m < 100
+    view.show_pose(*found)
+    view.show_ray("front", 3.4e38)
+    view.settle()
+    view.draw(60, 20)
+    assert view._view is not None
+    assert view._view.columns / view._view.dots_per_m < 100
 
 
 @quick
@@ -161,11 +161,11 @@ def test_a_heading_is_a_number_or_none(turn: dict[str, float]) -> None:
     st.lists(st.tuples(message("/audio/mic_raw"), strategies.doubles), max_size=4), strategies.maybe
 )
 def test_voices_are_drawn(said: list[tuple[Any, float]], level: float | None) -> None:
-    panel = VoicePanel()
+    view = VoiceView()
     for one, time_s in said:
-        panel.hear("human", one["data"], time_s)
-        panel.show_level(level)
-        drawn(panel)
+        view.hear("human", one["data"], time_s)
+        view.show_level(level)
+        drawn(view)
 
 
 @quick

@@ -39,8 +39,8 @@ from tui.lifecycle.end_session import EndSessionScreen
 from tui.lifecycle.stopping import StoppingScreen
 from tui.lifecycle.strays import StraysScreen
 from tui.logs.screen import LogsScreen
-from tui.panels.head.widget import HeadPanel
-from tui.panels.wheels.widget import WheelsPanel
+from tui.panels.head.widget import HeadView
+from tui.panels.wheels.widget import WheelsView
 from tui.picker.screen import PickerScreen
 from tui.session.history import LogHistory
 from tui.session.inbox import GraphInbox
@@ -369,7 +369,7 @@ async def test_a_session_that_ends_leaves_no_node_ready_and_no_panel_that_seems_
         opener.graph.show(lesson_update())
         opener.link.set_state("camera", NodeState.FAILED, signal="SIGSEGV", pid=None)
         await settle(pilot)
-        drawings = list(app.screen.query(WheelsPanel)) + list(app.screen.query(HeadPanel))
+        drawings = list(app.screen.query(WheelsView)) + list(app.screen.query(HeadView))
         assert [drawing.stale for drawing in drawings] == [False, False]
         opener.link.say(ClosedEvent(say("the supervisor is gone")))
         await settle(pilot)

@@ -133,7 +133,7 @@ async def test_panels_come_with_their_topics_and_stay() -> None:
         graph.show(lesson_update(topics=(sonar,), samples={}))
         await pilot.pause()
         await pilot.pause()
-        assert [type(panel).__name__ for panel in deck.panels] == ["SonarFeed"]
+        assert [type(panel).__name__ for panel in deck.panels] == ["SonarPanel"]
         graph.show(lesson_update(topics=TOPICS))
         await pilot.pause()
         await pilot.pause()

@@ -33,15 +33,15 @@ from tui.frame import title
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
 from tui.outcome.view import Outcome
-from tui.panels.camera import CameraFeed
-from tui.panels.head.panel import HeadFeed
-from tui.panels.llm import LlmFeed
+from tui.panels.camera import CameraPanel
+from tui.panels.head.panel import HeadPanel
+from tui.panels.llm import LlmPanel
 from tui.panels.shelf import Shelf, heights, in_rows, paged
-from tui.panels.sonar.panel import SonarFeed
-from tui.panels.sonar.widget import Sonar, SonarPanel
-from tui.panels.voice.panel import VoiceFeed
-from tui.panels.wheels.panel import WheelsFeed
-from tui.panels.wheels.widget import WheelsPanel
+from tui.panels.sonar.panel import SonarPanel
+from tui.panels.sonar.widget import Sonar, SonarView
+from tui.panels.voice.panel import VoicePanel
+from tui.panels.wheels.panel import WheelsPanel
+from tui.panels.wheels.widget import WheelsView
 from tui.widgets.image_view import ImageView
 from tui.widgets.node_words import duration
 
@@ -198,10 +198,10 @@ async def test_panels_show_what_their_topics_say() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
         await pilot.pause()
-        gauge = app.screen.query_one(SonarFeed).query_one(SonarPanel)
+        gauge = app.screen.query_one(SonarPanel).query_one(SonarView)
         assert gauge.query_one("#front", Sonar).has_value
-        assert app.screen.query_one(CameraFeed).query_one(ImageView).has_picture
-        wheels = app.screen.query_one(WheelsFeed).query_one(WheelsPanel)
+        assert app.screen.query_one(CameraPanel).query_one(ImageView).has_picture
+        wheels = app.screen.query_one(WheelsPanel).query_one(WheelsView)
         assert "left wheel slower" in "\n".join(
             wheels.render_line(y).text for y in range(wheels.size.height)
         )
@@ -212,9 +212,9 @@ async def test_without_a_differential_the_wheels_show_what_drive_would_do() -> N
     opener = RecordedOpener(graph=RecordedGraph(lesson_update(topics=rows)))
     async with opened(opener) as (app, pilot):
         await pilot.pause()
-        wheels = app.screen.query_one(WheelsFeed)
+        wheels = app.screen.query_one(WheelsPanel)
         assert "← /drive" in str(wheels.border_title)
-        drawn = wheels.query_one(WheelsPanel)
+        drawn = wheels.query_one(WheelsView)
         text = "\n".join(drawn.render_line(y).text for y in range(drawn.size.height))
         assert "0.25 m/s" in text
         assert "0.35 m/s" in text
@@ -223,7 +223,7 @@ async def test_without_a_differential_the_wheels_show_what_drive_would_do() -> N
 async def test_the_rear_sonar_comes_with_its_publisher_and_stays_without_it() -> None:
     opener = RecordedOpener()
     async with opened(opener) as (app, pilot):
-        gauge = app.screen.query_one(SonarPanel)
+        gauge = app.screen.query_one(SonarView)
         assert not gauge.has_class("-both")
         rear = topic("/sensor/sonar_rear", "std_msgs/msg/Float32", 1.0)
         opener.graph.show(lesson_update(topics=(*TOPICS, rear)))
@@ -239,7 +239,7 @@ async def test_the_rear_sonar_comes_with_its_publisher_and_stays_without_it() ->
 async def test_the_trail_of_a_json_shows_without_the_composer() -> None:
     async with opened(llm()) as (app, pilot):
         await pilot.pause()
-        trail = app.screen.query_one(LlmFeed).query_one(Outcome)
+        trail = app.screen.query_one(LlmPanel).query_one(Outcome)
         assert any("Turn and look" in entry.text for entry in trail.entries)
         assert ("set_head_position", "✓") in {(entry.topic, entry.mark) for entry in trail.entries}
 
@@ -308,7 +308,7 @@ async def test_the_title_that_tells_of_more_pages_is_whole(
 ) -> None:
     set_language("ru")
     async with opened(size=size) as (app, _pilot):
-        first = app.screen.query_one(SonarFeed)
+        first = app.screen.query_one(SonarPanel)
         upper = app.screen._compositor.render_strips()[first.region.y].text
         assert words in upper
 
@@ -325,7 +325,7 @@ async def test_no_column_of_the_nodes_is_cut_beside_the_panels() -> None:
 @pytest.mark.parametrize("width", [30, 52, 79, 80, 120])
 @pytest.mark.parametrize("height", [1, 6, 13, 22, 38, 60])
 def test_every_panel_has_a_place_on_one_page_and_pages_are_filled(width: int, height: int) -> None:
-    panels = [SonarFeed(), WheelsFeed(), CameraFeed(), HeadFeed(), VoiceFeed()]
+    panels = [SonarPanel(), WheelsPanel(), CameraPanel(), HeadPanel(), VoicePanel()]
     rows = in_rows(panels, width)
     pages = paged(rows, height, 1)
     placed = [panel for page in pages for row in page for panel in row]

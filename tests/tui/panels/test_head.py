@@ -11,7 +11,7 @@ from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
 from tui.panels.head.reading import HeadReading, head_in
-from tui.panels.head.widget import CAPTION_FROM, DRAWN_FROM, HeadPanel
+from tui.panels.head.widget import CAPTION_FROM, DRAWN_FROM, HeadView
 from tui.widgets.drawing import Line
 
 
@@ -37,30 +37,30 @@ def test_other_joints_are_no_head_and_missing_ones_no_number() -> None:
 
 @pytest.mark.parametrize(("width", "height"), [(50, 1), (40, 3), (18, 3), (30, 8), (60, 20)])
 async def test_the_angles_are_numbers_at_every_size(width: int, height: int) -> None:
-    panel = HeadPanel()
-    async with alone(panel, width, height).run_test(size=(80, 30)):
-        panel.show(HeadReading(45, 10))
-        shown = "\n".join(rows(panel))
+    view = HeadView()
+    async with alone(view, width, height).run_test(size=(80, 30)):
+        view.show(HeadReading(45, 10))
+        shown = "\n".join(rows(view))
         assert "45° left" in shown
         assert "10° up" in shown
 
 
 async def test_it_moves_while_the_pose_changes_and_rests_when_it_does_not() -> None:
-    panel = HeadPanel()
-    async with alone(panel, 44, 10).run_test(size=(60, 30)):
-        panel.show(HeadReading(0, 0))
-        assert "at rest" in "\n".join(rows(panel))
-        panel.show(HeadReading(10, 0))
-        assert "moving" in "\n".join(rows(panel))
-        panel.show(HeadReading(10, 0))
-        assert "at rest" in "\n".join(rows(panel))
+    view = HeadView()
+    async with alone(view, 44, 10).run_test(size=(60, 30)):
+        view.show(HeadReading(0, 0))
+        assert "at rest" in "\n".join(rows(view))
+        view.show(HeadReading(10, 0))
+        assert "moving" in "\n".join(rows(view))
+        view.show(HeadReading(10, 0))
+        assert "at rest" in "\n".join(rows(view))
 
 
 async def test_an_age_that_nobody_is_told_of_is_no_reason_to_draw() -> None:
-    panel = HeadPanel()
-    async with alone(panel, 44, 10).run_test(size=(60, 30)):
-        panel.show(HeadReading(10, 0))
-        panel.show_trouble(None, "", 0.2)
+    view = HeadView()
+    async with alone(view, 44, 10).run_test(size=(60, 30)):
+        view.show(HeadReading(10, 0))
+        view.show_trouble(None, "", 0.2)
         drawn: list[int] = []
 
         def note(width: int, height: int) -> list[Line]:
@@ -68,40 +68,40 @@ async def test_an_age_that_nobody_is_told_of_is_no_reason_to_draw() -> None:
             drawn.append(width)
             return []
 
-        panel.draw = note  # type: ignore[method-assign]
-        panel.show_trouble(None, "", 0.4)
+        view.draw = note  # type: ignore[method-assign]
+        view.show_trouble(None, "", 0.4)
         assert not drawn
-        panel.show_trouble(Trouble.QUIET, "", 5.0)
-        panel.show_trouble(Trouble.QUIET, "", 6.0)
+        view.show_trouble(Trouble.QUIET, "", 5.0)
+        view.show_trouble(Trouble.QUIET, "", 6.0)
         assert len(drawn) == 2
 
 
 @pytest.mark.parametrize(("width", "height"), [(44, 10), (30, 10), (24, 4)])
 async def test_a_head_that_nobody_knows_of_does_not_move(width: int, height: int) -> None:
     """Servos tell nothing: before the first turn, and after their cable was pulled."""
-    panel = HeadPanel()
-    async with alone(panel, width, height).run_test(size=(60, 30)):
+    view = HeadView()
+    async with alone(view, width, height).run_test(size=(60, 30)):
         for pose in (HeadReading(math.nan, math.nan), HeadReading(math.nan, math.nan)):
-            panel.show(pose)
-            shown = "\n".join(rows(panel))
+            view.show(pose)
+            shown = "\n".join(rows(view))
             assert "unknown until it turns" in shown
             assert "---" in shown
-        panel.show(HeadReading(10, 0))
-        assert "at rest" in "\n".join(rows(panel))
-        panel.show(HeadReading(math.nan, math.nan))
-        assert "unknown until it turns" in "\n".join(rows(panel))
+        view.show(HeadReading(10, 0))
+        assert "at rest" in "\n".join(rows(view))
+        view.show(HeadReading(math.nan, math.nan))
+        assert "unknown until it turns" in "\n".join(rows(view))
 
 
 async def test_what_it_was_told_and_the_answer_are_shown_harmlessly() -> None:
-    panel = HeadPanel()
-    async with alone(panel, 60, 10).run_test(size=(80, 30)):
-        panel.show(HeadReading(0, 0))
-        panel.command(HeadReading(-90, 15))
-        assert "told: 90° right, 15° up" in "\n".join(rows(panel))
-        panel.answer("[red]no[/red]\x1b[31m")
-        assert "[red]no[/red]␛[31m" in "\n".join(rows(panel))
-        panel.command(HeadReading(0, 0))
-        assert "[red]" not in "\n".join(rows(panel))
+    view = HeadView()
+    async with alone(view, 60, 10).run_test(size=(80, 30)):
+        view.show(HeadReading(0, 0))
+        view.command(HeadReading(-90, 15))
+        assert "told: 90° right, 15° up" in "\n".join(rows(view))
+        view.answer("[red]no[/red]\x1b[31m")
+        assert "[red]no[/red]␛[31m" in "\n".join(rows(view))
+        view.command(HeadReading(0, 0))
+        assert "[red]" not in "\n".join(rows(view))
 
 
 @pytest.mark.parametrize("pose", [HeadReading(math.nan, math.inf), HeadReading(1e9, -1e9)])
@@ -109,43 +109,43 @@ async def test_what_it_was_told_and_the_answer_are_shown_harmlessly() -> None:
 async def test_impossible_angles_and_sizes_do_no_harm(
     pose: HeadReading, size: tuple[int, int]
 ) -> None:
-    panel = HeadPanel()
-    async with alone(panel, *size).run_test(size=(80, 30)):
-        panel.show(pose)
-        panel.command(pose)
-        assert len(rows(panel)) == size[1]
+    view = HeadView()
+    async with alone(view, *size).run_test(size=(80, 30)):
+        view.show(pose)
+        view.command(pose)
+        assert len(rows(view)) == size[1]
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
 async def test_the_captions_are_whole_wherever_the_views_are_drawn(language: str) -> None:
     set_language(language)
-    panel = HeadPanel()
-    async with alone(panel, DRAWN_FROM[0], CAPTION_FROM).run_test(size=(80, 30)):
-        panel.show(HeadReading(0, 0))
-        assert rows(panel)[0].split()
-        assert "…" not in rows(panel)[0]
+    view = HeadView()
+    async with alone(view, DRAWN_FROM[0], CAPTION_FROM).run_test(size=(80, 30)):
+        view.show(HeadReading(0, 0))
+        assert rows(view)[0].split()
+        assert "…" not in rows(view)[0]
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
 def test_looks(language: str, snap_compare: SnapCompare) -> None:
     """A needle on half a circle from above and from the side, a stroke where it was told to be."""
     set_language(language)
-    panels = [HeadPanel() for _panel in range(5)]
+    views = [HeadView() for _view in range(5)]
 
     def fill() -> None:
-        panels[0].show(HeadReading(40, 5))
-        panels[0].command(HeadReading(60, 20))
-        panels[0].show(HeadReading(45, 10))
-        panels[1].show(HeadReading(-90, -45))
-        panels[1].answer("1")
-        panels[2].show(HeadReading(0, 0))
-        panels[2].show_trouble(Trouble.QUIET, "", 5.0)
-        panels[3].show(HeadReading(45, 10))
-        panels[4].show_trouble(Trouble.NO_PUBLISHER, "Start head_controller.")
+        views[0].show(HeadReading(40, 5))
+        views[0].command(HeadReading(60, 20))
+        views[0].show(HeadReading(45, 10))
+        views[1].show(HeadReading(-90, -45))
+        views[1].answer("1")
+        views[2].show(HeadReading(0, 0))
+        views[2].show_trouble(Trouble.QUIET, "", 5.0)
+        views[3].show(HeadReading(45, 10))
+        views[4].show_trouble(Trouble.NO_PUBLISHER, "Start head_controller.")
 
     stage = Stage(
-        [(panels[0], (44, 14)), (panels[1], (44, 8))],
-        [(panels[2], (40, 10)), (panels[3], (40, 2)), (panels[4], (40, 4))],
+        [(views[0], (44, 14)), (views[1], (44, 8))],
+        [(views[2], (40, 10)), (views[3], (40, 2)), (views[4], (40, 4))],
         fill=fill,
     )
     assert snap_compare(stage, terminal_size=(92, 28), run_before=stage.filled)

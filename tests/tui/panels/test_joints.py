@@ -17,10 +17,10 @@ from tests.tui.recorded import (
     lesson_update,
     sample,
 )
-from tui.panels.head.widget import HeadPanel
+from tui.panels.head.widget import HeadView
 from tui.panels.joints import ANOTHER_S, Joints
 from tui.panels.sonar.widget import Sonar
-from tui.panels.wheels.widget import WheelsPanel
+from tui.panels.wheels.widget import WheelsView
 
 if TYPE_CHECKING:
     from graph.data import Sample
@@ -43,19 +43,19 @@ def heard(*samples: tuple[Sample, float]) -> Joints:
     ("kind", "other", "came", "awaited"),
     [
         (
-            WheelsPanel,
+            WheelsView,
             OTHER,
             "/wheel_commands: left_wheel, right_wheel have come",
             "expected: rear_left_wheel_joint, rear_right_wheel_joint",
         ),
         (
-            HeadPanel,
+            HeadView,
             joints("/head_state", yaw=(0.1, 0.0), pitch=(0.2, 0.0)),
             "/head_state: yaw, pitch have come",
             "expected: pan_joint, tilt_joint",
         ),
         (
-            HeadPanel,
+            HeadView,
             joints("/head_state"),
             "/head_state: no joint names have come",
             "expected: pan_joint, tilt_joint",
@@ -69,8 +69,8 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
     opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
     async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
-        panel = app.screen.query_one(kind)
-        words = " ".join(" ".join(rows(panel)).split())
+        view = app.screen.query_one(kind)
+        words = " ".join(" ".join(rows(view)).split())
         assert "messages come, but with other joint names" in words
         assert came in words
         assert awaited in words
@@ -78,7 +78,7 @@ async def test_the_panel_says_which_joints_come_and_which_are_awaited(
         opener.graph.show(lesson_update())
         await pilot.pause()
         await pilot.pause()
-        assert "have come" not in " ".join(rows(panel))
+        assert "have come" not in " ".join(rows(view))
 
 
 async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
@@ -88,19 +88,19 @@ async def test_a_sonar_of_another_type_is_told_and_not_waited_for() -> None:
     opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
     async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
-        panel = app.screen.query_one("#front", Sonar)
-        told = " ".join(" ".join(rows(panel)).split())
+        view = app.screen.query_one("#front", Sonar)
+        told = " ".join(" ".join(rows(view)).split())
         assert "messages come, but of another type" in told
         assert f"{topic}: std_msgs/String comes; expected: std_msgs/Float32" in told
         # A look at which nothing has come changes nothing.
         opener.graph.show(lesson_update(samples={}))
         await pilot.pause()
         await pilot.pause()
-        assert "of another type" in " ".join(rows(panel))
+        assert "of another type" in " ".join(rows(view))
         opener.graph.show(lesson_update())
         await pilot.pause()
         await pilot.pause()
-        assert "1.84" in " ".join(rows(panel)) or "FREE" in " ".join(rows(panel))
+        assert "1.84" in " ".join(rows(view)) or "FREE" in " ".join(rows(view))
 
 
 def test_a_joint_state_of_another_type_is_told() -> None:

@@ -23,7 +23,7 @@ from tests.tui.recorded_map import (
     stamped,
 )
 from tests.tui.snapshots import Look, SnapCompare, both_languages, one_look
-from tui.panels.map.panel import MapFeed
+from tui.panels.map.panel import MapPanel
 from tui.panels.map.widget import RoomMap
 from tui.panels.panel import Panel
 from tui.panels.registry import panels_for
@@ -34,12 +34,12 @@ class Alone(App[None]):
 
     def compose(self) -> ComposeResult:
         """The panel."""
-        yield MapFeed()
+        yield MapPanel()
 
     def tell(self, *updates: GraphUpdate) -> str:
         """Show updates; return what stands on the panel then."""
         for update in updates:
-            self.query_one(MapFeed).show(update)
+            self.query_one(MapPanel).show(update)
         return self.text
 
     @property
@@ -113,7 +113,7 @@ async def test_odometry_that_falls_silent_is_greyed_with_its_age_and_not_taken_f
             ink.look for line in app.query_one(RoomMap)._lines for ink in line if ink.text.strip()
         }
         assert looks == {"muted", "alert"}
-        assert app.query_one(MapFeed).border_title == "Map"
+        assert app.query_one(MapPanel).border_title == "Map"
 
 
 # ---------------------------------------------------------------- what it shows
@@ -125,12 +125,12 @@ async def test_without_odometry_the_truth_of_a_simulated_robot_is_shown_and_name
         there = stamped("/mock/pose", Pose(1.0, 1.0))
         text = app.tell(map_update({"/odom": NOBODY}, odom=(), mock_pose=(there,)))
         assert "x 1.00  y 1.00 m" in text
-        assert app.query_one(MapFeed).border_title == "Map ← /mock/pose"
+        assert app.query_one(MapPanel).border_title == "Map ← /mock/pose"
         text = app.tell(map_update(odom=(odometry(Pose(0.5, 0.5)),), mock_pose=(there,)))
         assert "x 0.50  y 0.50 m" in text
         assert "truth 0.71 m off" in text
         assert "path" not in text
-        assert app.query_one(MapFeed).border_title == "Map"
+        assert app.query_one(MapPanel).border_title == "Map"
 
 
 async def test_a_goal_goes_with_its_end_and_with_its_publisher() -> None:
@@ -174,9 +174,9 @@ async def test_it_keeps_to_its_room_at_every_size(size: tuple[int, int]) -> None
     app = Alone()
     async with app.run_test(size=size):
         app.tell(map_update())
-        panel = app.query_one(RoomMap)
-        assert all(len(row) <= panel.size.width for row in rows(panel))
-        assert len(panel._lines) <= panel.size.height
+        drawing = app.query_one(RoomMap)
+        assert all(len(row) <= drawing.size.width for row in rows(drawing))
+        assert len(drawing._lines) <= drawing.size.height
 
 
 async def test_it_is_drawn_anew_only_if_a_cell_looks_different(
@@ -187,9 +187,9 @@ async def test_it_is_drawn_anew_only_if_a_cell_looks_different(
         draws: list[int] = []
         real = RoomMap.redraw
 
-        def counted(panel: RoomMap) -> None:
+        def counted(drawing: RoomMap) -> None:
             draws.append(len(draws))
-            real(panel)
+            real(drawing)
 
         monkeypatch.setattr(RoomMap, "redraw", counted)
         here = Pose(1.0, 0.2, 0.3)
@@ -217,4 +217,4 @@ async def test_it_is_drawn_anew_only_if_a_cell_looks_different(
 
 def test_others_bring_the_map_by_their_topics() -> None:
     assert panels_for({"/odom"}) == ("map",)
-    assert issubclass(MapFeed, Panel)
+    assert issubclass(MapPanel, Panel)

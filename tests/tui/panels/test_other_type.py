@@ -10,10 +10,10 @@ from tests.tui.panels.test_map import Alone
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_samples, lesson_update, sample
 from tests.tui.recorded_lesson import TOPICS
 from tests.tui.recorded_map import map_update
-from tui.panels.camera import CameraFeed
+from tui.panels.camera import CameraPanel
 from tui.panels.panel import Panel
-from tui.panels.voice.panel import VoiceFeed
-from tui.panels.wheels.panel import WheelsFeed
+from tui.panels.voice.panel import VoicePanel
+from tui.panels.wheels.panel import WheelsPanel
 
 STRING = "std_msgs/msg/String"
 
@@ -21,10 +21,10 @@ STRING = "std_msgs/msg/String"
 @pytest.mark.parametrize(
     ("kind", "topic", "expected", "gone"),
     [
-        (CameraFeed, "/camera/color/image_raw", "sensor_msgs/Image", ""),
-        (VoiceFeed, "/audio/mic_raw", "std_msgs/ByteMultiArray", "/audio/speaker_raw"),
-        (VoiceFeed, "/audio/speaker_raw", "std_msgs/ByteMultiArray", "/audio/mic_raw"),
-        (WheelsFeed, "/drive", "ackermann_msgs/AckermannDriveStamped", "/wheel_commands"),
+        (CameraPanel, "/camera/color/image_raw", "sensor_msgs/Image", ""),
+        (VoicePanel, "/audio/mic_raw", "std_msgs/ByteMultiArray", "/audio/speaker_raw"),
+        (VoicePanel, "/audio/speaker_raw", "std_msgs/ByteMultiArray", "/audio/mic_raw"),
+        (WheelsPanel, "/drive", "ackermann_msgs/AckermannDriveStamped", "/wheel_commands"),
     ],
 )
 async def test_another_type_is_told_and_not_waited_for(
@@ -62,7 +62,7 @@ async def test_what_the_robot_says_in_another_type_leaves_the_talk_and_stands_be
     opener = RecordedOpener(graph=RecordedGraph(lesson_update(samples=samples)))
     async with opened(opener, size=(160, 60)) as (app, pilot):
         await pilot.pause()
-        told = " ".join(rows(app.screen.query_one(VoiceFeed).children[0]))
+        told = " ".join(rows(app.screen.query_one(VoicePanel).children[0]))
         assert "Осмотрись" in told
         assert "/audio/speaker_raw: std_msgs/String comes" in told
 

@@ -12,7 +12,7 @@ from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
 from tui.panels.sonar.bar import bar, mark_cell, trend
-from tui.panels.sonar.widget import Sonar, SonarPanel
+from tui.panels.sonar.widget import Sonar, SonarView
 from tui.panels.sonar.words import COURSE, Bounds, Zone, zone_of
 
 INF, NAN = math.inf, math.nan
@@ -145,13 +145,13 @@ async def test_the_same_again_draws_nothing() -> None:
 
 
 async def test_the_rear_gauge_comes_only_when_there_is_one() -> None:
-    panel = SonarPanel()
-    async with alone(panel, 40, 16).run_test(size=(60, 30)) as pilot:
-        panel.show("front", 1.5, 0.0)
-        rear = panel.query_one("#rear", Sonar)
+    view = SonarView()
+    async with alone(view, 40, 16).run_test(size=(60, 30)) as pilot:
+        view.show("front", 1.5, 0.0)
+        rear = view.query_one("#rear", Sonar)
         assert not rear.display
-        panel.set_both(True)
-        panel.show("rear", 0.4, 0.0)
+        view.set_both(True)
+        view.show("rear", 0.4, 0.0)
         await pilot.pause()
         assert "rear" in rows(rear)[0]
         assert "STOP" in rows(rear)[0]

@@ -14,7 +14,7 @@ from tests.tui.recorded import RecordedGraph, RecordedOpener, RecordedSession
 from tests.tui.recorded_lesson import NOW_S
 from tests.tui.recorded_map import MAP_SESSION, map_update, odometry, reading
 from tests.tui.snapshots import settle
-from tui.panels.camera import CameraFeed
+from tui.panels.camera import CameraPanel
 from tui.panels.map.widget import RoomMap
 from tui.panels.panel import Panel
 from tui.panels.sonar.widget import Sonar
@@ -81,4 +81,4 @@ async def test_only_what_has_a_history_is_asked_for_while_unseen() -> None:
 
 
 def test_a_panel_without_a_history_keeps_nothing() -> None:
-    assert CameraFeed().kept() == Panel().kept() == set()
+    assert CameraPanel().kept() == Panel().kept() == set()

@@ -16,9 +16,9 @@ from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.recorded import NOW_S, lesson_update, sample, topic
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
-from tui.panels.voice.panel import VoiceFeed
+from tui.panels.voice.panel import VoicePanel
 from tui.panels.voice.reading import heard
-from tui.panels.voice.widget import VoicePanel, level_line
+from tui.panels.voice.widget import VoiceView, level_line
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate
@@ -63,11 +63,11 @@ def test_whatever_comes_can_be_shown(data: bytes) -> None:
 
 
 async def test_the_newest_is_at_the_bottom_and_long_talk_drops_the_oldest() -> None:
-    panel = VoicePanel()
-    async with alone(panel, 50, 5).run_test(size=(60, 20)):
+    view = VoiceView()
+    async with alone(view, 50, 5).run_test(size=(60, 20)):
         for number in range(300):
-            panel.hear("human" if number % 2 else "robot", f"word {number}".encode(), NOW_S)
-        shown = rows(panel)
+            view.hear("human" if number % 2 else "robot", f"word {number}".encode(), NOW_S)
+        shown = rows(view)
         assert "word 299" in shown[-1]
         assert "human" in shown[-1]
         assert "robot" in shown[-2]
@@ -75,35 +75,35 @@ async def test_the_newest_is_at_the_bottom_and_long_talk_drops_the_oldest() -> N
 
 
 async def test_one_line_tells_who_and_how_it_begins() -> None:
-    panel = VoicePanel()
-    async with alone(panel, 30, 2).run_test(size=(60, 20)):
-        panel.hear("robot", b"I look round and drive on.", NOW_S)
-        panel.show_level(-30.0)
-        talk, level = rows(panel)
+    view = VoiceView()
+    async with alone(view, 30, 2).run_test(size=(60, 20)):
+        view.hear("robot", b"I look round and drive on.", NOW_S)
+        view.show_level(-30.0)
+        talk, level = rows(view)
         assert talk == "◂ robot I look round and driv…"
         assert "-30 dB" in level
 
 
 async def test_a_stream_of_sound_is_one_entry_that_grows() -> None:
-    panel = VoicePanel()
-    async with alone(panel, 70, 5).run_test(size=(80, 20)):
+    view = VoiceView()
+    async with alone(view, 70, 5).run_test(size=(80, 20)):
         for number in range(20):
-            panel.hear("human", tone(0.1, 0.5), NOW_S + number / 10)
-        panel.hear("human", tone(0.1, 0.5), NOW_S + 30)
-        shown = [row for row in rows(panel) if row]
+            view.hear("human", tone(0.1, 0.5), NOW_S + number / 10)
+        view.hear("human", tone(0.1, 0.5), NOW_S + 30)
+        shown = [row for row in rows(view) if row]
         assert len(shown) == 2
         assert "2.0 s" in shown[0]
         assert "0.1 s" in shown[1]
 
 
 async def test_silence_says_why() -> None:
-    panel = VoicePanel()
-    async with alone(panel, 50, 5).run_test(size=(60, 20)):
-        assert "waiting for the first message" in "\n".join(rows(panel))
-        panel.hear("human", b"hello", NOW_S)
-        assert "hello" in "\n".join(rows(panel))
-        panel.clear()
-        assert "waiting" in "\n".join(rows(panel))
+    view = VoiceView()
+    async with alone(view, 50, 5).run_test(size=(60, 20)):
+        assert "waiting for the first message" in "\n".join(rows(view))
+        view.hear("human", b"hello", NOW_S)
+        assert "hello" in "\n".join(rows(view))
+        view.clear()
+        assert "waiting" in "\n".join(rows(view))
 
 
 @pytest.mark.parametrize("language", ["en", "ru"])
@@ -114,18 +114,18 @@ def test_looks(language: str, dump_compare: SnapCompare, monkeypatch: pytest.Mon
     monkeypatch.setenv("TZ", "UTC")
     time.tzset()
     set_language(language)
-    panels = [VoicePanel() for _panel in range(3)]
+    views = [VoiceView() for _view in range(3)]
 
     def fill() -> None:
-        for panel in panels[:2]:
-            panel.hear("human", b"VOICE_COMMAND: Look around and tell me what you see!", NOW_S)
-            panel.hear("robot", "Еду вперёд и осматриваюсь".encode(), NOW_S + 2)
-            panel.hear("human", b"\xff\xfe\x00\x01", NOW_S + 3)
-            panel.hear("human", b"\x1b[31mred\x1b[0m [red]x[/red] and more text", NOW_S + 4)
-            panel.hear("human", tone(0.5, 0.3), NOW_S + 5)
-            panel.hear("human", tone(0.5, 0.01), NOW_S + 5.5)
+        for view in views[:2]:
+            view.hear("human", b"VOICE_COMMAND: Look around and tell me what you see!", NOW_S)
+            view.hear("robot", "Еду вперёд и осматриваюсь".encode(), NOW_S + 2)
+            view.hear("human", b"\xff\xfe\x00\x01", NOW_S + 3)
+            view.hear("human", b"\x1b[31mred\x1b[0m [red]x[/red] and more text", NOW_S + 4)
+            view.hear("human", tone(0.5, 0.3), NOW_S + 5)
+            view.hear("human", tone(0.5, 0.01), NOW_S + 5.5)
 
-    stage = Stage([(panels[0], (60, 10))], [(panels[1], (28, 10)), (panels[2], (28, 3))], fill=fill)
+    stage = Stage([(views[0], (60, 10))], [(views[1], (28, 10)), (views[2], (28, 3))], fill=fill)
     assert dump_compare(stage, terminal_size=(94, 18), run_before=stage.filled)
 
 
@@ -159,15 +159,15 @@ def fed(*rows: TopicRow, samples: tuple[Sample, ...] = ()) -> GraphUpdate:
 
 
 async def test_the_microphone_is_told_by_its_level_or_by_its_absence() -> None:
-    feed = VoiceFeed()
+    panel = VoicePanel()
     told = sample(LEVEL, "std_msgs/msg/Float32", {"data": -30.0})
     level = topic(LEVEL, "std_msgs/msg/Float32", 10.0)
     microphone = topic(MICROPHONE, "std_msgs/msg/ByteMultiArray", 10.0)
-    async with alone(feed, 50, 8).run_test(size=(60, 20)):
-        talk = feed.query_one(VoicePanel)
+    async with alone(panel, 50, 8).run_test(size=(60, 20)):
+        talk = panel.query_one(VoiceView)
 
         def shown(*rows_: TopicRow, samples: tuple[Sample, ...] = ()) -> str:
-            feed.show(fed(*rows_, samples=samples))
+            panel.show(fed(*rows_, samples=samples))
             return "\n".join(rows(talk))
 
         assert "nobody publishes" in shown()
@@ -193,15 +193,15 @@ def test_levels_look(language: str, dump_compare: SnapCompare) -> None:
     """Faint grey, speech green, loud yellow, cut off red; none in words; narrow ones a number."""
     set_language(language)
     states = (-58.0, -24.0, -9.0, -2.0, None)
-    wide, narrow = ([VoicePanel() for _state in states] for _width in range(2))
+    wide, narrow = ([VoiceView() for _state in states] for _width in range(2))
 
     def fill() -> None:
-        for panels in (wide, narrow):
-            for dbfs, panel in zip(states, panels, strict=True):
-                panel.show_level(dbfs, missing=dbfs is None)
-                panel.hear("human", b"Look!", NOW_S)
+        for views in (wide, narrow):
+            for dbfs, view in zip(states, views, strict=True):
+                view.show_level(dbfs, missing=dbfs is None)
+                view.hear("human", b"Look!", NOW_S)
 
     stage = Stage(
-        [(panel, (44, 2)) for panel in wide], [(panel, (18, 2)) for panel in narrow], fill=fill
+        [(view, (44, 2)) for view in wide], [(view, (18, 2)) for view in narrow], fill=fill
     )
     assert dump_compare(stage, terminal_size=(70, 21), run_before=stage.filled)

@@ -14,9 +14,9 @@ from tests.tui.panel_stage import Stage, alone, rows
 from tests.tui.snapshots import SnapCompare
 from text.i18n import set_language
 from tui.panels.dots import Dots, rectangle
+from tui.panels.wheels.chassis import speed_bar
 from tui.panels.wheels.reading import WheelsReading, wheels_in
-from tui.panels.wheels.view import speed_bar
-from tui.panels.wheels.widget import WheelsPanel
+from tui.panels.wheels.widget import WheelsView
 
 NAMES = ["rear_left_wheel_joint", "rear_right_wheel_joint", "steering_joint"]
 
@@ -58,29 +58,29 @@ def test_a_joint_state_is_read_by_the_names_of_its_joints() -> None:
 )
 async def test_whatever_comes_is_shown(value: dict[str, Any]) -> None:
     wheels = wheels_in(value)
-    panel = WheelsPanel()
-    async with alone(panel, 40, 12).run_test(size=(60, 30)):
+    view = WheelsView()
+    async with alone(view, 40, 12).run_test(size=(60, 30)):
         if wheels is not None:
-            panel.show(wheels)
-            assert any("---" in row for row in rows(panel))
+            view.show(wheels)
+            assert any("---" in row for row in rows(view))
 
 
 @pytest.mark.parametrize(("width", "height"), [(60, 1), (34, 5), (44, 14)])
 async def test_an_angle_that_no_wheel_can_have_is_named(width: int, height: int) -> None:
-    panel = WheelsPanel()
-    async with alone(panel, width, height).run_test(size=(100, 40)):
+    view = WheelsView()
+    async with alone(view, width, height).run_test(size=(100, 40)):
         for steering, words in ((1e308, "1e308"), (-1e308, "-1e308"), (7.0, "7")):
-            panel.show(WheelsReading(0.3, 0.3, steering))
-            shown = "\n".join(rows(panel))
+            view.show(WheelsReading(0.3, 0.3, steering))
+            shown = "\n".join(rows(view))
             if height > 1:
                 assert f"out of range: {words} rad" in shown
 
 
 async def test_speeds_that_no_wheel_can_have_are_told_shortly() -> None:
-    panel = WheelsPanel()
-    async with alone(panel, 44, 14).run_test(size=(100, 40)):
-        panel.show(WheelsReading(1e308, -1.7e308, 0.5))
-        shown = "\n".join(rows(panel))
+    view = WheelsView()
+    async with alone(view, 44, 14).run_test(size=(100, 40)):
+        view.show(WheelsReading(1e308, -1.7e308, 0.5))
+        shown = "\n".join(rows(view))
         assert "1e308" in shown
         assert "-1.7e308" in shown
 
@@ -102,10 +102,10 @@ def test_a_word_says_which_wheel_is_slower(speed: float, steering: float, words:
 
 @pytest.mark.parametrize(("width", "height"), [(60, 1), (34, 5), (44, 14), (80, 30)])
 async def test_both_speeds_are_numbers_at_every_size(width: int, height: int) -> None:
-    panel = WheelsPanel()
-    async with alone(panel, width, height).run_test(size=(100, 40)):
-        panel.show(turning(0.3, 0.5))
-        shown = "\n".join(rows(panel))
+    view = WheelsView()
+    async with alone(view, width, height).run_test(size=(100, 40)):
+        view.show(turning(0.3, 0.5))
+        shown = "\n".join(rows(view))
         assert all(words in shown for words in ("0.25 m/s", "0.35 m/s", "left wheel slower"))
         if height > 1:
             assert "29° left" in shown
@@ -139,12 +139,12 @@ def test_dots_outside_the_grid_are_left_out() -> None:
 
 
 async def test_old_speeds_are_greyed_with_their_age() -> None:
-    panel = WheelsPanel()
-    async with alone(panel, 44, 14).run_test(size=(60, 30)):
-        panel.show(turning(0.3, 0.5))
-        panel.show_trouble(Trouble.QUIET, "", 5.0)
-        assert "no data for 5 s" in rows(panel)[-1]
-        looks = {ink.look for line in panel._lines for ink in line if ink.text.strip()}
+    view = WheelsView()
+    async with alone(view, 44, 14).run_test(size=(60, 30)):
+        view.show(turning(0.3, 0.5))
+        view.show_trouble(Trouble.QUIET, "", 5.0)
+        assert "no data for 5 s" in rows(view)[-1]
+        looks = {ink.look for line in view._lines for ink in line if ink.text.strip()}
         assert looks == {"muted", "alert"}
 
 
@@ -152,22 +152,22 @@ async def test_old_speeds_are_greyed_with_their_age() -> None:
 def test_looks(language: str, snap_compare: SnapCompare) -> None:
     """Wheels turned as steered, a longer bar for the faster wheel, downwards when backwards."""
     set_language(language)
-    panels = [WheelsPanel() for _panel in range(8)]
+    views = [WheelsView() for _view in range(8)]
 
     def fill() -> None:
-        for panel, (speed, steering) in zip(
-            panels,
+        for view, (speed, steering) in zip(
+            views,
             ((0.3, 0.5), (0.3, -0.5), (-0.3, 0.0), (0.0, 0.2), (0.3, 0.5), (0.3, 0.5), (0.5, 0.0)),
             strict=False,
         ):
-            panel.show(turning(speed, steering))
-        panels[3].show_trouble(Trouble.QUIET, "", 5.0)
-        panels[7].show_trouble(Trouble.NO_PUBLISHER, "Start electronic_differential.")
+            view.show(turning(speed, steering))
+        views[3].show_trouble(Trouble.QUIET, "", 5.0)
+        views[7].show_trouble(Trouble.NO_PUBLISHER, "Start electronic_differential.")
 
     stage = Stage(
-        [(panels[0], (46, 14)), (panels[1], (46, 10)), (panels[4], (46, 1))],
-        [(panels[2], (50, 16)), (panels[5], (50, 5)), (panels[6], (50, 3))],
-        [(panels[3], (36, 9)), (panels[7], (36, 4))],
+        [(views[0], (46, 14)), (views[1], (46, 10)), (views[4], (46, 1))],
+        [(views[2], (50, 16)), (views[5], (50, 5)), (views[6], (50, 3))],
+        [(views[3], (36, 9)), (views[7], (36, 4))],
         fill=fill,
     )
     assert snap_compare(stage, terminal_size=(140, 32), run_before=stage.filled)

@@ -9,7 +9,7 @@ from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.topics import HEAD_STATE, LLM_RESULT
 from text.i18n import N_, _
 from tui.panels.head.reading import HeadReading, head_in
-from tui.panels.head.widget import HeadPanel
+from tui.panels.head.widget import HeadView
 from tui.panels.joints import Joints
 from tui.panels.panel import Panel, trouble_of
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from graph.data import GraphUpdate
 
 
-class HeadFeed(Panel):
+class HeadPanel(Panel):
     """Pan and tilt, from above and from the side."""
 
     title = N_("Head")
@@ -32,7 +32,7 @@ class HeadFeed(Panel):
 
     def compose(self) -> ComposeResult:
         """The drawing."""
-        yield HeadPanel()
+        yield HeadView()
 
     def watched(self) -> set[str]:
         """The pose."""
@@ -44,7 +44,7 @@ class HeadFeed(Panel):
 
     def show(self, update: GraphUpdate) -> None:
         """Show the newest pose and the newest command."""
-        drawing = self.query_one(HeadPanel)
+        drawing = self.query_one(HeadView)
         for sample in update.samples.get(HEAD_STATE, ()):
             pose = head_in(sample.value)
             if pose is not None:
@@ -59,7 +59,7 @@ class HeadFeed(Panel):
         try:
             said: Any = json.loads(text)
             if said["event"] == "head":
-                drawing = self.query_one(HeadPanel)
+                drawing = self.query_one(HeadView)
                 drawing.command(HeadReading(float(said["pan"]), float(said["tilt"])))
                 if "error" in said:
                     drawing.answer(str(said["error"]))
@@ -72,4 +72,4 @@ class HeadFeed(Panel):
     def words_changed(self) -> None:
         """Redraw in the current language."""
         super().words_changed()
-        self.query_one(HeadPanel).words_changed()
+        self.query_one(HeadView).words_changed()

@@ -16,8 +16,8 @@ DRAWN_FROM = (22, 6)
 """Columns and lines from which on the two views are drawn."""
 
 
-class HeadPanel(Drawing):
-    """Shows a `Pose`, the last commanded pose, and the service's answer."""
+class HeadView(Drawing):
+    """Shows a `HeadReading`, the last commanded pose, and the service's answer."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
         """Start without a reading."""

@@ -26,7 +26,7 @@ TYPES = {ODOMETRY: "nav_msgs/msg/Odometry", MOCK_POSE: "geometry_msgs/msg/PoseSt
 SONARS = {FRONT: SONAR_FRONT, REAR: SONAR_REAR}
 
 
-class MapFeed(Panel):
+class MapPanel(Panel):
     """The room from above."""
 
     title = N_("Map")

@@ -9,7 +9,7 @@ from text.i18n import N_
 from tui.panels.other_type import other_type
 from tui.panels.panel import ALWAYS, Panel, newest, row_of, trouble_of
 from tui.panels.sonar.bounds import bounds_of
-from tui.panels.sonar.widget import SonarPanel
+from tui.panels.sonar.widget import SonarView
 from tui.panels.sonar.words import COURSE
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ TYPE = "std_msgs/msg/Float32"
 TOPICS = {"front": SONAR_FRONT, "rear": SONAR_REAR}
 
 
-class SonarFeed(Panel):
+class SonarPanel(Panel):
     """The front sonar, and the rear one if somebody publishes it."""
 
     title = N_("Sonar")
@@ -35,7 +35,7 @@ class SonarFeed(Panel):
 
     def compose(self) -> ComposeResult:
         """The gauges."""
-        yield SonarPanel()
+        yield SonarView()
 
     def watched(self) -> set[str]:
         """Both sonars, and the bounds."""
@@ -47,7 +47,7 @@ class SonarFeed(Panel):
 
     def show(self, update: GraphUpdate) -> None:
         """Show every reading, for the trend."""
-        gauges = self.query_one(SonarPanel)
+        gauges = self.query_one(SonarView)
         rear = row_of(update, TOPICS["rear"])
         if rear is not None and rear.publishers:
             # One that has gone silent stays, with a remark.
@@ -66,4 +66,4 @@ class SonarFeed(Panel):
     def words_changed(self) -> None:
         """Redraw in the current language."""
         super().words_changed()
-        self.query_one(SonarPanel).words_changed()
+        self.query_one(SonarView).words_changed()

@@ -125,11 +125,11 @@ class Sonar(Drawing):
         return beside([Ink(words, "muted")], [Ink(_("now"), "muted")], width)
 
 
-class SonarPanel(Container):
+class SonarView(Container):
     """The front sonar and, if there is one, the rear sonar."""
 
     DEFAULT_CSS = """
-    SonarPanel {
+    SonarView {
         layout: vertical;
         &.-flat { layout: horizontal; }
         #rear { display: none; }

@@ -9,7 +9,7 @@ from robot.topics import AUDIO_LEVEL, MICROPHONE, SPEAKER
 from text.i18n import N_
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
-from tui.panels.voice.widget import Speaker, VoicePanel
+from tui.panels.voice.widget import Speaker, VoiceView
 
 if TYPE_CHECKING:
     from textual.app import ComposeResult
@@ -23,7 +23,7 @@ SILENT_S = 2.0
 """A driver that has reported no level for this long has no microphone."""
 
 
-class VoiceFeed(Panel):
+class VoicePanel(Panel):
     """The conversation so far."""
 
     title = N_("Voice")
@@ -37,7 +37,7 @@ class VoiceFeed(Panel):
 
     def compose(self) -> ComposeResult:
         """The transcript."""
-        yield VoicePanel()
+        yield VoiceView()
 
     def followed(self) -> set[str]:
         """All messages of microphone and loudspeaker."""
@@ -49,7 +49,7 @@ class VoiceFeed(Panel):
 
     def show(self, update: GraphUpdate) -> None:
         """Add what was said, in order of arrival."""
-        talk = self.query_one(VoicePanel)
+        talk = self.query_one(VoiceView)
         said = [sample for topic in TOPICS for sample in update.samples.get(topic, ())]
         for sample in sorted(said, key=lambda one: one.received_s):
             data = sample.value.get("data", b"")
@@ -70,7 +70,7 @@ class VoiceFeed(Panel):
                 return words
         return None
 
-    def _show_level(self, talk: VoicePanel, update: GraphUpdate) -> None:
+    def _show_level(self, talk: VoiceView, update: GraphUpdate) -> None:
         sample = newest(update, AUDIO_LEVEL)
         dbfs = sample.value.get("data") if sample is not None else None
         if isinstance(dbfs, (int, float)) and math.isfinite(dbfs):
@@ -88,4 +88,4 @@ class VoiceFeed(Panel):
     def words_changed(self) -> None:
         """Redraw in the current language."""
         super().words_changed()
-        self.query_one(VoicePanel).words_changed()
+        self.query_one(VoiceView).words_changed()

@@ -77,7 +77,7 @@ class Saying:
     what: Heard
 
 
-class VoicePanel(Drawing):
+class VoiceView(Drawing):
     """Shows messages from the microphone (`human`) and to the loudspeaker (`robot`)."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:

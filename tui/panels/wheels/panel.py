@@ -12,7 +12,7 @@ from tui.panels.joints import Joints
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, first_published, newest, trouble_of
 from tui.panels.wheels.reading import WheelsReading, wheels_in
-from tui.panels.wheels.widget import WheelsPanel
+from tui.panels.wheels.widget import WheelsView
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
 
 
-class WheelsFeed(Panel):
+class WheelsPanel(Panel):
     """The rear wheels and the steering, from above."""
 
     title = N_("Wheels")
@@ -42,7 +42,7 @@ class WheelsFeed(Panel):
 
     def compose(self) -> ComposeResult:
         """The drawing."""
-        yield WheelsPanel()
+        yield WheelsView()
 
     def watched(self) -> set[str]:
         """The commands to the wheels, and those to the chassis."""
@@ -52,7 +52,7 @@ class WheelsFeed(Panel):
         """Show the newest speeds."""
         topic = first_published(update, (WHEEL_COMMANDS, DRIVE))
         self.name_source("" if topic == WHEEL_COMMANDS else topic)
-        drawing = self.query_one(WheelsPanel)
+        drawing = self.query_one(WheelsView)
         sample = newest(update, topic)
         if sample is not None:
             wheels = wheels_in(sample.value) if topic == WHEEL_COMMANDS else would_be(sample.value)
@@ -68,7 +68,7 @@ class WheelsFeed(Panel):
     def words_changed(self) -> None:
         """Redraw in the current language."""
         super().words_changed()
-        self.query_one(WheelsPanel).words_changed()
+        self.query_one(WheelsView).words_changed()
 
 
 def would_be(value: Mapping[str, Any]) -> WheelsReading | None:

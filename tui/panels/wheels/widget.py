@@ -8,8 +8,8 @@ from rich.cells import cell_len
 
 from text.figures import figure, short
 from text.i18n import _, decimal
+from tui.panels.wheels.chassis import chassis, speed_bar
 from tui.panels.wheels.reading import WheelsReading, can_be_turned_to
-from tui.panels.wheels.view import chassis, speed_bar
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
 MOST_M_S = 0.5
@@ -20,8 +20,8 @@ SIDE = 9
 """Cells for `-0.25 m/s`."""
 
 
-class WheelsPanel(Drawing):
-    """Shows `Wheels`: in words from one line on, drawn from above if there is room."""
+class WheelsView(Drawing):
+    """Shows a `WheelsReading`: in words from one line on, drawn from above if there is room."""
 
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
         """Start without a reading."""
