@@ -24,9 +24,9 @@ from tui.frame.replay_bar import ReplayBar
 from tui.lifecycle.sessions import Sessions
 from tui.recording.recording import Recording
 from tui.screens import Screens
+from tui.session.bypass import BypassDetector
 from tui.session.feed import Feed, GraphReady
 from tui.session.messages import LanguageChanged, LessonOpened
-from tui.session.strangers import Strangers
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
 from tui.terminal.harmless import Harmless
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from tui.session.ports import SessionOpener
     from tui.session.requests import OpenRequest
 
-STRANGERS_S = 20.0
+BYPASS_S = 20.0
 """How long the notification about a publisher that bypasses the gate is shown."""
 
 
@@ -104,7 +104,7 @@ class DeckApp(App[int], Acting):
         """Whether the first frame has been drawn."""
         self.feed = Feed(self, FOLLOWED, self.faults)
         self.emergency = EmergencyControl(self, self.feed, self._emergency_changed)
-        self.strangers = Strangers()
+        self.bypass = BypassDetector()
         self.recording = Recording(self, self.feed, lambda: self.keys_of(RecordToggle)[0])
         self._screens = Screens(self)
         self.sessions = Sessions(
@@ -113,7 +113,7 @@ class DeckApp(App[int], Acting):
             self.feed,
             self.recording,
             self.emergency,
-            self.strangers,
+            self.bypass,
             opener,
             request,
         )
@@ -257,13 +257,13 @@ class DeckApp(App[int], Acting):
         if self.feed.watching and front and (before is None or before.nodes != update.nodes):
             # The title shows how many there are.
             front.show_frame()
-        if self.strangers.see(update, self.feed.nodes):
-            self._tell_of_strangers()
+        if self.bypass.see(update, self.feed.nodes):
+            self._tell_of_bypass()
 
-    def _tell_of_strangers(self) -> None:
+    def _tell_of_bypass(self) -> None:
         """Show in every title, and once as a notification, who publishes past the gate."""
-        if words := self.strangers.words():
-            self.notify(words[0], severity="error", timeout=STRANGERS_S, markup=False)
+        if words := self.bypass.words():
+            self.notify(words[0], severity="error", timeout=BYPASS_S, markup=False)
         self.feed.tell(lambda: EmergencyChanged(self.emergency.state))
 
     def _emergency_changed(self) -> None:

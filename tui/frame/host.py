@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from tui.actions import Action, Keys
     from tui.emergency.control import EmergencyControl
     from tui.recording.recording import Recording
+    from tui.session.bypass import BypassDetector
     from tui.session.feed import Feed
     from tui.session.ports import SessionOpener
     from tui.session.requests import OpenRequest
-    from tui.session.strangers import Strangers
     from tui.terminal.stall_detector import KeyStallDetector
 
 
@@ -85,8 +85,8 @@ class Host(KeyNames, Protocol):
         """The recording of the session."""
 
     @property
-    def strangers(self) -> Strangers:
-        """Publishers on topics that only the gate and the differential should publish."""
+    def bypass(self) -> BypassDetector:
+        """Finds publishers on topics that only the gate and the differential should publish."""
 
     @property
     def stall_detector(self) -> KeyStallDetector:

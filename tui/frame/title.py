@@ -55,7 +55,7 @@ def look(app: Host) -> str:
         return "state"
     if app.emergency.state.engaged:
         return "stop"
-    if app.strangers.now:
+    if app.bypass.now:
         return "danger"
     return "alarm" if app.emergency.state.blocked else "state"
 
@@ -75,8 +75,8 @@ def states(app: Host) -> Sequence[str]:
         return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
     if app.emergency.state.engaged:
         return _where(session, stop_words(app.emergency.state, app.keys_of(EmergencyRelease)[0]))
-    if app.strangers.now:
-        return _where(session, app.strangers.words())
+    if app.bypass.now:
+        return _where(session, app.bypass.words())
     if app.emergency.state.blocked:
         return _where(session, _held(app.emergency.state))
     return _replayed(session) if app.feed.replay is not None else _recorded(app, session)

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from tui.emergency.control import EmergencyControl
     from tui.recording.recording import Recording
     from tui.screens import Screens
+    from tui.session.bypass import BypassDetector
     from tui.session.feed import Feed
     from tui.session.ports import SessionLink, SessionOpener
     from tui.session.requests import OpenRequest
-    from tui.session.strangers import Strangers
 
 
 class Sessions:
@@ -40,7 +40,7 @@ class Sessions:
         feed: Feed,
         recording: Recording,
         emergency: EmergencyControl,
-        strangers: Strangers,
+        bypass: BypassDetector,
         opener: SessionOpener,
         request: OpenRequest,
     ) -> None:
@@ -50,7 +50,7 @@ class Sessions:
         self._feed = feed
         self._recording = recording
         self._emergency = emergency
-        self._strangers = strangers
+        self._bypass = bypass
         self.opener = opener
         self.request = request
         """Hardware, overrides and domain for every request, and the profile named at the start."""
@@ -146,7 +146,7 @@ class Sessions:
             self.last_lesson = link.session.name
             app.post_message(LessonOpened(link.session.name))
         self._emergency.forget()
-        self._strangers.forget()
+        self._bypass.forget()
         self._feed.connect(link, self.opener.observe(link.session), self.opener.replay)
         if self._feed.replay is not None:
             await self._show_recording(link.session)

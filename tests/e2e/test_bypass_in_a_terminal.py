@@ -12,7 +12,7 @@ RED = "b00020"
 WORDS = "Foreign commands on /wheel_commands: /evil"
 
 
-def test_a_stranger_is_named_for_as_long_as_it_is_there(deck: Deck, ros_domain: int) -> None:
+def test_a_bypass_is_named_for_as_long_as_it_is_there(deck: Deck, ros_domain: int) -> None:
     terminal = deck.open("04b-electronic-differential", "--lang", "en", columns=80, rows=24)
     terminal.wait_for("2/2")
     assert "Foreign" not in terminal.text()

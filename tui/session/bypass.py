@@ -33,24 +33,25 @@ FORGOTTEN_S = 25.0
 
 
 @dataclass(frozen=True)
-class Keeper:
-    """The node of Deck's that should be the only publisher on a topic."""
+class ReservedTopic:
+    """A topic on which one node of Deck's should be the only publisher."""
 
     module: str
+    """That of the node."""
     topic: str
     type_name: str
     names: frozenset[str]
-    """Its names when no profile contains it."""
+    """Names of the node when no profile contains it."""
 
 
-KEEPERS = (
-    Keeper(
+RESERVED = (
+    ReservedTopic(
         "nodes.safety_stop",
         DRIVE_SAFE,
         "ackermann_msgs/msg/AckermannDriveStamped",
         frozenset({"/safety_node", "/safety_stop"}),
     ),
-    Keeper(
+    ReservedTopic(
         "nodes.electronic_differential",
         WHEEL_COMMANDS,
         "sensor_msgs/msg/JointState",
@@ -60,7 +61,7 @@ KEEPERS = (
 
 
 @dataclass(frozen=True)
-class Stranger:
+class BypassingPublisher:
     """A publisher on a topic reserved for another node."""
 
     topic: str
@@ -78,28 +79,28 @@ class Stranger:
         return _("another {name}").format(name=name) if self.is_namesake else name
 
 
-class Strangers:
-    """The current strangers."""
+class BypassDetector:
+    """Finds the publishers that bypass the gate or the differential now."""
 
     def __init__(self) -> None:
-        self.now: tuple[Stranger, ...] = ()
-        self._seen_s: dict[Stranger, float] = {}
+        self.now: tuple[BypassingPublisher, ...] = ()
+        self._seen_s: dict[BypassingPublisher, float] = {}
 
     def see(self, update: GraphUpdate, nodes: Mapping[str, NodeStatus]) -> bool:
-        """Examine the graph; return whether the strangers have changed."""
+        """Examine the graph; return whether these publishers have changed."""
         if update.error:
             return False
         ours = frozenset(one.topic for one in update.publications if not one.error)
         found = {
-            stranger: self._seen_s.get(stranger, update.time_s)
-            for keeper in KEEPERS
-            for stranger in _on_topics_of(keeper, update.topics, nodes, ours)
+            publisher: self._seen_s.get(publisher, update.time_s)
+            for reserved in RESERVED
+            for publisher in _on_topics_of(reserved, update.topics, nodes, ours)
         }
         before, self._seen_s = self.now, found
         self.now = tuple(
-            stranger
-            for stranger, seen_s in found.items()
-            if not stranger.node.endswith(NAMELESS) or update.time_s - seen_s > NAMED_WITHIN_S
+            publisher
+            for publisher, seen_s in found.items()
+            if not publisher.node.endswith(NAMELESS) or update.time_s - seen_s > NAMED_WITHIN_S
         )
         return self.now != before
 
@@ -111,48 +112,49 @@ class Strangers:
         """Return texts that say who they are, from long to short; empty if there are none."""
         if not self.now:
             return ()
-        topics = ", ".join(dict.fromkeys(plain(stranger.topic, 60) for stranger in self.now))
-        names = ", ".join(dict.fromkeys(stranger.called for stranger in self.now))
+        topics = ", ".join(dict.fromkeys(plain(publisher.topic, 60) for publisher in self.now))
+        names = ", ".join(dict.fromkeys(publisher.called for publisher in self.now))
         words = _("⚠ Foreign commands on {topics}: {names}").format(topics=topics, names=names)
         last = _("the wheels obey whoever spoke last")
         return (f"{words} · {last}", words, f"⚠ {topics}: {names}")
 
 
 def _on_topics_of(
-    keeper: Keeper,
+    reserved: ReservedTopic,
     rows: Iterable[TopicRow],
     nodes: Mapping[str, NodeStatus],
     ours: Collection[str],
-) -> Iterator[Stranger]:
-    keeping = {f"/{node.name}": node for node in nodes.values() if node.command == keeper.module}
+) -> Iterator[BypassingPublisher]:
+    owners = {f"/{node.name}": node for node in nodes.values() if node.command == reserved.module}
     for row in rows:
-        if row.name != keeper.topic and keeper.type_name not in row.type_names:
+        if row.name != reserved.topic and reserved.type_name not in row.type_names:
             continue
         by = Counter(end.node for end in row.published_by)
         if row.name in ours:
             by[OURSELVES] += 1
         # Its profile may have remapped the topic.
-        is_kept = keeper.type_name in row.type_names and bool(by.keys() & keeping.keys())
-        if is_kept or (row.name == keeper.topic and (row.subscribers or sum(by.values()) > 1)):
-            yield from _strangers(row.name, by, keeper, keeping, nodes)
+        is_reserved = reserved.type_name in row.type_names and bool(by.keys() & owners.keys())
+        is_used = row.subscribers or sum(by.values()) > 1
+        if is_reserved or (row.name == reserved.topic and is_used):
+            yield from _bypassing(row.name, by, reserved, owners, nodes)
 
 
-def _strangers(
+def _bypassing(
     topic: str,
     by: Counter[str],
-    keeper: Keeper,
-    keeping: Mapping[str, NodeStatus],
+    reserved: ReservedTopic,
+    owners: Mapping[str, NodeStatus],
     nodes: Mapping[str, NodeStatus],
-) -> Sequence[Stranger]:
+) -> Sequence[BypassingPublisher]:
     own = {f"/{name}" for name in nodes}
-    if not keeping:
+    if not owners:
         if sum(by.values()) < 2:
             return ()
-        own |= keeper.names
-    strange = [Stranger(topic, name) for name in by if name not in own]
+        own |= reserved.names
+    foreign = [BypassingPublisher(topic, name) for name in by if name not in own]
     twice = [name for name, count in by.items() if count > 1 and name in own]
-    alike = [Stranger(topic, name, True) for name in twice if not _may_be_left(keeping.get(name))]
-    return [*strange, *alike]
+    namesakes = [name for name in twice if not _may_be_left(owners.get(name))]
+    return [*foreign, *(BypassingPublisher(topic, name, True) for name in namesakes)]
 
 
 def _may_be_left(node: NodeStatus | None) -> bool:

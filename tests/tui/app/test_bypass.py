@@ -14,7 +14,7 @@ from tests.tui.app_runs import opened
 from tests.tui.recorded import NODES, TOPICS, RecordedGraph, RecordedOpener, lesson_update, topic
 from tests.tui.snapshots import settle
 from tui.frame.title_bar import TitleBar
-from tui.session.strangers import NAMELESS, Strangers
+from tui.session.bypass import NAMELESS, BypassDetector
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -49,10 +49,10 @@ def graph(
 
 
 def named(update: GraphUpdate, nodes: Mapping[str, NodeStatus] = NODES) -> list[tuple[str, str]]:
-    """Topic and name of each stranger."""
-    strangers = Strangers()
-    strangers.see(update, nodes)
-    return [(stranger.topic, stranger.called) for stranger in strangers.now]
+    """Topic and name of each publisher that is reported."""
+    bypass = BypassDetector()
+    bypass.see(update, nodes)
+    return [(publisher.topic, publisher.called) for publisher in bypass.now]
 
 
 @pytest.mark.parametrize(
@@ -69,11 +69,11 @@ def named(update: GraphUpdate, nodes: Mapping[str, NodeStatus] = NODES) -> list[
     ],
     ids=str,
 )
-def test_who_is_a_stranger(by: dict[str, Any], expected: list[tuple[str, str]]) -> None:
+def test_who_bypasses_the_gate(by: dict[str, Any], expected: list[tuple[str, str]]) -> None:
     assert named(graph(**by)) == expected
 
 
-def test_a_topic_that_the_profile_calls_otherwise_is_kept_as_well() -> None:
+def test_a_topic_that_the_profile_calls_otherwise_is_reserved_as_well() -> None:
     update = graph(kinds={"/safe": DRIVE}, safe=(GATE, "/evil"))
     assert named(update) == [("/safe", "/evil")]
 
@@ -87,7 +87,7 @@ def test_without_a_gate_of_its_own_it_takes_two() -> None:
         ]
 
 
-def test_what_a_crash_has_left_in_the_tables_is_no_stranger() -> None:
+def test_what_a_crash_has_left_in_the_tables_bypasses_nothing() -> None:
     node = NODES["electronic_differential"]
     update = graph(wheel_commands=(DIFFERENTIAL,) * 2)
     for restarts, uptime_s, count in ((1, 3.0, 0), (1, 30.0, 1), (0, 3.0, 1)):
@@ -96,13 +96,13 @@ def test_what_a_crash_has_left_in_the_tables_is_no_stranger() -> None:
 
 
 def test_a_name_is_waited_for() -> None:
-    strangers, by = Strangers(), (GATE, f"/{NAMELESS}")
-    assert not strangers.see(graph(drive_safe=by), NODES)
-    assert not strangers.see(graph(2.0, drive_safe=by), NODES)
-    assert strangers.see(graph(4.0, drive_safe=by), NODES)
-    assert strangers.now[0].called == "a program without a node's name"
-    assert strangers.see(graph(5.0, drive_safe=(GATE,)), NODES)
-    assert strangers.words() == ()
+    bypass, by = BypassDetector(), (GATE, f"/{NAMELESS}")
+    assert not bypass.see(graph(drive_safe=by), NODES)
+    assert not bypass.see(graph(2.0, drive_safe=by), NODES)
+    assert bypass.see(graph(4.0, drive_safe=by), NODES)
+    assert bypass.now[0].called == "a program without a node's name"
+    assert bypass.see(graph(5.0, drive_safe=(GATE,)), NODES)
+    assert bypass.words() == ()
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
@@ -125,18 +125,18 @@ async def test_it_stands_in_the_title_in_red(size: tuple[int, int], screen: str)
         assert "/evil" not in bar.text
 
 
-async def test_another_session_begins_without_the_strangers_of_the_one_before() -> None:
+async def test_another_session_begins_without_the_bypass_of_the_one_before() -> None:
     opener = RecordedOpener(sessions=[])
     async with opened(opener) as (app, pilot):
         opener.graph.show(graph(wheel_commands=(DIFFERENTIAL, "/evil")))
         await settle(pilot)
-        assert app.strangers.now
+        assert app.bypass.now
         await pilot.press("f8")
         await settle(pilot)
         opener.graph = RecordedGraph()
         app.sessions.open(app.sessions.request)
         await settle(pilot)
-        assert not app.strangers.now
+        assert not app.bypass.now
 
 
 async def test_a_name_that_would_write_the_terminal_is_harmless() -> None:
