@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
     from graph.data import CallResult, Value
-    from graph.publishing.dead_man_switch import Holding
+    from graph.publishing.dead_man_switch import HeldCommand
 
 logger = logging.getLogger(__name__)
 
@@ -185,17 +185,17 @@ class Observer:
         self._requests.put(request)
         return request.future
 
-    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
-        """Publish a message repeatedly until `word.until_s`, unless called again before that.
+    def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
+        """Publish a message repeatedly until `command.until_s`, unless called again before that.
 
-        Then `word.rest` is published, and nothing more. The future returns how many subscribers
+        Then `command.rest` is published, and nothing more. The future returns how many subscribers
         are matched now; it raises PublishError, UnknownTypeError, FieldError or ObserverError.
         """
 
         def hold(node: ObserverNode, future: Future[int]) -> None:
             if not node.dead_man_switch.knows(topic):
                 node.dead_man_switch.prepare(topic, type_name, node.ends(topic))
-            future.set_result(node.dead_man_switch.hold(topic, word))
+            future.set_result(node.dead_man_switch.hold(topic, command))
 
         request = Begin[int](hold)
         self._requests.hurry(request, lambda node: node.dead_man_switch.knows(topic))

@@ -38,7 +38,7 @@ LONGEST_S = 2.0
 """No command is valid for longer than this, whatever it says."""
 
 
-class Holding(NamedTuple):
+class HeldCommand(NamedTuple):
     """The newest command of whoever holds the key."""
 
     value: Mapping[str, Value]
@@ -50,12 +50,12 @@ class Holding(NamedTuple):
     """On the monotonic clock."""
 
 
-class Grip:
+class CommandRepeater:
     """Decides what to send on one topic, and when. `send` publishes, and may raise anything."""
 
     def __init__(self, send: Callable[[Mapping[str, Value]], object]) -> None:
         self._send = send
-        self._word: Holding | None = None
+        self._command: HeldCommand | None = None
         self._rest: Mapping[str, Value] = {}
         self._rests = 0
         self._period_s = 0.0
@@ -64,31 +64,31 @@ class Grip:
     @property
     def is_held(self) -> bool:
         """Whether anything but the rest message goes out."""
-        return self._word is not None
+        return self._command is not None
 
-    def hold(self, word: Holding, now_s: float) -> None:
+    def hold(self, command: HeldCommand, now_s: float) -> None:
         """Continue with this command; an expired one changes nothing."""
-        until_s = min(word.until_s, now_s + LONGEST_S)
+        until_s = min(command.until_s, now_s + LONGEST_S)
         if until_s <= now_s:
             return
-        if self._word is None or self._word.value != word.value:
+        if self._command is None or self._command.value != command.value:
             self._due_s = now_s
-        self._word, self._rests = word._replace(until_s=until_s), 0
-        self._rest, self._period_s = word.rest, 1.0 / word.hz
+        self._command, self._rests = command._replace(until_s=until_s), 0
+        self._rest, self._period_s = command.rest, 1.0 / command.hz
         self.step(now_s)
 
     def let_go(self, now_s: float) -> None:
         """Send the rest message from now on."""
-        if self._word is not None:
-            self._word = self._word._replace(until_s=now_s)
+        if self._command is not None:
+            self._command = self._command._replace(until_s=now_s)
             self.step(now_s)
 
     def step(self, now_s: float) -> float | None:
         """Publish what is due; return when to call again, None if nothing is left."""
-        word = self._word
-        if word is not None and now_s >= word.until_s:
-            self._word, self._rests, self._due_s = None, RESTS, now_s
-        if self._word is None and not self._rests:
+        command = self._command
+        if command is not None and now_s >= command.until_s:
+            self._command, self._rests, self._due_s = None, RESTS, now_s
+        if self._command is None and not self._rests:
             return None
         if now_s >= self._due_s:
             self._due_s += self._period_s
@@ -96,18 +96,18 @@ class Grip:
                 # Missed messages are not made up for.
                 self._due_s = now_s + self._period_s
             self._publish()
-        if self._word is not None:
-            return min(self._due_s, self._word.until_s)
+        if self._command is not None:
+            return min(self._due_s, self._command.until_s)
         return self._due_s if self._rests else None
 
     def _publish(self) -> None:
-        value = self._rest if self._word is None else self._word.value
-        self._rests -= 1 if self._word is None else 0
+        value = self._rest if self._command is None else self._command.value
+        self._rests -= 1 if self._command is None else 0
         try:
             self._send(value)
         except Exception:
             # A message that cannot be published is not retried.
-            self._word, self._rests = None, 0
+            self._command, self._rests = None, 0
             raise
 
 
@@ -119,7 +119,7 @@ class _HeldTopic:
     type_name: str
     cls: type[Any]
     qos: Qos
-    grip: Grip
+    repeater: CommandRepeater
 
 
 class DeadManSwitch:
@@ -141,29 +141,29 @@ class DeadManSwitch:
         cls = load_message(type_name)
         qos = to_be_heard(ends.subscribers if ends else ())
         publisher = open_publisher(self._node, topic, cls, qos, DEPTH)
-        grip = Grip(lambda value: self._send(topic, value))
-        self._lines[topic] = _HeldTopic(publisher, type_name, cls, qos, grip)
+        repeater = CommandRepeater(lambda value: self._send(topic, value))
+        self._lines[topic] = _HeldTopic(publisher, type_name, cls, qos, repeater)
 
-    def hold(self, topic: str, word: Holding) -> int:
+    def hold(self, topic: str, command: HeldCommand) -> int:
         """Publish until the command expires; return how many subscribers are matched now.
 
         The topic must have been prepared. Raises PublishError, UnknownTypeError or FieldError.
         """
         line = self._lines[topic]
-        line.grip.hold(word, time.monotonic())
+        line.repeater.hold(command, time.monotonic())
         return line.publisher.get_subscription_count()
 
     def let_go(self, topic: str) -> None:
         """Send the rest message at once."""
         if topic in self._lines:
-            self._lines[topic].grip.let_go(time.monotonic())
+            self._lines[topic].repeater.let_go(time.monotonic())
 
     def tune(self, topics: Mapping[str, TopicEnds]) -> None:
         """Adapt the offered QoS to new subscribers; never while a topic is held."""
         for topic, line in self._lines.items():
             ends = topics.get(topic)
             qos = to_be_heard(ends.subscribers if ends else ())
-            if qos == line.qos or line.grip.is_held:
+            if qos == line.qos or line.repeater.is_held:
                 continue
             with contextlib.suppress(PublishError):
                 publisher = open_publisher(self._node, topic, line.cls, qos, DEPTH)
@@ -177,7 +177,7 @@ class DeadManSwitch:
 
     def _step(self, line: _HeldTopic) -> float | None:
         try:
-            return line.grip.step(time.monotonic())
+            return line.repeater.step(time.monotonic())
         except Exception:
             # It is no longer held; the next `hold` reports the error to its caller.
             logger.exception("what is held cannot be published")

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from graph.data import Value
-    from graph.publishing.dead_man_switch import Holding
+    from graph.publishing.dead_man_switch import HeldCommand
 
 logger = logging.getLogger(__name__)
 
@@ -176,9 +176,9 @@ class Replay:
         del topic, type_name
         return refused()
 
-    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
+    def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
         """Fail."""
-        del topic, type_name, word
+        del topic, type_name, command
         return refused()
 
     def let_go(self, topic: str) -> None:

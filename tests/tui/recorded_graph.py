@@ -17,7 +17,7 @@ from graph.data import (
     Publication,
     SetResult,
 )
-from graph.publishing.dead_man_switch import Holding
+from graph.publishing.dead_man_switch import HeldCommand
 from tests.tui.recorded_lesson import NOW_S, lesson_update
 
 PARAMETERS: tuple[ParameterRow, ...] = (
@@ -59,8 +59,8 @@ class RecordedGraph:
     stopped_publications: list[int] = field(default_factory=list)
     stopped_all: int = 0
     """How often all that is published again and again was stopped."""
-    held: list[tuple[str, str, Holding]] = field(default_factory=list)
-    """(topic, type, word) that is published while it is held."""
+    held: list[tuple[str, str, HeldCommand]] = field(default_factory=list)
+    """(topic, type, command) that is published while it is held."""
     let_go_of: list[str] = field(default_factory=list)
     """Topics whose rest was asked for."""
     node_parameters: dict[str, ParametersResult] = field(default_factory=dict)
@@ -171,8 +171,8 @@ class RecordedGraph:
         future.set_result(None)
         return future
 
-    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
-        self.held.append((topic, type_name, word))
+    def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
+        self.held.append((topic, type_name, command))
         return self._numbered(1)
 
     def let_go(self, topic: str) -> None:

@@ -40,7 +40,7 @@ class NodeStop:
     """Whether it already held when it started, or when it was first heard."""
 
 
-def told(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[str, NodeStop]:
+def reported_stops(nodes: Mapping[str, NodeStop], update: GraphUpdate) -> dict[str, NodeStop]:
     """Return `nodes` updated with their new reports."""
     known = dict(nodes)
     for sample in update.samples.get(EMERGENCY_STATE, ()):

@@ -16,7 +16,7 @@ from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.i18n import N_
 from text.plain import plain
 from tui.emergency.gate import STOPPED, Gate, gate_in, held_words, refused_words
-from tui.emergency.nodes import NodeStop, present, told
+from tui.emergency.nodes import NodeStop, present, reported_stops
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample
@@ -125,7 +125,7 @@ class Emergency:
         for sample in update.samples.get(EMERGENCY_STOP, ())[-1:]:
             said_s = min(sample.received_s, sample.sent_s or sample.received_s)
             state = state.heard(bool(sample.value.get("data")), sample.received_s, said_s)
-        state = state.obeyed(told(state.nodes, update), update)
+        state = state.obeyed(reported_stops(state.nodes, update), update)
         for sample in update.samples.get(SAFETY_STATE, ()):
             gate = gate_in(sample)
             settled = sample.received_s - state.heard_s > SETTLED_S

@@ -15,7 +15,7 @@ from graph.calls.timeouts import ANSWER_WITHIN_S
 
 if TYPE_CHECKING:
     from graph.data import CallResult, GraphUpdate, ParametersResult, SetResult, Value
-    from graph.publishing.dead_man_switch import Holding
+    from graph.publishing.dead_man_switch import HeldCommand
     from graph.replay.replay import Replay
     from launcher.events import Event
     from launcher.status import NodeStatus, SessionInfo, Stray
@@ -120,8 +120,8 @@ class GraphLink(Protocol):
     def prepare_hold(self, topic: str, type_name: str) -> Future[None]:
         """Create a publisher for what may be held, without publishing anything."""
 
-    def hold(self, topic: str, type_name: str, word: Holding) -> Future[int]:
-        """Publish repeatedly until `word.until_s`, then its rest message, then nothing."""
+    def hold(self, topic: str, type_name: str, command: HeldCommand) -> Future[int]:
+        """Publish repeatedly until `command.until_s`, then its rest message, then nothing."""
 
     def let_go(self, topic: str) -> None:
         """Publish the rest message of what is held, at once."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.content import Content
 from textual.message import Message
 
-from graph.publishing.dead_man_switch import Holding
+from graph.publishing.dead_man_switch import HeldCommand
 from robot.topics import DRIVE_SAFE, SAFETY_STATE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
 from text.i18n import N_, _
@@ -142,8 +142,8 @@ class TeleopPanel(Drawing, Acting, can_focus=True):
             self._keys = NOTHING
             return
         asked = command(self._keys.setpoint(self._limits))
-        word = Holding(asked, command(STOP), RATE_HZ, self._keys.until_s)
-        held = graph.hold(self._route.topic, DRIVE_TYPE, word)
+        drive = HeldCommand(asked, command(STOP), RATE_HZ, self._keys.until_s)
+        held = graph.hold(self._route.topic, DRIVE_TYPE, drive)
         held.add_done_callback(self._held)
         if self._timer is not None:
             self._timer.resume()

@@ -10,7 +10,7 @@ from ackermann_msgs.msg import AckermannDriveStamped
 from std_msgs.msg import Float32
 
 from graph.messages.making import FieldError
-from graph.publishing.dead_man_switch import RESTS, Holding
+from graph.publishing.dead_man_switch import RESTS, HeldCommand
 from graph.publishing.outbox import PublishError
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer
@@ -19,8 +19,8 @@ from tests.waiting import wait_until
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
 
 
-def word(speed: float, for_s: float, hz: float = 20.0) -> Holding:
-    return Holding({"drive": {"speed": speed}}, {}, hz, time.monotonic() + for_s)
+def command(speed: float, for_s: float, hz: float = 20.0) -> HeldCommand:
+    return HeldCommand({"drive": {"speed": speed}}, {}, hz, time.monotonic() + for_s)
 
 
 def ready(watcher: Watcher, peer: Peer) -> list[tuple[float, float]]:
@@ -44,7 +44,7 @@ def test_it_is_repeated_while_it_is_held_and_rests_when_nobody_says_more(
     heard = ready(watcher, peer)
     began_s = time.monotonic()
     while time.monotonic() - began_s < 1.0:
-        watcher.observer.hold("/drive", DRIVE, word(0.2, 0.25)).result(30)
+        watcher.observer.hold("/drive", DRIVE, command(0.2, 0.25)).result(30)
     # From here on nobody says anything: as if whoever held it had hung.
     let_go_s = time.monotonic()
     wait_until(lambda: len([1 for _at, speed in heard if speed == 0]) == RESTS, "rest")
@@ -58,17 +58,17 @@ def test_it_is_repeated_while_it_is_held_and_rests_when_nobody_says_more(
 
 def test_nothing_goes_out_until_something_is_held(watcher: Watcher, peer: Peer) -> None:
     heard = ready(watcher, peer)
-    watcher.observer.hold("/drive", DRIVE, word(0.2, -1.0)).result(30)
+    watcher.observer.hold("/drive", DRIVE, command(0.2, -1.0)).result(30)
     watcher.observer.let_go("/drive")
-    watcher.observer.hold("/drive", DRIVE, word(0.3, 30.0)).result(30)
+    watcher.observer.hold("/drive", DRIVE, command(0.3, 30.0)).result(30)
     watcher.observer.let_go("/drive")
-    wait_until(lambda: len(heard) >= 2, "a word and rest")
+    wait_until(lambda: len(heard) >= 2, "a command and rest")
     assert [round(speed, 3) for _at, speed in heard[:2]] == [0.3, 0.0]
 
 
 def test_an_observer_that_ends_rests_with_its_last_word(watcher: Watcher, peer: Peer) -> None:
     heard = ready(watcher, peer)
-    watcher.observer.hold("/drive", DRIVE, word(0.2, 2.0)).result(30)
+    watcher.observer.hold("/drive", DRIVE, command(0.2, 2.0)).result(30)
     wait_until(lambda: heard, "it moves")
     watcher.observer.stop()
     wait_until(lambda: heard[-1][1] == 0, "rest")
@@ -76,7 +76,7 @@ def test_an_observer_that_ends_rests_with_its_last_word(watcher: Watcher, peer: 
 
 def test_what_cannot_be_held_says_why(watcher: Watcher, peer: Peer) -> None:
     ready(watcher, peer)
-    wrong = Holding({"drive": {"speedy": 1.0}}, {}, 20.0, time.monotonic() + 1.0)
+    wrong = HeldCommand({"drive": {"speedy": 1.0}}, {}, 20.0, time.monotonic() + 1.0)
     with pytest.raises(FieldError, match="speedy"):
         watcher.observer.hold("/drive", DRIVE, wrong).result(30)
     peer.hear("/other", Float32)

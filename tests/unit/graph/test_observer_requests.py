@@ -11,7 +11,7 @@ import pytest
 from graph.observer.node import ObserverNode
 from graph.observer.observer import Observer
 from graph.observer.requests import ObserverError
-from graph.publishing.dead_man_switch import Holding
+from graph.publishing.dead_man_switch import HeldCommand
 from text.i18n import said
 from text.sentences import say
 
@@ -51,7 +51,7 @@ class Desk:
         self.done.append(f"publish {topic} {latched}")
         future.set_result(1)
 
-    def hold(self, topic: str, _word: Holding) -> int:
+    def hold(self, topic: str, _command: HeldCommand) -> int:
         self.done.append(f"hold {topic}")
         return 1
 
@@ -62,15 +62,15 @@ class Desk:
         self.done.append("step")
 
 
-def word() -> Holding:
-    return Holding({}, {}, 20.0, time.monotonic() + 1.0)
+def command() -> HeldCommand:
+    return HeldCommand({}, {}, 20.0, time.monotonic() + 1.0)
 
 
 def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:
     observer, desk = Observer(1), Desk("/stop", "/drive")
     node = cast("ObserverNode", desk)
     chatter = observer.publish("/chatter", BOOL, STOP)
-    held = observer.hold("/drive", BOOL, word())
+    held = observer.hold("/drive", BOOL, command())
     stop = observer.publish("/stop", BOOL, STOP, latched=True)
     observer.let_go("/drive")
     observer._serve_urgent(node)
@@ -85,7 +85,7 @@ def test_what_cannot_wait_is_done_in_the_middle_of_a_look() -> None:
 def test_what_needs_a_look_itself_waits_for_the_end_of_this_one() -> None:
     observer, desk = Observer(1), Desk()
     node = cast("ObserverNode", desk)
-    observer.hold("/drive", BOOL, word())
+    observer.hold("/drive", BOOL, command())
     observer.publish("/stop", BOOL, STOP, latched=True)
     observer._serve_urgent(node)
     assert desk.done == ["step"]

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from graph.publishing.dead_man_switch import Grip, Holding
+from graph.publishing.dead_man_switch import CommandRepeater, HeldCommand
 from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
 from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, Move, Teleop, TeleopLimits
@@ -104,20 +104,20 @@ def test_what_goes_out_is_a_stop_when_the_last_key_is_over(
 ) -> None:
     sent: list[tuple[float, Mapping[str, Any]]] = []
     keys, now_s = Teleop(), 100.0
-    grip = Grip(lambda value: sent.append((now_s, value)))
+    repeater = CommandRepeater(lambda value: sent.append((now_s, value)))
     for pause_s, move in history:
         quiet_until_s = now_s + pause_s
         while now_s + look_every_s < quiet_until_s:
             now_s += look_every_s
-            grip.step(now_s)
+            repeater.step(now_s)
         now_s = quiet_until_s
         keys = keys.pressed(move, now_s)
-        word = Holding(command(keys.setpoint(LIMITS)), command(STOP), RATE_HZ, keys.until_s)
-        grip.hold(word, now_s)
+        drive = HeldCommand(command(keys.setpoint(LIMITS)), command(STOP), RATE_HZ, keys.until_s)
+        repeater.hold(drive, now_s)
     last_key_s = now_s
     for _look in range(int(3.0 / look_every_s)):
         now_s += look_every_s
-        grip.step(now_s)
+        repeater.step(now_s)
     moving = [at for at, value in sent if value != command(STOP)]
     assert moving
     assert moving[-1] < last_key_s + FIRST_HOLD_S
