@@ -24,7 +24,7 @@ from launcher.errors import (
 )
 from launcher.events import LogEvent
 from launcher.profile.catalog import find_profile
-from text.i18n import _, language, ngettext, said
+from text.i18n import _, language, localized, ngettext
 from text.output import RED, Paint, json_text, say_error, write
 from text.plain import plain
 
@@ -78,7 +78,7 @@ async def _up(options: Namespace) -> int:
             profile, foreground=False, node_lang=language(), supervisor=options.supervisor
         )
     except AlreadyRunningError as error:
-        say_error(said(error.args[0]))
+        say_error(localized(error.args[0]))
         # Not a usage error: this very profile is running.
         return 1 if error.session.profile == str(profile.path) else error.exit_code
     try:
@@ -147,7 +147,7 @@ async def _ps(options: Namespace) -> int:
         write(json_text([as_json(*each) for each in found], indent=2))
         return 0
     if not found:
-        say_error(str(said(NotRunningError().args[0])))
+        say_error(str(localized(NotRunningError().args[0])))
     names = [session.name for session, _nodes in found]
     for index, (session, nodes) in enumerate(found):
         if index:

@@ -10,7 +10,7 @@ from launcher.errors import ProfileError
 from launcher.profile.catalog import find_profile, list_profiles
 from launcher.profile.load import load_profile
 from launcher.profile.text import shown
-from text.i18n import _, ngettext, pick, said
+from text.i18n import _, localized, ngettext, pick
 from text.output import DIM, RED, YELLOW, Paint, json_text, write
 from text.plain import plain
 
@@ -34,7 +34,7 @@ def list_command(options: Namespace) -> int:
     for entry in entries:
         name = plain(entry.name).ljust(width)
         if entry.error:
-            first = said(entry.problems[0].words) if entry.problems else plain(entry.error)
+            first = localized(entry.problems[0].words) if entry.problems else plain(entry.error)
             broken = paint(_("broken"), RED)
             write(f"{name}  {broken}: {first}")
             continue
@@ -100,7 +100,7 @@ def _check(path: Path, options: Namespace) -> int:
 
 
 def _line(problem: ProfileProblem, paint: Paint, colour: str, kind: str = "") -> str:
-    words = said(problem.words)
+    words = localized(problem.words)
     where = plain(f"{problem.where}: ")
     return paint(where, colour) + kind + words.removeprefix(where)
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from cli.arguments import OPEN, parser_of, speak, split, wanted_language
 from launcher.errors import LauncherError
-from text.i18n import LANGUAGES, detect, said, set_language
+from text.i18n import LANGUAGES, detect, localized, set_language
 from text.output import drop_output, make_streams_safe, say_error
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _refuse_no_command(word: str | None) -> None:
 def complain(error: LauncherError) -> int:
     """Write an error to standard error; return its exit code."""
     for part in error.args:
-        say_error(said(part) if isinstance(part, str) else str(part))
+        say_error(localized(part) if isinstance(part, str) else str(part))
     return error.exit_code
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from graph.bag.listing import bags_in
 from launcher.errors import UsageError
 from launcher.rundir import recordings_path
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.output import BOLD, YELLOW, Paint, table, write
 from text.plain import plain
 from text.sentences import say
@@ -36,7 +36,7 @@ def list_recordings() -> int:
     for row, bag in zip(rows, bags, strict=True):
         write(row)
         if bag.trouble:
-            write(paint(f"  {said(bag.trouble)}", YELLOW))
+            write(paint(f"  {localized(bag.trouble)}", YELLOW))
     write(
         _("recordings are in {folder}; to open one: deck replay NAME").format(
             folder=plain(str(folder))

@@ -16,7 +16,7 @@ from launcher.errors import UsageError
 from launcher.processes.shared_memory_unfinished import discard_unfinished
 from robot.safety.moving_topics import STOPPED_BY_ZEROS, moves
 from robot.topics import EMERGENCY_STOP
-from text.i18n import _, ngettext, said
+from text.i18n import _, localized, ngettext
 from text.output import keep_stdout_to_ourselves, say_error, write
 from text.plain import plain
 from text.sentences import say
@@ -63,7 +63,7 @@ def _publish(
     try:
         ros = open_ros(domain, discovery, "replay")
     except Exception as error:  # noqa: BLE001 - rclpy may raise anything, or be missing
-        say_error(said(say("ROS cannot be used: {reason}", reason=error)))
+        say_error(localized(say("ROS cannot be used: {reason}", reason=error)))
         return 1
     try:
         publisher = BagPublisher(
@@ -109,7 +109,7 @@ def _begin(bag: Bag, publisher: BagPublisher, domain: int) -> None:
 
 def _tell(sentence: str | None) -> None:
     if sentence:
-        write(plain(said(sentence), 400))
+        write(plain(localized(sentence), 400))
 
 
 def _tell_left_out(progress: PublishingProgress, told: set[str]) -> set[str]:
@@ -117,7 +117,7 @@ def _tell_left_out(progress: PublishingProgress, told: set[str]) -> set[str]:
     for name, reason in sorted(progress.left_out.items()):
         if name not in told:
             words = _("not published: {topic}: {reason}")
-            write(words.format(topic=plain(name), reason=plain(said(reason), 300)))
+            write(words.format(topic=plain(name), reason=plain(localized(reason), 300)))
     return set(progress.left_out)
 
 

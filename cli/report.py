@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from launcher.status import NodeState, Severity
-from text.i18n import Prose, _, ngettext, said
+from text.i18n import LocalizedFloat, _, localized, ngettext
 from text.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
 from text.plain import plain
 from tui.session.hardware_words import hardware_words
@@ -104,7 +104,7 @@ class TextReport:
 
     def log(self, line: LogLine) -> None:
         """Write a line of a node, with its severity as a word and a colour."""
-        text = said(line.text)
+        text = localized(line.text)
         if line.severity is not Severity.INFO:
             text = f"{line.severity.name} {text}"
         colour = COLOURS.get(line.severity) or (DIM if line.source == DECK else "")
@@ -133,7 +133,7 @@ class TextReport:
                 _("healthy") if healthy[node.name] else _("FAILED"),
                 _(node.state.value),
                 str(node.restarts),
-                said(node.detail),
+                localized(node.detail),
             )
             for node in nodes
         ]
@@ -147,10 +147,14 @@ class TextReport:
         if bad:
             parts.append(_("not healthy: {names}").format(names=", ".join(bad)))
         if summary.reason:
-            parts.append(_("ended from elsewhere: {reason}").format(reason=said(summary.reason)))
+            parts.append(
+                _("ended from elsewhere: {reason}").format(reason=localized(summary.reason))
+            )
         words = plain("; ".join(parts)) or _("every node stayed healthy")
         self._write(
-            _("{words}; {seconds:.1f} s").format(words=words, seconds=Prose(summary.seconds))
+            _("{words}; {seconds:.1f} s").format(
+                words=words, seconds=LocalizedFloat(summary.seconds)
+            )
         )
 
     def _line(self, node: str, text: str) -> None:

@@ -19,7 +19,7 @@ from launcher.profile.catalog import find_profile
 from launcher.profile.load import load_profile
 from launcher.serial_ports import serial_ports
 from launcher.status import NodeState
-from text.i18n import _, language, ngettext, said
+from text.i18n import _, language, localized, ngettext
 from text.output import Paint, drop_output, say_error
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ class Run:
         await client.aclose()
         silent = (each for each in partings if isinstance(each, SilentSupervisorError))
         for problem in (*silent,)[:1]:
-            self.report.note(said(problem.args[0]))
+            self.report.note(localized(problem.args[0]))
         return self._summary(client, reason, time.monotonic() - began)
 
     def interrupt(self) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from cli.health import well
 from cli.report import status_fields
 from cli.stop_in_force import stop_is_kept
-from text.i18n import _, decimal, pick, said
+from text.i18n import _, decimal, localized, pick
 from text.output import BOLD, DIM, RED, Paint, table, write
 from tui.session.hardware_words import hardware_words
 
@@ -51,7 +51,7 @@ def _row(node: NodeStatus) -> tuple[str, ...]:
         str(node.restarts),
         "" if node.cpu_percent is None else decimal(f"{node.cpu_percent:.1f}"),
         "" if node.memory_bytes is None else f"{node.memory_bytes / 1e6:.0f}",
-        said(node.detail),
+        localized(node.detail),
     )
 
 

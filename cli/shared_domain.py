@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from launcher.errors import DomainTakenError
 from launcher.runs.shared_domain import refuse_shared_domain
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.output import say_error
 
 if TYPE_CHECKING:
@@ -19,5 +19,5 @@ def warn_of_shared_domain(profile: Profile) -> None:
         refuse_shared_domain(profile)
     except DomainTakenError as taken:
         if taken.can_share:
-            say_error(said(taken.args[0]))
+            say_error(localized(taken.args[0]))
             say_error(_("their nodes will see each other"))

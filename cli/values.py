@@ -7,7 +7,7 @@ import math
 
 from launcher.domain.domain import parse_domain
 from launcher.errors import DomainError
-from text.i18n import _, said
+from text.i18n import _, localized
 
 
 def domain(text: str) -> int:
@@ -15,7 +15,7 @@ def domain(text: str) -> int:
     try:
         return parse_domain(text, "--domain")
     except DomainError as error:
-        words = said(error.args[0]).removeprefix("--domain: ")
+        words = localized(error.args[0]).removeprefix("--domain: ")
         raise argparse.ArgumentTypeError(words) from error
 
 

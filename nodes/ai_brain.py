@@ -23,7 +23,7 @@ from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
 from nodes.parts.sound import from_message, to_message
 from robot.commands.brain import Decision, decide, spoken
-from robot.safety.distance import Reading, look
+from robot.safety.distance import Reading, range_state
 from robot.sound import text_in
 from robot.topics import AI_COMMAND, CAMERA, MICROPHONE, SONAR_FRONT, SPEAKER
 from robot.words import WORDS, parse_word
@@ -114,7 +114,7 @@ class AiBrain(LessonNode):
         self._tell_what_is_known()
         order = parse_word(words)
         reading = Reading(self._front_m, time.monotonic() - self._front_s)
-        front = look(reading, self.number("stop_distance"), self.number("stale_after_s"))
+        front = range_state(reading, self.number("stop_distance"), self.number("stale_after_s"))
         self._act(decide(order, front), words)
 
     def _tell_what_is_known(self) -> None:

@@ -30,7 +30,7 @@ from nodes.drivers.chassis_words import (
     RELEASED,
     STARTED,
     TOO_FAST,
-    Standing,
+    StandstillLogger,
     diagnosis,
 )
 from nodes.drivers.pico import PicoClient
@@ -97,7 +97,7 @@ class ChassisNode(LessonNode):
         super().__init__()
         self._command = _STILL
         self._commanded_s = -math.inf
-        self._standing = Standing(self.say)
+        self._standstill = StandstillLogger(self.say)
         self._release_wanted = False
         self._released_s = -math.inf
         self._nap = StallDetector()
@@ -222,7 +222,7 @@ class ChassisNode(LessonNode):
                 self.say.warn(COMMAND_OLD, seconds=self.number("max_age_s"))
                 self._stand()
             self._send()
-        self._standing.tell(self._pico.telemetry)
+        self._standstill.tell(self._pico.telemetry)
 
     def _send(self) -> None:
         telemetry = self._pico.telemetry

@@ -232,8 +232,8 @@ class DriveToPointNode(LessonNode):
         progress = goal.watch(pose)
         if progress.stands:
             self._finish(words.STANDS)
-        elif progress.wanders:
-            self._finish(words.WANDERS)
+        elif progress.has_driven_too_far:
+            self._finish(words.DRIVEN_TOO_FAR)
         else:
             self._ask_for(goal.approach.command(pose))
             goal.tell(pose)

@@ -33,17 +33,17 @@ from nodes.parts.parameters import Number, Switch, Text
 from nodes.parts.qos import DEPTH
 from nodes.parts.runner import run
 from nodes.parts.sensor import SensorListener
-from nodes.safety.distance_sensors import Eyes, shares
+from nodes.safety.distance_sensors import DistanceSensors, shares
 from nodes.safety.gate import CommandGate
 from nodes.safety.snapshot import GateSnapshot
 from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
-from robot.safety.distance import SafetyZone, Sight, Verdict, allowed, where
+from robot.safety.distance import RangeState, SafetyZone, Verdict, allowed, where
 from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
 
-    from nodes.safety.distance_sensors import View
+    from nodes.safety.distance_sensors import SensorResult
 
 _STATE_EVERY_S = 1.0
 
@@ -86,9 +86,9 @@ class SafetyStop(LessonNode):
 
     def __init__(self) -> None:
         super().__init__()
-        self._eyes = Eyes(rear=bool(self.text("rear_topic")))
-        self._views: tuple[View, ...] = self._eyes.views(self._zone)
-        self._sights: tuple[Sight, ...] = ()
+        self._sensors = DistanceSensors(rear=bool(self.text("rear_topic")))
+        self._results: tuple[SensorResult, ...] = self._sensors.results(self._zone)
+        self._range_states: tuple[RangeState, ...] = ()
         self._verdict = Verdict.BLOCKED_FORWARD
         self._told: tuple[Verdict, GateSnapshot] | None = None
         self._told_s = 0.0
@@ -96,7 +96,7 @@ class SafetyStop(LessonNode):
         # In this order, which is that of their callbacks: a waiting stop comes first.
         self._emergency = EmergencyStopListener(self, self._emergency_changed)
         SensorListener(self, Float32, self.text("front_topic"), self._see_front)
-        if self._eyes.rear is not None:
+        if self._sensors.rear is not None:
             SensorListener(self, Float32, self.text("rear_topic"), self._see_rear)
         self._gate = CommandGate(self, self._judge, self._reason) if self.switch("gate") else None
         self._timer = self.every(1.0 / self.number("rate"), self._tick)
@@ -118,13 +118,13 @@ class SafetyStop(LessonNode):
     def _see_front(self, message: Float32) -> None:
         if self._held_up():
             return
-        self._eyes.front.see(message.data)
+        self._sensors.front.see(message.data)
         self._judge()
-        tell_front(self.say, self._views[0])
+        tell_front(self.say, self._results[0])
 
     def _see_rear(self, message: Float32) -> None:
-        if self._eyes.rear is not None and not self._held_up():
-            self._eyes.rear.see(message.data)
+        if self._sensors.rear is not None and not self._held_up():
+            self._sensors.rear.see(message.data)
             self._judge()
 
     def _emergency_changed(self, active: bool) -> None:
@@ -138,10 +138,10 @@ class SafetyStop(LessonNode):
         self._held_up()
         self._judge()
         if (
-            self._views[0].sight == Sight.SILENT
-            and self._views[0].reading.age_s > self._zone.stale_after_s
+            self._results[0].state == RangeState.SILENT
+            and self._results[0].reading.age_s > self._zone.stale_after_s
         ):
-            tell_front(self.say, self._views[0])
+            tell_front(self.say, self._results[0])
         if self._gate is not None:
             self._gate.tick()
         overdue = time.monotonic() - self._told_s > _STATE_EVERY_S
@@ -160,15 +160,15 @@ class SafetyStop(LessonNode):
 
     def _judge(self) -> None:
         """Judge the sensors again, and have the gate apply the result."""
-        self._views = self._eyes.views(self._zone)
-        sights = tuple(view.sight for view in self._views)
-        rear = sights[1] if len(sights) > 1 else None
+        self._results = self._sensors.results(self._zone)
+        states = tuple(result.state for result in self._results)
+        rear = states[1] if len(states) > 1 else None
         starting = self._gate is not None and self._gate.starting
-        verdict = where(sights[0], rear, self._emergency.active, starting=starting)
-        changed = (sights, verdict) != (self._sights, self._verdict)
-        self._sights, self._verdict = sights, verdict
+        verdict = where(states[0], rear, self._emergency.active, starting=starting)
+        changed = (states, verdict) != (self._range_states, self._verdict)
+        self._range_states, self._verdict = states, verdict
         if self._gate is not None:
-            self._gate.rule(verdict, shares(self._views))
+            self._gate.rule(verdict, shares(self._results))
         if changed:
             self._publish_state()
 
@@ -180,13 +180,13 @@ class SafetyStop(LessonNode):
     def _snapshot(self) -> GateSnapshot:
         if self._gate is not None:
             return self._gate.snapshot()
-        return GateSnapshot(allowed=allowed(0.0, self._verdict, shares(self._views)))
+        return GateSnapshot(allowed=allowed(0.0, self._verdict, shares(self._results)))
 
     def _reason(self) -> str:
         return str(self._status().message)
 
     def _status(self) -> DiagnosticStatus:
-        return diagnosis(self.say, self._verdict, self._views, self._snapshot(), self._zone)
+        return diagnosis(self.say, self._verdict, self._results, self._snapshot(), self._zone)
 
     def _publish_state(self) -> None:
         self._told_s, self._told = time.monotonic(), self._news()

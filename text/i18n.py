@@ -86,7 +86,7 @@ def N_(message: str) -> str:  # noqa: N802 - gettext's own name
     return message
 
 
-def said(words: str, code: str = "") -> str:
+def localized(words: str, code: str = "") -> str:
     """Return a sentence (`text.sentences.say`) in this language, or in the current one.
 
     Its values, and any other text, are sanitized.
@@ -115,7 +115,7 @@ def _decimal(number: str, code: str) -> str:
     return number.replace(".", ",") if code == "ru" else number
 
 
-class Prose(float):
+class LocalizedFloat(float):
     """A number that a template writes as its language requires, with any format."""
 
     code: str
@@ -132,8 +132,8 @@ class Prose(float):
 
 def _in_words(value: object, code: str) -> object:
     if isinstance(value, str):
-        return said(value, code)
-    return Prose(value, code) if isinstance(value, float) else value
+        return localized(value, code)
+    return LocalizedFloat(value, code) if isinstance(value, float) else value
 
 
 def pick(texts: Mapping[str, str]) -> str:

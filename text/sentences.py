@@ -1,8 +1,8 @@
 """Sentences that can still be translated after they have been made.
 
 Rooms that know nothing about languages make them; the code that shows them looks up the template in
-a catalogue (`text.i18n.said`). A sentence made by `say` is its English text, a plain `str`, and
-remembers the template and values that it was made from.
+a catalogue (`text.i18n.localized`). A sentence made by `say` is its English text, a plain `str`,
+and remembers the template and values that it was made from.
 """
 
 from __future__ import annotations

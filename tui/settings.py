@@ -13,7 +13,7 @@ from pathlib import Path
 
 from platformdirs import user_config_path
 
-from text.i18n import LANGUAGES, _, said
+from text.i18n import LANGUAGES, _, localized
 from text.os_words import os_reason
 
 
@@ -75,7 +75,7 @@ def save(path: Path, settings: Settings) -> None:
         beside.write_text(json.dumps(raw, ensure_ascii=False, indent=2) + "\n", encoding="utf-8")
         beside.replace(path)
     except OSError as error:
-        raise SettingsError(f"{path}: {said(os_reason(error))}") from error
+        raise SettingsError(f"{path}: {localized(os_reason(error))}") from error
 
 
 def _unreadable(error: OSError | UnicodeDecodeError) -> str:
@@ -87,7 +87,7 @@ def _unreadable(error: OSError | UnicodeDecodeError) -> str:
         return _("expected a file, found a directory (remove or rename it)")
     if isinstance(error, PermissionError):
         return f"{_('no permission to read it')} ({_('chmod u+r it, or ask its owner')})"
-    return _("cannot be read: {reason}").format(reason=said(os_reason(error)))
+    return _("cannot be read: {reason}").format(reason=localized(os_reason(error)))
 
 
 def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collection[str]]) -> str:

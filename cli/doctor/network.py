@@ -11,7 +11,7 @@ from launcher.domain.discovery import RMW, why_open
 from launcher.domain.discovery import VARIABLES as FAST_DDS_VARIABLES
 from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
 from launcher.errors import DomainError
-from text.i18n import _, said
+from text.i18n import _, localized
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,7 +46,7 @@ def _domain(facts: NetworkFacts) -> Finding:
     try:
         domain = choose_domain(None, None, facts.environ)
     except DomainError as error:
-        return fail("ros.domain", said(error.args[0]), _("run: unset ROS_DOMAIN_ID"))
+        return fail("ros.domain", localized(error.args[0]), _("run: unset ROS_DOMAIN_ID"))
     whose = "ROS_DOMAIN_ID" if "ROS_DOMAIN_ID" in facts.environ else _("your own")
     text = _(
         "domain {domain} ({whose}), visible on this machine only unless a profile says otherwise"
@@ -76,5 +76,5 @@ def _oddities(facts: NetworkFacts) -> list[Finding]:
             found.append(warn("ros.discovery", text, _("unset it if topics stay empty")))
     open_because = why_open(facts.environ, "localhost")
     if open_because:
-        found.append(warn("ros.open", said(open_because), _("unset it if you do not need it")))
+        found.append(warn("ros.open", localized(open_because), _("unset it if you do not need it")))
     return found

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from cli.doctor.finding import fail, ok, warn
 from launcher.errors import LauncherError
 from launcher.rundir import check_writable, found_run_dir, log_path
-from text.i18n import Prose, _, said
+from text.i18n import LocalizedFloat, _, localized
 from text.run_path import run_path
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def look() -> RunFacts:
         there = next(folder for folder in (logs, *logs.absolute().parents) if folder.exists())
         check_writable(there)
     except LauncherError as error:
-        return RunFacts(error=said(error.args[0]))
+        return RunFacts(error=localized(error.args[0]))
     status = os.statvfs(there)
     return RunFacts(
         run_dir=str(here),
@@ -64,7 +64,7 @@ def judge(facts: RunFacts) -> list[Finding]:
 
 def _folders(facts: RunFacts) -> Finding:
     text = _("logs in {path}, {size:.1f} GB free").format(
-        path=facts.log_dir, size=Prose(facts.free / 1e9)
+        path=facts.log_dir, size=LocalizedFloat(facts.free / 1e9)
     )
     if facts.free < LEAST_FREE:
         return warn("folders", text, _("remove old logs there, or set DECK_LOG_DIR"))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from cli.doctor.finding import ok, warn
 from launcher.serial_ports import serial_ports
-from text.i18n import _, said
+from text.i18n import _, localized
 
 if TYPE_CHECKING:
     from cli.doctor.finding import Finding
@@ -75,7 +75,7 @@ def _mend(group: str, user: str, groups: tuple[str, ...]) -> str:
 
 def _port(access: Access, facts: SerialFacts) -> Finding:
     port = access.port
-    what = ", ".join(part for part in (port.description, said(port.kind)) if part)
+    what = ", ".join(part for part in (port.description, localized(port.kind)) if part)
     text = _("serial port {name}").format(name=port.path) + (f" ({what})" if what else "")
     if access.allowed:
         return ok("serial", text)

@@ -16,7 +16,7 @@ from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
 from robot.wire.pico import encode as encode_pico
 from robot.wire.tfluna import Model, TofDecoder, TofFrame
-from text.i18n import Prose, _
+from text.i18n import LocalizedFloat, _
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -109,7 +109,7 @@ def _greet(line: OpenPort, answered: Callable[[bytes], bool]) -> bytes:
 def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) -> DeviceAnswer:
     text = _("firmware {firmware}").format(firmware=welcome.firmware)
     if telemetry is not None and telemetry.battery_v is not None:
-        text += ", " + _("battery {volts:.1f} V").format(volts=Prose(telemetry.battery_v))
+        text += ", " + _("battery {volts:.1f} V").format(volts=LocalizedFloat(telemetry.battery_v))
     troubles = {
         "E": (
             _("the emergency stop is held"),
@@ -166,7 +166,7 @@ def _far(metres: float) -> str:
         return _("no valid reading")
     if math.isinf(metres):
         return _("nothing in range") if metres > 0 else _("too close to measure")
-    return _("{metres:.2f} m").format(metres=Prose(metres))
+    return _("{metres:.2f} m").format(metres=LocalizedFloat(metres))
 
 
 def _better_cable() -> str:
@@ -189,7 +189,7 @@ def _servos(line: OpenPort) -> DeviceAnswer:
     if not told:
         return _nothing("lsc16", heard, line.baud)
     return DeviceAnswer(
-        Level.OK, _("battery {volts:.1f} V").format(volts=Prose(told[0].millivolts / 1000))
+        Level.OK, _("battery {volts:.1f} V").format(volts=LocalizedFloat(told[0].millivolts / 1000))
     )
 
 

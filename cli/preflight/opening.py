@@ -14,7 +14,7 @@ from cli.preflight.holders import holders
 from cli.preflight.open_port import OpenPort
 from launcher.profile.serial_choice import how_to_choose
 from launcher.serial_ports import lasting_names
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.sentences import reason_of
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPor
         return _missing(device, path, ports)
     if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR):
         return DeviceAnswer(
-            Level.FAIL, _("it is not a serial port"), str(said(how_to_choose(device)))
+            Level.FAIL, _("it is not a serial port"), str(localized(how_to_choose(device)))
         )
     words = reason_of(error).splitlines()[0]
     mend = _("unplug the device, plug it in again, and look at: dmesg | tail")
@@ -79,7 +79,7 @@ def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswe
     there = "; ".join(map(str, ports)) or _("none")
     text = _("{text}; ports: {ports}").format(text=text, ports=there)
     mend = _("plug it in, try another cable; or {choose}")
-    return DeviceAnswer(Level.FAIL, text, mend.format(choose=said(how_to_choose(device))))
+    return DeviceAnswer(Level.FAIL, text, mend.format(choose=localized(how_to_choose(device))))
 
 
 def _taken(path: str, others: Sequence[Holder]) -> DeviceAnswer:

@@ -12,7 +12,7 @@ from cli.preflight.answers import DeviceAnswer, ask
 from cli.preflight.opening import advice, opened
 from launcher.profile.devices import wanted
 from launcher.profile.serial_choice import AUTO, Unclear, choose
-from text.i18n import _, said
+from text.i18n import _, localized
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -50,7 +50,9 @@ def _ask(
     ports: Sequence[SerialPort],
 ) -> tuple[str, DeviceAnswer]:
     if isinstance(chosen, Unclear):
-        return "", DeviceAnswer(Level.FAIL, str(said(chosen.message)), str(said(chosen.hint)))
+        return "", DeviceAnswer(
+            Level.FAIL, str(localized(chosen.message)), str(localized(chosen.hint))
+        )
     return paths[device], _one(device, settings, paths, ports)
 
 

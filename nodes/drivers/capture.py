@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from nodes.drivers.camera_source import CameraSource
-    from nodes.parts.speech import Speech
+    from nodes.parts.translated_logger import TranslatedLogger
     from text.i18n import N_
 
 THREAD = "capture"
@@ -60,7 +60,7 @@ class Capture:
 
     def __init__(
         self,
-        say: Speech,
+        say: TranslatedLogger,
         source: CameraSource,
         size: tuple[int, int],
         rate_hz: Callable[[], float],

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from nodes.drivers.pico import PicoClient
     from nodes.parts.refusals import Refusal
-    from nodes.parts.speech import Speech
+    from nodes.parts.translated_logger import TranslatedLogger
     from robot.wire.pico import Telemetry
     from text.i18n import N_
 
@@ -43,18 +43,18 @@ _BAD = frozenset("LRUH")
 _SAY_EVERY_S = 10.0
 
 
-def reasons(say: Speech, flags: Iterable[str]) -> str:
+def reasons(say: TranslatedLogger, flags: Iterable[str]) -> str:
     """Return why the wheels stand, in words."""
     return ", ".join(say.text(phrase) for flag, phrase in _FLAGS.items() if flag in flags)
 
 
-class Standing:
+class StandstillLogger:
     """Logs why the wheels stand still: at once, and again for those who look later.
 
     Also logs lines that the Pico refuses, which makes them stand for a moment.
     """
 
-    def __init__(self, say: Speech) -> None:
+    def __init__(self, say: TranslatedLogger) -> None:
         self._say = say
         self._flags: frozenset[str] = frozenset()
         self._refused: int | None = None
@@ -84,7 +84,7 @@ class Standing:
 
 
 def diagnosis(
-    say: Speech,
+    say: TranslatedLogger,
     status: DiagnosticStatus,
     pico: PicoClient,
     emergency: bool,

@@ -23,7 +23,7 @@ from robot.sound import SAMPLE, Resampler
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from nodes.parts.speech import Speech
+    from nodes.parts.translated_logger import TranslatedLogger
 
 NOWHERE = "none"
 """The device name that means no device."""
@@ -45,7 +45,7 @@ class SoundPort:
 
     def __init__(
         self,
-        say: Speech,
+        say: TranslatedLogger,
         way: str,
         device: str,
         rate_hz: int,

@@ -12,13 +12,13 @@ from nodes.drivers.sound_words import CANNOT, FAULTY, OFF, SINCE
 
 if TYPE_CHECKING:
     from nodes.drivers.sound_port import SoundPort
-    from nodes.parts.speech import Speech
+    from nodes.parts.translated_logger import TranslatedLogger
 
 
 class PortStatus:
     """Makes the message: the device, time connected, bytes and errors per second."""
 
-    def __init__(self, say: Speech, name: str, port: SoundPort) -> None:
+    def __init__(self, say: TranslatedLogger, name: str, port: SoundPort) -> None:
         self._say, self._name, self._port = say, name, port
         self._told = (time.monotonic(), 0, 0)
 

@@ -8,7 +8,7 @@ from nodes.drivers.portaudio import IN, OUT
 from text.i18n import N_
 
 if TYPE_CHECKING:
-    from nodes.parts.speech import Speech
+    from nodes.parts.translated_logger import TranslatedLogger
     from text.i18n import N_
 
 OPENED = {
@@ -55,7 +55,7 @@ _PROBLEMS = {
 }
 
 
-def explain(say: Speech, problem: str, device: str, detail: str) -> str:
+def explain(say: TranslatedLogger, problem: str, device: str, detail: str) -> str:
     """Return what is wrong with a device, and the fix."""
     if problem == "missing" and not (device and detail):
         problem = "none"

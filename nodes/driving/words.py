@@ -18,7 +18,7 @@ STANDS = N_(
     "The robot has not moved for {patience_s:g} s, {distance:.2f} m from the point: "
     "something holds it, a safety gate or an obstacle"
 )
-WANDERS = N_(
+DRIVEN_TOO_FAR = N_(
     "The robot drives but does not arrive, {distance:.2f} m from the point: "
     "is the odometry right, and is nobody else steering?"
 )

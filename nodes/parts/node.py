@@ -15,7 +15,7 @@ from rclpy.parameter import Parameter
 
 from nodes.parts.parameters import BadValueError, Setting, Value
 from nodes.parts.qos import DEPTH
-from nodes.parts.speech import Speech
+from nodes.parts.translated_logger import TranslatedLogger
 from text.i18n import N_, detect
 from text.sentences import say
 from text.suggestions import nearest
@@ -60,7 +60,7 @@ class LessonNode(Node):
     def __init__(self) -> None:
         super().__init__(self.NAME, automatically_declare_parameters_from_overrides=True)
         logger = self.get_logger()  # type: ignore[no-untyped-call]
-        self.say = Speech(logger, detect())
+        self.say = TranslatedLogger(logger, detect())
         self._settings = {setting.name: setting for setting in self.SETTINGS}
         self._values: dict[str, Value] = {}
         self._declare()

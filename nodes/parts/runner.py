@@ -24,7 +24,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
 from nodes.parts.node import LessonNode, NodeUsageError
-from nodes.parts.speech import Speech
+from nodes.parts.translated_logger import TranslatedLogger
 from text.i18n import N_, detect
 
 if TYPE_CHECKING:
@@ -59,8 +59,8 @@ def run(node_type: type[LessonNode], args: list[str] | None = None) -> int:
     try:
         return _live(node_type, arguments, ending)
     except NodeUsageError as error:
-        speech = Speech(get_logger(node_type.NAME), detect())
-        speech.fatal(error.phrase, **error.values)
+        logger = TranslatedLogger(get_logger(node_type.NAME), detect())
+        logger.fatal(error.phrase, **error.values)
         return USAGE
     finally:
         try_shutdown()

@@ -5,15 +5,15 @@ from __future__ import annotations
 import time
 from typing import NamedTuple
 
-from robot.safety.distance import Reading, SafetyZone, Shares, Sight, look, share
+from robot.safety.distance import RangeState, Reading, SafetyZone, Shares, range_state, share
 
 
-class View(NamedTuple):
+class SensorResult(NamedTuple):
     """The result of one sensor."""
 
     place: str
     """`front` or `rear`."""
-    sight: Sight
+    state: RangeState
     reading: Reading
     share: float
     """The share of the requested speed that is allowed that way, 0 to 1."""
@@ -37,29 +37,31 @@ class DistanceSensor:
         """Return the newest reading and its age."""
         return Reading(self._distance_m, time.monotonic() - self._seen_s)
 
-    def view(self, zone: SafetyZone) -> View:
+    def result(self, zone: SafetyZone) -> SensorResult:
         """Return its current result."""
         reading = self.reading
-        sight = look(reading, zone.critical_m, zone.stale_after_s)
+        state = range_state(reading, zone.critical_m, zone.stale_after_s)
         part = share(reading, zone)
-        if sight == Sight.FREE and not part:
+        if state == RangeState.FREE and not part:
             # At the critical distance itself, if it slows before that: nothing is let through.
-            sight = Sight.CLOSE
-        return View(self._place, sight, reading, part)
+            state = RangeState.CLOSE
+        return SensorResult(self._place, state, reading, part)
 
 
-class Eyes:
+class DistanceSensors:
     """The sensor in front, and the one behind if there is one."""
 
     def __init__(self, *, rear: bool) -> None:
         self.front = DistanceSensor("front")
         self.rear = DistanceSensor("rear") if rear else None
 
-    def views(self, zone: SafetyZone) -> tuple[View, ...]:
+    def results(self, zone: SafetyZone) -> tuple[SensorResult, ...]:
         """Return the current result of each, the front first."""
-        return tuple(eye.view(zone) for eye in (self.front, self.rear) if eye is not None)
+        return tuple(
+            sensor.result(zone) for sensor in (self.front, self.rear) if sensor is not None
+        )
 
 
-def shares(views: tuple[View, ...]) -> Shares:
+def shares(results: tuple[SensorResult, ...]) -> Shares:
     """Return the allowed shares each way; without a rear sensor, backing off is unrestricted."""
-    return Shares(*(view.share for view in views))
+    return Shares(*(result.share for result in results))

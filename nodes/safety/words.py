@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from nodes.parts.speech import Speech
-from robot.safety.distance import SafetyZone, Sight, Verdict
+from nodes.parts.translated_logger import TranslatedLogger
+from robot.safety.distance import RangeState, SafetyZone, Verdict
 from text.i18n import N_
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from nodes.safety.distance_sensors import View
+    from nodes.safety.distance_sensors import SensorResult
     from nodes.safety.snapshot import GateSnapshot
 
 STARTED = N_("Watching the way: closer than {metres:g} m is danger")
@@ -26,18 +26,22 @@ DRIVES = N_("{source} drives now")
 IGNORED = N_("{ignored} is ignored: {source} drives, and ranks higher")
 HELD_UP = N_("This node was held up: commands that waited meanwhile are not obeyed")
 
-_SIGHTS = {
-    Sight.FREE: N_("The way is free ({metres:.2f} m)."),
-    Sight.CLOSE: N_("EMERGENCY BRAKE! Obstacle at {metres:.2f} m."),
-    Sight.INVALID: N_("The front sonar gives no valid distance ({metres}): treated as danger."),
-    Sight.SILENT: N_("The front sonar has been silent for {seconds:.1f} s: treated as danger."),
+_FRONT = {
+    RangeState.FREE: N_("The way is free ({metres:.2f} m)."),
+    RangeState.CLOSE: N_("EMERGENCY BRAKE! Obstacle at {metres:.2f} m."),
+    RangeState.INVALID: N_(
+        "The front sonar gives no valid distance ({metres}): treated as danger."
+    ),
+    RangeState.SILENT: N_(
+        "The front sonar has been silent for {seconds:.1f} s: treated as danger."
+    ),
 }
-_SIGHTS_OUT_OF_RANGE = {
-    Sight.FREE: N_("The way is free (nothing in range)."),
-    Sight.CLOSE: N_("EMERGENCY BRAKE! Obstacle too close to measure."),
+_FRONT_OUT_OF_RANGE = {
+    RangeState.FREE: N_("The way is free (nothing in range)."),
+    RangeState.CLOSE: N_("EMERGENCY BRAKE! Obstacle too close to measure."),
 }
 """Used instead for an infinite distance by REP-117."""
-_SIGHT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
+_FRONT_SLOWED = N_("Free to move, slowed to {percent} % ({metres:.2f} m).")
 _LOG_EVERY_S = 0.9
 
 _VERDICTS = {
@@ -53,27 +57,27 @@ _SLOWED = N_("slowed to {percent} %: {why}")
 _AND_IGNORED = N_("; {ignored} is ignored: {source} drives")
 _AND_REFUSED = N_("; refused: {refused}")
 _REASONS = {
-    Sight.FREE: N_("{place} {metres:.2f} m"),
-    Sight.CLOSE: N_("{place} {metres:.2f} m"),
-    Sight.INVALID: N_("{place} no valid distance"),
-    Sight.SILENT: N_("{place} sonar is silent"),
+    RangeState.FREE: N_("{place} {metres:.2f} m"),
+    RangeState.CLOSE: N_("{place} {metres:.2f} m"),
+    RangeState.INVALID: N_("{place} no valid distance"),
+    RangeState.SILENT: N_("{place} sonar is silent"),
 }
 _REASONS_OUT_OF_RANGE = {
-    Sight.FREE: N_("{place} nothing in range"),
-    Sight.CLOSE: N_("{place} too close to measure"),
+    RangeState.FREE: N_("{place} nothing in range"),
+    RangeState.CLOSE: N_("{place} too close to measure"),
 }
 
 
-def tell_front(say: Speech, view: View) -> None:
+def tell_front(say: TranslatedLogger, result: SensorResult) -> None:
     """Log the state of the front sonar; each kind of message once a second at most."""
-    log = say.info if view.sight == Sight.FREE else say.warn
-    slowed = view.sight == Sight.FREE and view.share < 1
+    log = say.info if result.state == RangeState.FREE else say.warn
+    slowed = result.state == RangeState.FREE and result.share < 1
     log(
-        _SIGHT_SLOWED if slowed else _phrase(view, _SIGHTS, _SIGHTS_OUT_OF_RANGE),
+        _FRONT_SLOWED if slowed else _phrase(result, _FRONT, _FRONT_OUT_OF_RANGE),
         every_s=_LOG_EVERY_S,
-        metres=view.reading.distance_m,
-        seconds=view.reading.age_s,
-        percent=_percent(view.share),
+        metres=result.reading.distance_m,
+        seconds=result.reading.age_s,
+        percent=_percent(result.share),
     )
 
 
@@ -83,34 +87,41 @@ def _percent(share: float) -> int:
 
 
 def diagnosis(
-    say: Speech, verdict: Verdict, views: Sequence[View], snapshot: GateSnapshot, zone: SafetyZone
+    say: TranslatedLogger,
+    verdict: Verdict,
+    results: Sequence[SensorResult],
+    snapshot: GateSnapshot,
+    zone: SafetyZone,
 ) -> DiagnosticStatus:
     """Return the state of safety: level, a sentence, and key-values for programs.
 
     A robot that is only slowed is fine: the level shows what blocks it.
     """
-    bad = [view for view in views if view.sight != Sight.FREE]
-    blind = any(view.sight != Sight.CLOSE for view in bad)
+    bad = [result for result in results if result.state != RangeState.FREE]
+    blind = any(result.state != RangeState.CLOSE for result in bad)
     level = DiagnosticStatus.WARN if bad or snapshot.refused else DiagnosticStatus.OK
     if verdict == Verdict.EMERGENCY_STOP or blind:
         level = DiagnosticStatus.ERROR
     return DiagnosticStatus(
         level=level,
         name="safety_stop",
-        message=_sentence(say, verdict, views, snapshot),
+        message=_sentence(say, verdict, results, snapshot),
         values=[
-            KeyValue(key=key, value=value) for key, value in _values(verdict, views, snapshot, zone)
+            KeyValue(key=key, value=value)
+            for key, value in _values(verdict, results, snapshot, zone)
         ],
     )
 
 
-def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], snapshot: GateSnapshot) -> str:
-    why = ", ".join(_reason(say, view) for view in views if view.sight != Sight.FREE)
+def _sentence(
+    say: TranslatedLogger, verdict: Verdict, results: Sequence[SensorResult], snapshot: GateSnapshot
+) -> str:
+    why = ", ".join(_reason(say, result) for result in results if result.state != RangeState.FREE)
     sentence = say.text(_VERDICTS[verdict], why=why)
     if 0 < snapshot.allowed < 1:
-        view = views[-1 if snapshot.asked_m_s < 0 else 0]
+        result = results[-1 if snapshot.asked_m_s < 0 else 0]
         percent = _percent(snapshot.allowed)
-        sentence = say.text(_SLOWED, percent=percent, why=_reason(say, view))
+        sentence = say.text(_SLOWED, percent=percent, why=_reason(say, result))
     if snapshot.ignored:
         sentence += say.text(_AND_IGNORED, ignored=snapshot.ignored, source=snapshot.source)
     if snapshot.refused:
@@ -118,26 +129,28 @@ def _sentence(say: Speech, verdict: Verdict, views: Sequence[View], snapshot: Ga
     return sentence
 
 
-def _reason(say: Speech, view: View) -> str:
-    place, metres = say.text(_PLACES[view.place]), view.reading.distance_m
-    return say.text(_phrase(view, _REASONS, _REASONS_OUT_OF_RANGE), place=place, metres=metres)
+def _reason(say: TranslatedLogger, result: SensorResult) -> str:
+    place, metres = say.text(_PLACES[result.place]), result.reading.distance_m
+    return say.text(_phrase(result, _REASONS, _REASONS_OUT_OF_RANGE), place=place, metres=metres)
 
 
-def _phrase(view: View, phrases: Mapping[Sight, str], out_of_range: Mapping[Sight, str]) -> str:
-    metres = view.reading.distance_m
+def _phrase(
+    result: SensorResult, phrases: Mapping[RangeState, str], out_of_range: Mapping[RangeState, str]
+) -> str:
+    metres = result.reading.distance_m
     if metres is not None and math.isinf(metres):
-        return out_of_range.get(view.sight, phrases[view.sight])
-    return phrases[view.sight]
+        return out_of_range.get(result.state, phrases[result.state])
+    return phrases[result.state]
 
 
 def _values(
-    verdict: Verdict, views: Sequence[View], snapshot: GateSnapshot, zone: SafetyZone
+    verdict: Verdict, results: Sequence[SensorResult], snapshot: GateSnapshot, zone: SafetyZone
 ) -> Iterator[tuple[str, str]]:
     yield "verdict", verdict.value
-    for view in views:
-        metres = view.reading.distance_m
-        yield view.place, view.sight.value
-        yield f"{view.place}_m", "" if metres is None else f"{metres:.3f}"
+    for result in results:
+        metres = result.reading.distance_m
+        yield result.place, result.state.value
+        yield f"{result.place}_m", "" if metres is None else f"{metres:.3f}"
     yield "source", snapshot.source
     yield "ignored", snapshot.ignored
     yield "refused", snapshot.refused.told if snapshot.refused else ""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from robot.safety.distance import Sight
+from robot.safety.distance import RangeState
 
 if TYPE_CHECKING:
     from robot.words import DriveSetpoint
@@ -36,15 +36,15 @@ def spoken(sound: bytes) -> str:
     return text[len(CALL) :].strip() if text.casefold().startswith(CALL) else text
 
 
-def decide(order: DriveSetpoint | None, front: Sight) -> Decision:
+def decide(order: DriveSetpoint | None, front: RangeState) -> Decision:
     """Decide by the order, if there is one, and by the sonar ahead.
 
     Any request that is not a drive command is answered by looking around and driving on.
     """
     if order is not None and order.speed_m_s <= 0:
         return Decision.OBEY
-    if front == Sight.CLOSE:
+    if front == RangeState.CLOSE:
         return Decision.OBSTACLE
-    if front != Sight.FREE:
+    if front != RangeState.FREE:
         return Decision.BLIND
     return Decision.OBEY if order is not None else Decision.LOOK_AND_GO

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
-from text.i18n import N_, said
+from text.i18n import N_, localized
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class FramePhrases:
 
     def __call__(self, key: str, **values: object) -> str:
         """Return the phrase with its values."""
-        return said(say(self._phrases[key], **values), self._language)
+        return localized(say(self._phrases[key], **values), self._language)
 
 
 _NOISE = {

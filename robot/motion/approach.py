@@ -128,7 +128,7 @@ class ApproachProgress:
         self._moved_s = now_s
 
     @property
-    def wanders(self) -> bool:
+    def has_driven_too_far(self) -> bool:
         """Whether it has driven farther than any way there could be."""
         return self._left_m < 0
 

@@ -14,7 +14,7 @@ from enum import Enum
 from robot.words import STOP, DriveSetpoint
 
 
-class Sight(str, Enum):
+class RangeState(str, Enum):
     """What a distance sensor reports about the way ahead of it."""
 
     FREE = "free"
@@ -76,22 +76,22 @@ class Shares:
         return self.backward if speed_m_s < 0 else self.forward
 
 
-def look(reading: Reading, critical_m: float, stale_after_s: float) -> Sight:
+def range_state(reading: Reading, critical_m: float, stale_after_s: float) -> RangeState:
     """Judge a reading; `stale_after_s` is the longest harmless silence."""
     if reading.distance_m is None or not reading.age_s <= stale_after_s:
-        return Sight.SILENT
+        return RangeState.SILENT
     if math.isnan(reading.distance_m) or -math.inf < reading.distance_m < 0.0:
-        return Sight.INVALID
-    return Sight.CLOSE if reading.distance_m < critical_m else Sight.FREE
+        return RangeState.INVALID
+    return RangeState.CLOSE if reading.distance_m < critical_m else RangeState.FREE
 
 
 def share(reading: Reading, zone: SafetyZone) -> float:
     """Return the share of a speed towards that sensor's side that is allowed, 0 to 1.
 
-    0 where `look` finds no free way, 1 beyond the slow distance, and in between linear from 0 at
-    the critical distance.
+    0 where `range_state` finds no free way, 1 beyond the slow distance, and in between linear from
+    0 at the critical distance.
     """
-    if look(reading, zone.critical_m, zone.stale_after_s) != Sight.FREE:
+    if range_state(reading, zone.critical_m, zone.stale_after_s) != RangeState.FREE:
         return 0.0
     distance_m = reading.distance_m
     if distance_m is None or distance_m >= zone.slow_m:
@@ -99,13 +99,15 @@ def share(reading: Reading, zone: SafetyZone) -> float:
     return (distance_m - zone.critical_m) / (zone.slow_m - zone.critical_m)
 
 
-def where(front: Sight, rear: Sight | None, emergency: bool, *, starting: bool = False) -> Verdict:
+def where(
+    front: RangeState, rear: RangeState | None, emergency: bool, *, starting: bool = False
+) -> Verdict:
     """Return where the robot may not go now. `rear` is None for a robot without a sensor there."""
     if emergency:
         return Verdict.EMERGENCY_STOP
     if starting:
         return Verdict.STARTING
-    forward_bad, backward_bad = front != Sight.FREE, rear not in (None, Sight.FREE)
+    forward_bad, backward_bad = front != RangeState.FREE, rear not in (None, RangeState.FREE)
     if forward_bad and backward_bad:
         return Verdict.BLOCKED
     if forward_bad:

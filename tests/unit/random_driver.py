@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robot.kinematics import wheel_speeds
 from robot.motion.odometry import Point, Pose
-from robot.safety.distance import Reading, SafetyZone, Shares, gate, look, share, where
+from robot.safety.distance import Reading, SafetyZone, Shares, gate, range_state, share, where
 from robot.words import STOP, DriveSetpoint
 from robot.world.world import STEP_S, Wheels
 
@@ -93,8 +93,8 @@ class RandomDriver:
 
     def _gated(self, command: DriveSetpoint, zone: SafetyZone) -> DriveSetpoint:
         front, rear = (Reading(m, self.now_s - then) for m, then in self._readings)
-        ahead = look(front, zone.critical_m, zone.stale_after_s)
-        behind = look(rear, zone.critical_m, zone.stale_after_s)
+        ahead = range_state(front, zone.critical_m, zone.stale_after_s)
+        behind = range_state(rear, zone.critical_m, zone.stale_after_s)
         shares = Shares(share(front, zone), share(rear, zone))
         return gate(command, where(ahead, behind, False), shares)
 

@@ -13,7 +13,7 @@ from textual.widgets import Static
 from launcher.errors import LauncherError
 from launcher.status import NodeState, Severity
 from robot.topics import AI_COMMAND
-from text.i18n import N_, _, said
+from text.i18n import N_, _, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.actions import bindings
@@ -151,7 +151,7 @@ class LessonDeck(DeckScreen):
         try:
             await getattr(self.feed.link, what)(*names)
         except LauncherError as error:
-            self.notify(plain(said(reason_of(error))), severity="error", markup=False)
+            self.notify(plain(localized(reason_of(error))), severity="error", markup=False)
 
     @property
     def log_filter(self) -> LogFilter:
@@ -291,7 +291,7 @@ class LessonDeck(DeckScreen):
     async def on_graph_changed(self, message: GraphChanged) -> None:
         """Update the panels; if ROS fails, say so in their place."""
         if message.update.error:
-            self.notify(said(message.update.error), severity="error", markup=False)
+            self.notify(localized(message.update.error), severity="error", markup=False)
             return
         if self.feed.watching:
             self.set_class(self.driven, "-driven")

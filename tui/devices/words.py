@@ -9,7 +9,7 @@ from rich.cells import cell_len
 
 from robot.topics import DIAGNOSTICS
 from text.figures import elapsed
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.plain import plain
 from tui.devices.reading import STALE_S, Device
 from tui.devices.table import grouped, state
@@ -83,7 +83,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
     if feed.session is None:
         return [_("no lesson is running")]
     if update is not None and update.error:
-        return [feed.blind, plain(said(update.error))]
+        return [feed.blind, plain(localized(update.error))]
     row = next((row for row in update.topics if row.name == DIAGNOSTICS), None) if update else None
     if row is not None and row.publishers:
         said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))

@@ -63,7 +63,7 @@ class Gate:
 
     verdict: str = ""
     """`free`, or one of `HELD`."""
-    sights: Mapping[str, str] = field(default_factory=dict)
+    states: Mapping[str, str] = field(default_factory=dict)
     """`front` and `rear` to `free`, `close`, `invalid` or `silent`; only for existing sensors."""
     metres: Mapping[str, float] = field(default_factory=dict)
     """`front` and `rear` to the newest distance, if there is one."""
@@ -129,7 +129,9 @@ def held_words(gate: Gate) -> str:
     why = ""
     if gate.verdict in EXPLAINED:
         why = ", ".join(
-            _sight(gate, place, sight) for place, sight in gate.sights.items() if sight != "free"
+            _sensor_words(gate, place, state)
+            for place, state in gate.states.items()
+            if state != "free"
         )
     return _(HELD[gate.verdict]) + (f": {why}" if why else "")
 
@@ -148,8 +150,8 @@ def refused_words(gate: Gate) -> str:
 def gate_words(gate: Gate) -> str:
     """Say what is held or slowed and why, otherwise the distances, and which sources are obeyed."""
     parts = [held_words(gate), refused_words(gate)]
-    sights = (_sight(gate, place, sight) for place, sight in gate.sights.items())
-    far = ", ".join(filter(None, sights))
+    states = (_sensor_words(gate, place, state) for place, state in gate.states.items())
+    far = ", ".join(filter(None, states))
     if gate.is_slowed:
         slowed = _("slowed to {percent} %").format(percent=round(100 * gate.share))
         parts.append(f"{slowed}: {far}" if not gate.is_held else slowed)
@@ -164,13 +166,13 @@ def gate_words(gate: Gate) -> str:
     return plain(" · ".join(filter(None, parts)), 400)
 
 
-def _sight(gate: Gate, place: str, sight: str) -> str:
+def _sensor_words(gate: Gate, place: str, state: str) -> str:
     metres = gate.metres.get(place)
-    if sight == "free" and metres is None:
+    if state == "free" and metres is None:
         return ""
-    if metres is not None and math.isinf(metres) and sight in ("free", "close"):
-        return _((NOTHING_NEAR if sight == "free" else TOO_CLOSE)[place])
-    words = PLACES[place].get(sight, "{metres}")
+    if metres is not None and math.isinf(metres) and state in ("free", "close"):
+        return _((NOTHING_NEAR if state == "free" else TOO_CLOSE)[place])
+    words = PLACES[place].get(state, "{metres}")
     return _(words).format(metres="?" if metres is None else figure(metres))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from text.i18n import _, ngettext, pick, said
+from text.i18n import _, localized, ngettext, pick
 from text.plain import plain
 from tui.emergency.state import held_reason
 from tui.emergency.words import stop_words
@@ -70,7 +70,7 @@ def states(app: Host) -> Sequence[str]:
     session = app.feed.session
     if session is None:
         if app.feed.ended:
-            return (said(app.feed.ended), _("ended"))
+            return (localized(app.feed.ended), _("ended"))
         opening = app.sessions.opening
         return (_("opening {name}…").format(name=plain(opening)),) if opening else ()
     if app.emergency.state.engaged:

@@ -9,7 +9,7 @@ from textual.content import Content
 
 from graph.data import Goal, GoalStatus, SeenGoal
 from text.figures import figure
-from text.i18n import N_, _, ngettext, said
+from text.i18n import N_, _, localized, ngettext
 from text.plain import plain
 from text.sentences import reason_of
 from tui.actions import Action, bindings
@@ -121,7 +121,7 @@ class ActionPane(AskPane):
         if isinstance(goal, SeenGoal):
             state = f"{state} · " + _("of another client")
         if goal.error:
-            return state, name, (_(STATES[goal.status][1]), plain(said(goal.error), LONGEST))
+            return state, name, (_(STATES[goal.status][1]), plain(localized(goal.error), LONGEST))
         if isinstance(goal, Goal) and goal.result is not None:
             return f"{state} · " + _("result"), f"{name} result", goal.result
         if goal.feedback is not None:
@@ -140,7 +140,7 @@ class ActionPane(AskPane):
         try:
             number = await asyncio.wrap_future(future)
         except Exception as error:  # noqa: BLE001 - any failure is reported
-            self.warn(_("Not sent: {reason}").format(reason=said(reason_of(error))))
+            self.warn(_("Not sent: {reason}").format(reason=localized(reason_of(error))))
             return
         self._sent_newest = number
         self.redraw()
@@ -218,7 +218,7 @@ def _other_row(goal: SeenGoal) -> Row:
 def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
     told = ngettext("{n} feedback", "{n} feedbacks", goal.feedbacks).format(n=goal.feedbacks)
     if goal.error:
-        told = plain(said(goal.error), LONGEST)
+        told = plain(localized(goal.error), LONGEST)
     age = "" if age_s is None else _("{n} s").format(n=figure(age_s, 1))
     cells = (
         Cell(_name(goal)),

@@ -6,7 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.housekeeping import is_housekeeping
-from text.i18n import _, said
+from text.i18n import _, localized
 from tui.graph.places import LISTED, GraphKind
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def why_empty(
     if update is None:
         return _("reading the graph"), _("Nodes are starting.")
     if update.error:
-        return feed.blind, said(update.error)
+        return feed.blind, localized(update.error)
     if any(not entry.housekeeping for entry in listed):
         return _("nothing fits the filter"), _("Escape in the filter shows all again.")
     if listed:

@@ -14,7 +14,7 @@ from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
-from text.i18n import _, ngettext, said
+from text.i18n import _, localized, ngettext
 from text.os_words import os_reason
 from text.plain import plain
 from tui.dialogs.dialog import Dialog
@@ -166,10 +166,10 @@ async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value
     if table.is_mounted and node == table.node:
         table.read(node)
     if result.error:
-        return said(result.error)
-    reasons = [f"{name}: {said(why)}" for name, why in result.refused.items()]
+        return localized(result.error)
+    reasons = [f"{name}: {localized(why)}" for name, why in result.refused.items()]
     if len(values) == 1:
-        reasons = [said(why) for why in result.refused.values()]
+        reasons = [localized(why) for why in result.refused.values()]
     more = len(reasons) - SHOWN
     return "; ".join(reasons[:SHOWN]) + (_(" and {n} more").format(n=more) if more > 0 else "")
 
@@ -204,7 +204,7 @@ async def _load(app: App[Any], table: GraphParameters, path: str) -> str:
     except OSError as error:
         return _not_opened(path, error)
     except YamlError as error:
-        return f"{path}:{error.line}:{error.column}: {said(error.message)}"
+        return f"{path}:{error.line}:{error.column}: {localized(error.message)}"
     if not values:
         return _("{path} has no parameters for {node}").format(path=path, node=table.node)
     # Read-only parameters are in the file because they were saved with the others.
@@ -223,4 +223,4 @@ def _full(path: str) -> Path:
 
 
 def _not_opened(path: str, error: OSError) -> str:
-    return f"{path}: {said(os_reason(error))}"
+    return f"{path}: {localized(os_reason(error))}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.containers import Vertical
 from textual.widgets import Static
 
-from text.i18n import _, ngettext, said
+from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui import clock
 from tui.frame.host import host_of
@@ -179,7 +179,9 @@ class GraphParameters(Vertical, Working):
                 return _("no lesson is running"), ""
             return _("the node is being asked"), _("A node that hangs answers nothing.")
         if self._result.error:
-            return _("its parameters could not be read"), plain(said(self._result.error), LONGEST)
+            return _("its parameters could not be read"), plain(
+                localized(self._result.error), LONGEST
+            )
         return ("", "") if self.rows else (_("this node has no parameters"), "")
 
 

@@ -14,7 +14,7 @@ from textual.widgets import Input, Static
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import CallResult
 from text.figures import figure
-from text.i18n import N_, _, decimal, said
+from text.i18n import N_, _, decimal, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.clock import time_of_day
@@ -205,7 +205,7 @@ class ServicePane(AskPane):
             return self._waiting(call, name)
         if call.result.ok and call.result.response is not None:
             return _answer_title(call, call.result), name, call.result.response
-        words = plain(said(call.result.error), LONGEST)
+        words = plain(localized(call.result.error), LONGEST)
         if call.result.late is not None:
             title = _("No answer within {n} s").format(n=decimal(f"{call.timeout_s:g}"))
             listens = _("A late answer will be shown here; choose a longer time below the form.")
@@ -314,7 +314,7 @@ def _summary(call: ServiceCall) -> str:
     if result is None:
         return asked
     if not result.ok or result.response is None:
-        return f"{asked} → {plain(said(result.error), LONGEST)}"
+        return f"{asked} → {plain(localized(result.error), LONGEST)}"
     return f"{asked} → {_flat(result.response)}"
 
 

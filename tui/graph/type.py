@@ -12,7 +12,7 @@ from textual.widgets import Tree
 
 from graph.messages.browse import Constant, Definition, MessageField, definition
 from graph.messages.types import UnknownTypeError
-from text.i18n import N_, _, said
+from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.graph.index import users_of
 from tui.graph.links import GraphLinks, heading, link
@@ -124,7 +124,7 @@ class GraphTypeTree(Tree["str | None"], Working):
             # The first use of a package imports it, which takes time.
             found = await asyncio.to_thread(definition, type_name)
         except UnknownTypeError as error:
-            node.add_leaf(Text(plain(said(error.reason), LONGEST), "italic"))
+            node.add_leaf(Text(plain(localized(error.reason), LONGEST), "italic"))
             return
         for part in found.parts:
             _fill(node, part.fields, part.constants)
@@ -225,7 +225,7 @@ class TypePane(GraphPane):
         words.display = bool(self._failure)
         self.fields.display = not self._failure
         if self._failure:
-            words.show(_("this type cannot be inspected"), said(self._failure))
+            words.show(_("this type cannot be inspected"), localized(self._failure))
 
     def relabel(self) -> None:
         """Redraw in the current language."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual.content import Content
 
-from text.i18n import N_, _, said
+from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.actions import Action, bindings
 from tui.dialogs.dialog import Dialog
@@ -106,7 +106,7 @@ class DomainTakenScreen(Dialog[DomainAnswer]):
             means = _("Both have nodes of the same name, or both drive: one domain is not enough.")
         lines = [
             Content(_("Running there already:")),
-            *(Content.styled(plain(said(one), 300), "bold") for one in taken.sessions),
+            *(Content.styled(plain(localized(one), 300), "bold") for one in taken.sessions),
             Content(""),
             Content(means),
             Content(

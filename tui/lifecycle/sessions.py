@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from launcher.errors import DomainTakenError, LauncherError
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.session.messages import LessonOpened
@@ -101,7 +101,7 @@ class Sessions:
     async def ended(self, reason: str) -> None:
         """Say why the session on the screen has ended, unless it was stopped from here."""
         if self._stopping is None:
-            words = plain(said(reason), 300)
+            words = plain(localized(reason), 300)
             self._app.notify(words, severity="warning", timeout=30, markup=False)
         await self.let_go(reason)
 
@@ -171,7 +171,7 @@ class Sessions:
             self._warn(words)
 
     def _warn(self, words: str) -> None:
-        self._app.notify(plain(said(words), 600), severity="warning", timeout=20, markup=False)
+        self._app.notify(plain(localized(words), 600), severity="warning", timeout=20, markup=False)
 
     async def _refuse(self, error: LauncherError) -> None:
         """Say why nothing was opened: in the picker, or by exiting."""
@@ -296,12 +296,12 @@ def words_of(error: LauncherError) -> str:
     """Return an error in the current language, one line for each problem of a profile."""
     problems: Sequence[Any] = getattr(error, "problems", ())
     if not problems:
-        return said(reason_of(error))
+        return localized(reason_of(error))
     lines = []
     for problem in problems:
         field = f"{problem.field}: " if problem.field else ""
-        hint = f" ({said(problem.hint)})" if problem.hint else ""
-        lines.append(f"{problem.where}: {field}{said(problem.message)}{hint}")
+        hint = f" ({localized(problem.hint)})" if problem.hint else ""
+        lines.append(f"{problem.where}: {field}{localized(problem.message)}{hint}")
     return "\n".join(lines)
 
 

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from launcher.status import LogLine, Severity
-from text.i18n import said
+from text.i18n import localized
 from text.plain import plain
 
 LONGEST_TEXT = 16_384
@@ -69,7 +69,7 @@ class LineRing:
             self._last_seq[node] = seq
             rank = line.severity.rank
             self.counts.setdefault(node, [0] * len(Severity))[rank] += 1
-            text = line.text if line.source != "deck" else said(line.text)
+            text = line.text if line.source != "deck" else localized(line.text)
             self._add(node, line.time_s, rank, text)
         for node, count in skipped.items():
             missing = count - seen[node]

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from datetime import datetime, timezone
 from pathlib import Path
 
-from text.i18n import N_, _, said
+from text.i18n import N_, _, localized
 from text.os_words import os_reason
 
 
@@ -57,4 +57,4 @@ def reason(error: OSError | ValueError) -> str:
     if not isinstance(error, OSError):
         return str(error)
     known = _REASONS.get(error.errno or 0)
-    return _(known) if known else said(os_reason(error))
+    return _(known) if known else localized(os_reason(error))

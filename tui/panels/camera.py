@@ -9,7 +9,7 @@ from graph.pictures.images import to_rgb
 from graph.pictures.pixels import ImageError
 from robot.topics import CAMERA
 from text.figures import whole
-from text.i18n import N_, _, said
+from text.i18n import N_, _, localized
 from tui.panels.other_type import other_type
 from tui.panels.panel import Panel, newest, row_of, trouble_of
 from tui.widgets.image_view import ImageView
@@ -69,7 +69,7 @@ class CameraPanel(Panel):
         try:
             picture = to_rgb(sample.value)
         except ImageError as error:
-            self._refuse(view, _("this picture cannot be shown"), said(error.words))
+            self._refuse(view, _("this picture cannot be shown"), localized(error.words))
             return
         self._refused = False
         row = row_of(update, CAMERA)

@@ -12,7 +12,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from launcher.errors import LauncherError
-from text.i18n import N_, _, ngettext, pick, said
+from text.i18n import N_, _, localized, ngettext, pick
 from text.plain import plain
 from tui.actions import Acting, Action, bindings
 from tui.frame.host import Host, host_of
@@ -286,7 +286,7 @@ def _about_lesson(lesson: Lesson) -> Content:
     lines = [Content.styled(_title(lesson.name, lesson.title), "bold $accent"), Content("")]
     if lesson.error:
         lines.append(Content.styled(_("✗ cannot be started"), "bold $text-error"))
-        lines += [Content(plain(line)) for line in said(lesson.error).splitlines()]
+        lines += [Content(plain(line)) for line in localized(lesson.error).splitlines()]
         return Content("\n").join(lines)
     about = pick(lesson.about)
     if about:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.plain import plain
 from tui.recording.words import (
     complaints,
@@ -93,10 +93,10 @@ class Recording:
             try:
                 recorder = await asyncio.to_thread(_started, session, images)
             except BagError as error:
-                self._complain(said(error.words))
+                self._complain(localized(error.words))
                 return
             except LauncherError as error:
-                self._complain(said(error.args[0]))
+                self._complain(localized(error.args[0]))
                 return
             self._recorder = recorder
             self._slow_told = self._low_told = False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from text.i18n import _, decimal, ngettext, said
+from text.i18n import _, decimal, localized, ngettext
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def progress(status: RecordingStatus) -> str:
 
 def complaints(status: RecordingStatus) -> Sequence[str]:
     """Return what is wrong with a recording, one sentence each; empty if all is well."""
-    found = [plain(said(status.error), LONGEST)] if status.error else []
+    found = [plain(localized(status.error), LONGEST)] if status.error else []
     if status.dropped:
         words = ngettext(
             "{n} message is missing because the disk was too slow or full",

@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING
 
 from launcher.processes.owner import who_words
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def started_words(session: SessionInfo) -> str:
     """Say who has started a session, where and when."""
-    who = plain(said(who_words(session.started_by)), 200)
+    who = plain(localized(who_words(session.started_by)), 200)
     since = time.strftime("%H:%M", time.localtime(session.since_s))
     if session.foreground:
         return _("On another screen: {who}, since {since}").format(who=who, since=since)

@@ -10,7 +10,7 @@ from textual.message import Message
 from textual.widgets import Input, Static
 
 from graph.messages.condition import LONGEST, ConditionError, MessageFilter
-from text.i18n import _, ngettext, said
+from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.field import Field
 
@@ -163,7 +163,7 @@ class EchoFilter(Horizontal):
         parts = [] if self._condition is None else [self._counts()]
         if self._error is not None:
             times = f" (×{self._failed})" if self._failed else ""
-            parts.append("✗ " + plain(said(self._error.words), LONGEST_WORDS) + times)
+            parts.append("✗ " + plain(localized(self._error.words), LONGEST_WORDS) + times)
         words = " · ".join(parts)
         self.set_class(self._error is not None, "-wrong")
         told = self.query_one(".filter-told", Static)

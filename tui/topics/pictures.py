@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from graph.pictures.picture import COMPRESSED, IMAGE, Picture, ramp_colours
 from graph.pictures.pixels import ImageError, UnknownEncodingError
 from graph.pictures.reading import read_picture
-from text.i18n import _, decimal, said
+from text.i18n import _, decimal, localized
 from text.plain import plain
 from tui.topics.table.columns import hz_text
 from tui.widgets.image_view import ImageScale
@@ -98,4 +98,4 @@ class TopicPictures:
             encoding = str(sample.value.get("encoding"))
             words = _("pictures of the encoding {encoding} cannot be shown")
             headline = words.format(encoding=plain(encoding, LONGEST))
-        self._detail.show_no_picture(headline, said(error.words))
+        self._detail.show_no_picture(headline, localized(error.words))

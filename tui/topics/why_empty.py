@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_housekeeping
-from text.i18n import _, said
+from text.i18n import _, localized
 from tui.frame import title
 from tui.topics.actions import ShowHousekeeping
 
@@ -22,7 +22,7 @@ def why_empty(deck: Host, listed: Sequence[TopicRow]) -> tuple[str, str]:
     if feed.link is None:
         return _("no lesson is running"), ""
     if feed.update is not None and feed.update.error:
-        return feed.blind, said(feed.update.error)
+        return feed.blind, localized(feed.update.error)
     if title.starting(deck):
         return _("no topics yet"), _("Nodes are starting.")
     if feed.update is None or not all(is_housekeeping(row.name) for row in listed):

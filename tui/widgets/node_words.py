@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from launcher.status import NodeState
 from text.figures import figure, whole
-from text.i18n import N_, _, said
+from text.i18n import N_, _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def state_words(node: NodeStatus) -> tuple[str, str, str]:
 def why(node: NodeStatus) -> str:
     """Return why the node is in its state, or what it runs if there is no reason."""
     if node.detail:
-        return plain(said(node.detail))
+        return plain(localized(node.detail))
     if node.signal:
         return _("ended by {signal}").format(signal=node.signal)
     if node.exit_code is not None and not node.state.alive:

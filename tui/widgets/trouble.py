@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from graph.data import Trouble
 from text.figures import elapsed
-from text.i18n import N_, _, said
+from text.i18n import N_, _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
         from tui.widgets.qos_words import misfit_words
 
         return misfit_words(facts)
-    return said(row.detail)
+    return localized(row.detail)
 
 
 def _how_to_install(facts: Mapping[str, str]) -> str:

@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
-from text.i18n import _, said
+from text.i18n import _, localized
 from text.plain import plain
 from text.sentences import reason_of
 from text.yaml_faults import YamlError
@@ -30,11 +30,11 @@ def wrong_words(error: Wrong) -> str:
     line = "" if place is None else _("line {line}").format(line=place.line)
     field = error.field if isinstance(error, FieldError) else ""
     message = error.reason if isinstance(error, UnknownTypeError) else error.message
-    return plain(": ".join(part for part in (line, field, said(message)) if part), LONGEST)
+    return plain(": ".join(part for part in (line, field, localized(message)) if part), LONGEST)
 
 
 def reason_words(error: Exception) -> str:
     """Return why something was not sent, for any exception."""
     if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
         return wrong_words(error)
-    return plain(said(reason_of(error)), LONGEST)
+    return plain(localized(reason_of(error)), LONGEST)

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from nodes.drivers.chassis_words import Standing
-from nodes.parts import speech as _speech
-from nodes.parts.speech import Speech
+from nodes.drivers.chassis_words import StandstillLogger
+from nodes.parts import translated_logger as _translated_logger
+from nodes.parts.translated_logger import TranslatedLogger
 from robot.wire.pico import Telemetry
 from tests.ros.nodes.test_serial_link import Log
 
@@ -20,15 +20,15 @@ def telemetry(flags: str, refused: int = 0) -> Telemetry:
 
 def test_why_the_wheels_stand_is_told_again_while_it_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
     clock: Any = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
-    monkeypatch.setattr(_speech, "time", clock)
+    monkeypatch.setattr(_translated_logger, "time", clock)
     log = Log()
-    standing = Standing(Speech(log, "en"))  # type: ignore[arg-type]
+    standstill = StandstillLogger(TranslatedLogger(log, "en"))  # type: ignore[arg-type]
 
     def told(flags: str | None, seconds: float) -> list[str]:
         """What is logged of these flags in so many seconds."""
         log.lines.clear()
         for _ in range(round(seconds / 0.5)):
-            standing.tell(None if flags is None else telemetry(flags))
+            standstill.tell(None if flags is None else telemetry(flags))
             clock.now_s += 0.5
         return list(log.lines)
 
@@ -44,15 +44,15 @@ def test_why_the_wheels_stand_is_told_again_while_it_lasts(monkeypatch: pytest.M
 
 def test_what_the_pico_refuses_is_told_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     clock: Any = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
-    monkeypatch.setattr(_speech, "time", clock)
+    monkeypatch.setattr(_translated_logger, "time", clock)
     log = Log()
-    standing = Standing(Speech(log, "en"))  # type: ignore[arg-type]
+    standstill = StandstillLogger(TranslatedLogger(log, "en"))  # type: ignore[arg-type]
 
     def told(*counts: int | None) -> list[str]:
         """How many lines are told of, when these counts come one after the other in 10 s."""
         log.lines.clear()
         for count in counts:
-            standing.tell(None if count is None else telemetry("", count))
+            standstill.tell(None if count is None else telemetry("", count))
             clock.now_s += 10 / len(counts)
         return [line.partition(" lines")[0].rpartition(" ")[2] for line in log.lines]
 

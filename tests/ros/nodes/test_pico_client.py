@@ -9,7 +9,7 @@ import pytest
 
 from nodes.drivers import pico as _pico_client
 from nodes.drivers.pico import SILENT_AFTER_S, PicoClient
-from nodes.parts.speech import Speech
+from nodes.parts.translated_logger import TranslatedLogger
 from robot.wire.pico import Telemetry, encode
 from tests.ros.nodes.test_serial_link import Log
 
@@ -45,7 +45,7 @@ def test_a_port_that_has_just_opened_is_not_silent_yet(monkeypatch: pytest.Monke
     clock: Any = SimpleNamespace(now_s=1000.0, monotonic=lambda: clock.now_s)
     monkeypatch.setattr(_pico_client, "time", clock)
     monkeypatch.setattr(_pico_client, "SerialLink", Link)
-    node: Any = SimpleNamespace(say=Speech(Log(), "en"))  # type: ignore[arg-type]
+    node: Any = SimpleNamespace(say=TranslatedLogger(Log(), "en"))  # type: ignore[arg-type]
     client = PicoClient(node, 115_200, lambda _telemetry: None)
     link: Any = client.link
 

@@ -11,11 +11,11 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Bool, Float32
 
-from nodes.parts.speech import Speech
+from nodes.parts.translated_logger import TranslatedLogger
 from nodes.safety.distance_sensors import DistanceSensor
 from nodes.safety.snapshot import GateSnapshot
 from nodes.safety.words import diagnosis, tell_front
-from robot.safety.distance import SafetyZone, Sight, Verdict
+from robot.safety.distance import RangeState, SafetyZone, Verdict
 from tests.ros.gate import FRONT, REAR, Gate, drive, values
 from tests.ros.node_process import NodeProcess
 from tests.ros.nodes.test_serial_link import Log
@@ -194,16 +194,16 @@ def test_what_is_out_of_range_is_told_in_words(
     lang: str, metres: float, logged: str, told: str
 ) -> None:
     log = Log()
-    say = Speech(log, lang)  # type: ignore[arg-type]
-    eye = DistanceSensor("front")
-    eye.see(metres)
+    say = TranslatedLogger(log, lang)  # type: ignore[arg-type]
+    sensor = DistanceSensor("front")
+    sensor.see(metres)
     zone = SafetyZone(0.5, 1.0, 60.0)
-    view = eye.view(zone)
-    tell_front(say, view)
+    result = sensor.result(zone)
+    tell_front(say, result)
     assert log.lines[-1].endswith(logged)
     verdict = Verdict.FREE if metres > 0 else Verdict.BLOCKED_FORWARD
-    assert diagnosis(say, verdict, [view], GateSnapshot(), zone).message.endswith(told)
-    slowed = diagnosis(say, Verdict.FREE, [view], GateSnapshot(allowed=0.5), zone).message
+    assert diagnosis(say, verdict, [result], GateSnapshot(), zone).message.endswith(told)
+    slowed = diagnosis(say, Verdict.FREE, [result], GateSnapshot(allowed=0.5), zone).message
     assert "inf" not in slowed
 
 
@@ -222,17 +222,19 @@ def test_a_way_on_which_it_is_slowed_is_not_called_free(
     lang: str, metres: float, logged: str
 ) -> None:
     log = Log()
-    eye = DistanceSensor("front")
-    eye.see(metres)
-    tell_front(Speech(log, lang), eye.view(SafetyZone(0.5, 1.0, 60.0)))  # type: ignore[arg-type]
+    sensor = DistanceSensor("front")
+    sensor.see(metres)
+    tell_front(TranslatedLogger(log, lang), sensor.result(SafetyZone(0.5, 1.0, 60.0)))  # type: ignore[arg-type]
     assert log.lines[-1].endswith(logged)
 
 
-@pytest.mark.parametrize(("slow_m", "sight"), [(1.0, Sight.CLOSE), (0.0, Sight.FREE)])
-def test_where_slowing_has_come_to_nothing_the_way_is_not_free(slow_m: float, sight: Sight) -> None:
-    eye = DistanceSensor("front")
-    eye.see(0.5)
-    assert eye.view(SafetyZone(0.5, slow_m, 60.0)).sight == sight
+@pytest.mark.parametrize(("slow_m", "state"), [(1.0, RangeState.CLOSE), (0.0, RangeState.FREE)])
+def test_where_slowing_has_come_to_nothing_the_way_is_not_free(
+    slow_m: float, state: RangeState
+) -> None:
+    sensor = DistanceSensor("front")
+    sensor.see(0.5)
+    assert sensor.result(SafetyZone(0.5, slow_m, 60.0)).state == state
 
 
 # ---------------------------------------------------------------- the sonar

@@ -11,7 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from nodes.drivers.serial_frames import SerialFrames
-from nodes.parts.speech import Speech
+from nodes.parts.translated_logger import TranslatedLogger
 from robot.frames.lines import decode
 from robot.frames.protocols import FrameKind, RawReader
 from tests.ros.devices import mock_robot, set_parameter
@@ -106,7 +106,7 @@ class Fake:
     """A node with one publisher and one timer, both driven by the test."""
 
     def __init__(self) -> None:
-        self.say: Any = Speech(SimpleNamespace(), "en")  # type: ignore[arg-type]
+        self.say: Any = TranslatedLogger(SimpleNamespace(), "en")  # type: ignore[arg-type]
         self.listeners = 0
         self.published: list[String] = []
         self.look: Any = None

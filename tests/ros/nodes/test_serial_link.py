@@ -10,7 +10,7 @@ import pytest
 import serial
 
 from nodes.drivers.serial_link import SerialLink
-from nodes.parts.speech import Speech
+from nodes.parts.translated_logger import TranslatedLogger
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class Log:
 @pytest.fixture(params=["en", "ru"])
 def link(request: pytest.FixtureRequest) -> Iterator[tuple[SerialLink, Log]]:
     log = Log()
-    said: Any = Speech(log, request.param)  # type: ignore[arg-type]
+    said: Any = TranslatedLogger(log, request.param)  # type: ignore[arg-type]
     node: Any = SimpleNamespace(
         say=said,
         text=lambda _name: "/dev/ttyACM0",

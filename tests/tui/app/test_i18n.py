@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.unit.scripts_of_setup import load
-from text.i18n import _, detect, language, ngettext, pick, said, set_language
+from text.i18n import _, detect, language, localized, ngettext, pick, set_language
 from text.sentences import say
 
 catalogues = load("catalogues")
@@ -46,10 +46,10 @@ def test_the_language_can_be_switched_while_running() -> None:
 
 def test_russian_counts_by_its_own_rules() -> None:
     set_language("ru")
-    said = [
+    forms = [
         ngettext("Starts {n} node", "Starts {n} nodes", n).format(n=n) for n in (1, 2, 5, 11, 21)
     ]
-    assert said == [
+    assert forms == [
         "Запускает 1 узел",
         "Запускает 2 узла",
         "Запускает 5 узлов",
@@ -65,10 +65,10 @@ def test_an_unknown_language_is_refused_by_name() -> None:
 
 def test_a_sentence_of_the_launcher_is_translated_where_it_is_shown() -> None:
     words = say("domain {domain}", domain=42)
-    assert said(words) == "domain 42"
+    assert localized(words) == "domain 42"
     set_language("ru")
-    assert said(words) == "домен 42"
-    assert said("a plain text") == "a plain text"
+    assert localized(words) == "домен 42"
+    assert localized("a plain text") == "a plain text"
 
 
 def test_a_title_is_picked_in_the_language_spoken_else_in_english_else_in_any() -> None:
@@ -90,10 +90,10 @@ def test_the_compiled_catalogue_says_what_the_edited_one_says() -> None:
         if not entry.id:
             continue
         if entry.pluralizable:
-            said = tuple(
+            forms = tuple(
                 compiled.ngettext(entry.id[0], entry.id[1], number) for number in (1, 2, 5)
             )
-            assert said == tuple(entry.string)
+            assert forms == tuple(entry.string)
         else:
             assert compiled.gettext(entry.id) == entry.string
 

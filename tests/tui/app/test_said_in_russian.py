@@ -16,7 +16,7 @@ from graph.pictures.pixels import ImageError
 from graph.replay.replay import refused
 from tests.tui.app_runs import opened
 from tests.tui.recorded import lesson_update, topic
-from text.i18n import said, set_language
+from text.i18n import localized, set_language
 from tui.deck.screen import LessonDeck
 from tui.graph.parameter_dialog import ParameterDialog
 from tui.graph.parameter_words import allowed_words
@@ -63,14 +63,14 @@ async def test_a_command_that_a_recording_refuses_is_told_in_russian() -> None:
 def test_a_type_that_is_not_there(name: str) -> None:
     with pytest.raises(UnknownTypeError) as found:
         load_message(name)
-    assert not latin(said(found.value.reason))
+    assert not latin(localized(found.value.reason))
     assert not latin(reason_words(found.value))
 
 
 def test_a_picture_that_cannot_be_shown() -> None:
     with pytest.raises(ImageError) as found:
         to_rgb({"width": 0, "height": 1, "step": 0, "encoding": "rgb8", "data": b""})
-    assert said(found.value.words) == "изображение пустое: 0 × 1"
+    assert localized(found.value.words) == "изображение пустое: 0 × 1"
 
 
 def test_peers_that_disagree_about_a_type() -> None:

@@ -13,7 +13,7 @@ from mcap.reader import make_reader
 from graph.bag.errors import BagError, unreadable
 from graph.bag.reading import open_bag
 from tests.unit.bags import write_bag
-from text.i18n import said, set_language
+from text.i18n import localized, set_language
 
 
 @pytest.fixture(scope="module")
@@ -53,9 +53,9 @@ def test_a_folder_without_metadata_is_opened_by_its_file(tmp_path: Path) -> None
 
 
 def test_what_is_not_there_is_no_bag(tmp_path: Path) -> None:
-    said = said_of(tmp_path / "nothing")
-    assert "nothing is not a bag: there is no such file or folder" in said
-    assert "metadata.yaml" in said
+    words = said_of(tmp_path / "nothing")
+    assert "nothing is not a bag: there is no such file or folder" in words
+    assert "metadata.yaml" in words
 
 
 def test_an_empty_folder_and_another_file_are_no_bags(tmp_path: Path) -> None:
@@ -80,8 +80,8 @@ def test_a_link_to_itself_and_an_endless_name_are_told(tmp_path: Path) -> None:
 
 
 def test_a_reason_that_is_a_sentence_brings_no_second_dot() -> None:
-    said = str(unreadable(Path("walk"), ValueError("File magic is invalid.")))
-    assert "invalid. Is it whole?" in said
+    words = str(unreadable(Path("walk"), ValueError("File magic is invalid.")))
+    assert "invalid. Is it whole?" in words
 
 
 @pytest.mark.parametrize("name", ["fake.mcap", "fake.db3"])
@@ -111,7 +111,7 @@ def test_what_is_wrong_with_a_file_is_told_in_russian_alone(tmp_path: Path) -> N
         open_bag(bag)
     set_language("ru")
     try:
-        said_in_russian = said(told.value.words)
+        said_in_russian = localized(told.value.words)
     finally:
         set_language("en")
     assert (
@@ -125,7 +125,7 @@ def test_what_the_system_says_of_a_file_is_told_in_russian_too() -> None:
     assert "Input/output error. Is it whole?" in words
     set_language("ru")
     try:
-        assert "ошибка ввода-вывода. Возможно" in said(words)
+        assert "ошибка ввода-вывода. Возможно" in localized(words)
     finally:
         set_language("en")
 
@@ -133,9 +133,9 @@ def test_what_the_system_says_of_a_file_is_told_in_russian_too() -> None:
 def test_an_unknown_storage_is_named(tmp_path: Path) -> None:
     path = write_bag(tmp_path / "walk") / "metadata.yaml"
     path.write_text(path.read_text().replace("storage_identifier: mcap", "storage_identifier: x9"))
-    said = said_of(tmp_path / "walk")
-    assert "storage 'x9' is not known" in said
-    assert "ros2 bag convert" in said
+    words = said_of(tmp_path / "walk")
+    assert "storage 'x9' is not known" in words
+    assert "ros2 bag convert" in words
 
 
 def test_broken_metadata_are_named(tmp_path: Path) -> None:

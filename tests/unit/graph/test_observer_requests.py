@@ -12,7 +12,7 @@ from graph.observer.node import ObserverNode
 from graph.observer.observer import Observer
 from graph.observer.requests import ObserverError
 from graph.publishing.dead_man_switch import HeldCommand
-from text.i18n import said
+from text.i18n import localized
 from text.sentences import say
 
 BOOL, STOP = "std_msgs/msg/Bool", {"data": True}
@@ -116,4 +116,4 @@ def test_why_ros_cannot_be_used_is_told_so_that_it_can_be_translated() -> None:
         observer.call("/service", "std_srvs/srv/Empty", {}).result(0).error,
     )
     for reason in reasons:
-        assert said(reason, "ru") == "ROS не работает: no rclpy"
+        assert localized(reason, "ru") == "ROS не работает: no rclpy"

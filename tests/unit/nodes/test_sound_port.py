@@ -13,7 +13,7 @@ from nodes.drivers import sound_port as _sound_port
 from nodes.drivers.portaudio import IN, OUT, choose
 from nodes.drivers.sound_port import SoundPort
 from nodes.drivers.sound_queue import SoundQueue
-from nodes.parts.speech import Speech
+from nodes.parts.translated_logger import TranslatedLogger
 from tests.waiting import wait_until
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def begin(
         path.write_text(BEGINNING + program, encoding="utf-8")
         monkeypatch.setattr(_sound_child, "PROGRAM", path)
         log = Log()
-        say = Speech(log, "en")  # type: ignore[arg-type]
+        say = TranslatedLogger(log, "en")  # type: ignore[arg-type]
         ports.append(SoundPort(say, way, "", RATE_HZ, 100, **more))
         ports[-1].start()
         return ports[-1], log
@@ -227,7 +227,7 @@ def test_sound_for_a_speaker_that_is_not_there_is_not_kept(
 def test_none_is_no_device(begin: Callable[..., tuple[SoundPort, Log]]) -> None:
     port, log = begin("sys.exit(1)", OUT)
     port.close()
-    off = SoundPort(Speech(log, "en"), OUT, "None", RATE_HZ, 100)  # type: ignore[arg-type]
+    off = SoundPort(TranslatedLogger(log, "en"), OUT, "None", RATE_HZ, 100)  # type: ignore[arg-type]
     off.start()
     assert not off.wants
     assert not off._thread.is_alive()

@@ -121,11 +121,11 @@ def test_a_robot_that_creeps_or_turns_does_not_stand() -> None:
     assert stands(progress, Pose(0.05, 0.0, 0.1), 8.9)
 
 
-def test_a_robot_that_drives_and_drives_wanders() -> None:
+def test_a_robot_that_drives_and_drives_has_driven_too_far() -> None:
     progress = ApproachProgress(1.0, 3.0, Pose(), 0.0)
     for second in range(1, 6):
         stands(progress, Pose(0.3 if second % 2 else 0.0), float(second))
-        assert progress.wanders == (second > 3)
+        assert progress.has_driven_too_far == (second > 3)
 
 
 # ---------------------------------------------------------------- the base

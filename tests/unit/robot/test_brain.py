@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.commands.brain import Decision, decide, spoken
-from robot.safety.distance import Sight
+from robot.safety.distance import RangeState
 from robot.words import STOP, DriveSetpoint, parse_word
 
 FORWARD = DriveSetpoint(0.5, 0.0)
@@ -16,25 +16,25 @@ FORWARD = DriveSetpoint(0.5, 0.0)
 @pytest.mark.parametrize(
     ("front", "decision"),
     [
-        (Sight.FREE, Decision.LOOK_AND_GO),
-        (Sight.CLOSE, Decision.OBSTACLE),
-        (Sight.INVALID, Decision.BLIND),
-        (Sight.SILENT, Decision.BLIND),
+        (RangeState.FREE, Decision.LOOK_AND_GO),
+        (RangeState.CLOSE, Decision.OBSTACLE),
+        (RangeState.INVALID, Decision.BLIND),
+        (RangeState.SILENT, Decision.BLIND),
     ],
 )
-def test_a_request_is_answered_by_what_is_ahead(front: Sight, decision: Decision) -> None:
+def test_a_request_is_answered_by_what_is_ahead(front: RangeState, decision: Decision) -> None:
     assert decide(None, front) == decision
 
 
-@given(st.sampled_from(Sight))
-def test_stop_and_back_are_always_obeyed(front: Sight) -> None:
+@given(st.sampled_from(RangeState))
+def test_stop_and_back_are_always_obeyed(front: RangeState) -> None:
     assert decide(STOP, front) == Decision.OBEY
     assert decide(parse_word("назад"), front) == Decision.OBEY
 
 
-@given(st.sampled_from(Sight))
-def test_forward_is_obeyed_only_where_the_way_is_free(front: Sight) -> None:
-    assert (decide(FORWARD, front) == Decision.OBEY) == (front == Sight.FREE)
+@given(st.sampled_from(RangeState))
+def test_forward_is_obeyed_only_where_the_way_is_free(front: RangeState) -> None:
+    assert (decide(FORWARD, front) == Decision.OBEY) == (front == RangeState.FREE)
 
 
 @pytest.mark.parametrize(

@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.safety.distance import (
+    RangeState,
     Reading,
     SafetyZone,
     Shares,
-    Sight,
     Verdict,
     allowed,
     gate,
-    look,
+    range_state,
     share,
     where,
 )
@@ -34,38 +34,40 @@ setpoints = st.builds(DriveSetpoint, any_float, any_float)
 
 
 @pytest.mark.parametrize(
-    ("distance", "sight"),
+    ("distance", "state"),
     [
-        (0.5, Sight.FREE),
-        (0.499, Sight.CLOSE),
-        (0.0, Sight.CLOSE),
-        (math.inf, Sight.FREE),
-        (-math.inf, Sight.CLOSE),
-        (math.nan, Sight.INVALID),
-        (-1.0, Sight.INVALID),
-        (None, Sight.SILENT),
+        (0.5, RangeState.FREE),
+        (0.499, RangeState.CLOSE),
+        (0.0, RangeState.CLOSE),
+        (math.inf, RangeState.FREE),
+        (-math.inf, RangeState.CLOSE),
+        (math.nan, RangeState.INVALID),
+        (-1.0, RangeState.INVALID),
+        (None, RangeState.SILENT),
     ],
 )
-def test_what_a_fresh_reading_means(distance: float | None, sight: Sight) -> None:
-    assert look(Reading(distance, 0.1), critical_m=0.5, stale_after_s=1.0) == sight
+def test_what_a_fresh_reading_means(distance: float | None, state: RangeState) -> None:
+    assert range_state(Reading(distance, 0.1), critical_m=0.5, stale_after_s=1.0) == state
 
 
 @pytest.mark.parametrize("age", [1.001, math.inf, math.nan])
 def test_a_long_silence_is_danger_however_far_the_last_obstacle_was(age: float) -> None:
-    assert look(Reading(3.0, age), critical_m=0.5, stale_after_s=1.0) == Sight.SILENT
+    assert range_state(Reading(3.0, age), critical_m=0.5, stale_after_s=1.0) == RangeState.SILENT
 
 
-@given(st.sampled_from(Sight), st.none() | st.sampled_from(Sight))
-def test_only_a_free_view_leaves_a_direction_open(front: Sight, rear: Sight | None) -> None:
+@given(st.sampled_from(RangeState), st.none() | st.sampled_from(RangeState))
+def test_only_a_free_view_leaves_a_direction_open(
+    front: RangeState, rear: RangeState | None
+) -> None:
     forward = gate(DriveSetpoint(0.3, 0.1), where(front, rear, emergency=False))
     backward = gate(DriveSetpoint(-0.3, 0.1), where(front, rear, emergency=False))
-    assert (forward.speed_m_s > 0) == (front == Sight.FREE)
-    assert (backward.speed_m_s < 0) == (rear in (None, Sight.FREE))
+    assert (forward.speed_m_s > 0) == (front == RangeState.FREE)
+    assert (backward.speed_m_s < 0) == (rear in (None, RangeState.FREE))
 
 
-@given(setpoints, st.sampled_from(Sight), st.none() | st.sampled_from(Sight))
+@given(setpoints, st.sampled_from(RangeState), st.none() | st.sampled_from(RangeState))
 def test_nothing_moves_during_an_emergency_stop(
-    command: DriveSetpoint, front: Sight, rear: Sight | None
+    command: DriveSetpoint, front: RangeState, rear: RangeState | None
 ) -> None:
     assert gate(command, where(front, rear, emergency=True)) == STOP
 
@@ -87,7 +89,7 @@ def test_what_passes_is_a_number_and_no_faster_than_was_asked(
 
 
 def test_a_blocked_robot_may_still_turn_its_wheels_and_back_off() -> None:
-    verdict = where(Sight.CLOSE, None, emergency=False)
+    verdict = where(RangeState.CLOSE, None, emergency=False)
     assert gate(DriveSetpoint(0.5, 0.4), verdict) == DriveSetpoint(0.0, 0.4)
     assert gate(DriveSetpoint(-0.3, 0.4), verdict) == DriveSetpoint(-0.3, 0.4)
 
@@ -123,7 +125,7 @@ def test_a_share_is_a_share_and_nothing_where_the_way_is_not_free(
 ) -> None:
     part = share(reading, zone)
     assert 0.0 <= part <= 1.0
-    if look(reading, zone.critical_m, zone.stale_after_s) != Sight.FREE:
+    if range_state(reading, zone.critical_m, zone.stale_after_s) != RangeState.FREE:
         assert part == 0.0
 
 

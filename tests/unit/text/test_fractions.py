@@ -11,7 +11,7 @@ from cli.sessions import show
 from graph.bag.reading import open_bag
 from launcher.status import NodeState, NodeStatus, SessionInfo
 from tests.unit.bags import write_bag
-from text.i18n import said, set_language
+from text.i18n import localized, set_language
 from text.sentences import say
 from tui.logs.node_list import short_count
 
@@ -32,8 +32,8 @@ def _in_russian() -> Iterator[None]:
 
 def test_a_number_has_a_comma_and_a_text_keeps_its_point() -> None:
     words = say("{a:.2f}, {b}, {c}", a=0.5, b="1.2.0", c=3)
-    assert said(words) == said(words, "ru") == "0,50, 1.2.0, 3"
-    assert said(words, "en") == "0.50, 1.2.0, 3"
+    assert localized(words) == localized(words, "ru") == "0,50, 1.2.0, 3"
+    assert localized(words, "en") == "0.50, 1.2.0, 3"
 
 
 def test_the_nodes_in_the_background(capsys: pytest.CaptureFixture[str]) -> None:
@@ -51,7 +51,7 @@ def test_where_a_recording_is_damaged(tmp_path: Path) -> None:
     with open_bag(file) as bag:
         list(bag.messages())
         assert bag.damage is not None
-        assert ", первое через 0,0 с от начала" in said(bag.damage)
+        assert ", первое через 0,0 с от начала" in localized(bag.damage)
 
 
 def test_how_many_lines_of_a_log() -> None:

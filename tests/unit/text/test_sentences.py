@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from launcher.errors import SessionError
-from text.i18n import said
+from text.i18n import localized
 from text.sentences import reason_of, say
 
 SENTENCE = say("ROS cannot be used: {error}", error="no rclpy")
@@ -14,8 +14,8 @@ SENTENCE = say("ROS cannot be used: {error}", error="no rclpy")
 def test_the_sentence_of_an_error_can_still_be_translated() -> None:
     error = SessionError(SENTENCE)
     assert reason_of(error) == str(error)
-    assert said(reason_of(error), "ru") == "ROS не работает: no rclpy"
-    assert said(str(error), "ru") == str(error)
+    assert localized(reason_of(error), "ru") == "ROS не работает: no rclpy"
+    assert localized(str(error), "ru") == str(error)
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,6 @@ def test_what_is_nearer_than_can_be_measured_has_words_of_its_own(
     language: str, words: tuple[str, str]
 ) -> None:
     set_language(language)
-    sights = {"front": "close", "rear": "close"}
-    gate = Gate("blocked", sights, dict.fromkeys(sights, -math.inf))
+    states = {"front": "close", "rear": "close"}
+    gate = Gate("blocked", states, dict.fromkeys(states, -math.inf))
     assert gate_words(gate).endswith(": " + ", ".join(words))

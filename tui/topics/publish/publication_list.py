@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
 
-from text.i18n import _, decimal, said
+from text.i18n import _, decimal, localized
 from text.plain import plain
 from tui.widgets.rows import Cell, Column, Row, Rows
 
@@ -50,7 +50,7 @@ class PublicationList(Rows):
 
 def _row(one: Publication) -> Row:
     if one.error:
-        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(said(one.error), 200)}", "bad")
+        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(localized(one.error), 200)}", "bad")
         return Row(str(one.number), (words,))
     heard = Cell(str(one.subscribers), "" if one.subscribers else "warn")
     cells = (Cell(plain(one.topic, 200)), Cell(decimal(f"{one.hz:g}")), Cell(str(one.sent)), heard)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from text.i18n import said
+from text.i18n import localized
 from text.plain import plain
 from text.sentences import say
 
@@ -25,7 +25,7 @@ def printable(text: str) -> str:
     return clean if len(clean) <= LONGEST else clean[: LONGEST - 1] + "…"
 
 
-class Speech:
+class TranslatedLogger:
     """Logs phrases in one language."""
 
     def __init__(self, logger: RcutilsLogger, language: str) -> None:
@@ -35,7 +35,7 @@ class Speech:
 
     def text(self, phrase: str, **values: object) -> str:
         """Return the phrase in this language, printable."""
-        return printable(said(say(phrase, **values), self.language))
+        return printable(localized(say(phrase, **values), self.language))
 
     # One line per severity: rclpy remembers the severity for each logging line of code.
 

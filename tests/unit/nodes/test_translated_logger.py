@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nodes.parts.speech import LONGEST, Speech, printable
+from nodes.parts.translated_logger import LONGEST, TranslatedLogger, printable
 from text.i18n import detect
 
 GREETING = "The sonar publishes {topic}"
@@ -47,10 +47,10 @@ def test_the_first_variable_that_is_set_decides(environment: dict[str, str], exp
 
 def test_each_severity_goes_its_own_way() -> None:
     logger = RecordingLogger()
-    speech = Speech(logger, "ru")  # type: ignore[arg-type]
-    speech.info(GREETING, topic="a")
-    speech.warn(GREETING, topic="b")
-    speech.error(GREETING, topic="c")
+    translated = TranslatedLogger(logger, "ru")  # type: ignore[arg-type]
+    translated.info(GREETING, topic="a")
+    translated.warn(GREETING, topic="b")
+    translated.error(GREETING, topic="c")
     words = "Сонар публикует {}"
     levels = zip(("info", "warning", "error"), "abc", strict=True)
     assert logger.lines == [(level, words.format(name)) for level, name in levels]
@@ -58,11 +58,11 @@ def test_each_severity_goes_its_own_way() -> None:
 
 def test_a_phrase_can_be_held_back_while_others_pass() -> None:
     logger = RecordingLogger()
-    speech = Speech(logger, "en")  # type: ignore[arg-type]
+    translated = TranslatedLogger(logger, "en")  # type: ignore[arg-type]
     other = "Bye"
     for name in "abc":
-        speech.info(GREETING, every_s=3600.0, topic=name)
-        speech.info(other)
+        translated.info(GREETING, every_s=3600.0, topic=name)
+        translated.info(other)
     assert [text for _, text in logger.lines] == ["The sonar publishes a", "Bye", "Bye", "Bye"]
 
 
@@ -81,6 +81,6 @@ def test_control_characters_are_shown_as_pictures() -> None:
 def test_a_fraction_is_written_in_russian_with_a_comma_and_what_one_types_with_a_point() -> None:
     phrase = "{near:.2f}, {topic}, {count}"
     values = {"near": 0.364, "topic": "/sonar.front", "count": 3}
-    russian, english = (Speech(RecordingLogger(), code) for code in ("ru", "en"))  # type: ignore[arg-type]
+    russian, english = (TranslatedLogger(RecordingLogger(), code) for code in ("ru", "en"))  # type: ignore[arg-type]
     assert russian.text(phrase, **values) == "0,36, /sonar.front, 3"
     assert english.text(phrase, **values) == "0.36, /sonar.front, 3"
