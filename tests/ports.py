@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from launcher.processes.ports import BurntPorts
+from launcher.processes.ports import BlockedPorts
 from launcher.processes.shared_memory import SHARED_MEMORY, held_segments, port_numbers, sweep
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-_BURNT = BurntPorts()
+_BLOCKED = BlockedPorts()
 
 
 def held_by(pids: Iterable[int]) -> set[str]:
@@ -27,5 +27,5 @@ def burn(held: set[str], *, hung: bool = False) -> None:
     left = {name for name in held if (SHARED_MEMORY / f"{name}_el").exists()}
     # Also those that cannot be removed: a process that still writes there may hold the lock for a
     # moment, to see whether anybody else does.
-    _BURNT.keep(port_numbers(held if hung else left))
+    _BLOCKED.keep(port_numbers(held if hung else left))
     sweep(left)

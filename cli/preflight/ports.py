@@ -11,7 +11,7 @@ from cli.doctor.finding import Level
 from cli.preflight.answers import DeviceAnswer, ask
 from cli.preflight.opening import advice, opened
 from launcher.profile.devices import wanted
-from launcher.profile.serial_choice import AUTO, Unclear, choose
+from launcher.profile.serial_choice import AUTO, UnresolvedPort, choose
 from text.i18n import _, localized
 
 if TYPE_CHECKING:
@@ -35,7 +35,9 @@ def ask_ports(
     for device in serial:
         found = chosen.get(device)
         written = str(devices[device]["port"])
-        paths[device] = written if found is None or isinstance(found, Unclear) else found.path
+        paths[device] = (
+            written if found is None or isinstance(found, UnresolvedPort) else found.path
+        )
     return {
         device: partial(_ask, device, devices[device], paths, chosen.get(device), ports)
         for device in serial
@@ -46,10 +48,10 @@ def _ask(
     device: str,
     settings: Mapping[str, Any],
     paths: Mapping[str, str],
-    chosen: SerialPort | Unclear | None,
+    chosen: SerialPort | UnresolvedPort | None,
     ports: Sequence[SerialPort],
 ) -> tuple[str, DeviceAnswer]:
-    if isinstance(chosen, Unclear):
+    if isinstance(chosen, UnresolvedPort):
         return "", DeviceAnswer(
             Level.FAIL, str(localized(chosen.message)), str(localized(chosen.hint))
         )

@@ -45,7 +45,7 @@ _MOST = 40
 """Most ports kept; a domain has ports for some 120 participants, so the oldest are released."""
 
 
-class BurntPorts:
+class BlockedPorts:
     """Participant ids that nobody else can take while this process lives."""
 
     def __init__(self, folder: Path = SHARED_MEMORY) -> None:

@@ -16,7 +16,7 @@ from launcher.profile.device_variables import variable
 from launcher.profile.problems import Problems
 from launcher.profile.reading import read_value
 from launcher.profile.references import Filler, used_devices
-from launcher.profile.serial_choice import AUTO, KINDS, Unclear, WantedPort, choose
+from launcher.profile.serial_choice import AUTO, KINDS, UnresolvedPort, WantedPort, choose
 from launcher.profile.when import HARDWARE
 from text.sentences import say
 from text.yaml_tree import Branch, Listing, MappingEntry, Scalar, find, place_of, plain
@@ -163,7 +163,7 @@ def _found(
         return devices
     for device, port in choose(asked, ports()).items():
         where = ("devices", device, "port")
-        if isinstance(port, Unclear):
+        if isinstance(port, UnresolvedPort):
             problems.add(place_of(devices, where[1:]), where, port.message, port.hint)
             continue
         branch = devices.entries[device].value

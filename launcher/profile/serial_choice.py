@@ -39,7 +39,7 @@ class WantedPort:
 
 
 @dataclass(frozen=True)
-class Unclear:
+class UnresolvedPort:
     """Why no port could be chosen for a device."""
 
     message: str
@@ -48,7 +48,7 @@ class Unclear:
 
 def choose(
     wanted: Mapping[str, WantedPort], ports: Sequence[SerialPort]
-) -> dict[str, SerialPort | Unclear]:
+) -> dict[str, SerialPort | UnresolvedPort]:
     """Return the port of each device with `auto`, or why there is none.
 
     A port that is set explicitly for one device is not given to another.
@@ -78,7 +78,7 @@ def _one(
     wanted: WantedPort,
     fitting: Mapping[str, Sequence[SerialPort]],
     ports: Sequence[SerialPort],
-) -> SerialPort | Unclear:
+) -> SerialPort | UnresolvedPort:
     found = fitting[device]
     rivals = [other for other in fitting if other != device and set(fitting[other]) & set(found)]
     if len(found) == 1 and not rivals:
@@ -94,4 +94,4 @@ def _one(
     else:
         listed = "; ".join(map(str, found))
         message = say("several ports fit: {ports}", ports=listed)
-    return Unclear(message, how_to_choose(device))
+    return UnresolvedPort(message, how_to_choose(device))

@@ -29,7 +29,7 @@ NOT_FOUND = 127
 
 
 @dataclass(frozen=True)
-class Birth:
+class ForkSpec:
     """Everything a forked process needs to know to become its node."""
 
     kind: str
@@ -50,7 +50,7 @@ class Birth:
     @classmethod
     def from_request(
         cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload
-    ) -> Birth:
+    ) -> ForkSpec:
         """Read a request; if the imports have failed, modules are started cold."""
         kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
         if kind == "module" and preload.broken:
@@ -68,32 +68,32 @@ class Birth:
         )
 
 
-def become(birth: Birth) -> None:
+def become(spec: ForkSpec) -> None:
     """Run as the node until it ends; an exception in the node ends this process as usual."""
     os.setsid()
-    if not die_with_parent(birth.supervisor):
+    if not die_with_parent(spec.supervisor):
         os._exit(1)
     _reset_signals()
-    _take_descriptors(birth.fds)
-    _set_environment(birth)
+    _take_descriptors(spec.fds)
+    _set_environment(spec)
     try:
-        os.chdir(birth.cwd)
+        os.chdir(spec.cwd)
     except OSError as problem:
-        _give_up(f"cannot enter {birth.cwd}: {problem.strerror}", NOT_EXECUTABLE)
-    if birth.kind == "exec":
+        _give_up(f"cannot enter {spec.cwd}: {problem.strerror}", NOT_EXECUTABLE)
+    if spec.kind == "exec":
         _hear_signals()
-        _execute(birth)
-    show_title(birth.title)
-    show_name(birth.name)
-    show_mark(NODE_MARK, birth.name)
+        _execute(spec)
+    show_title(spec.title)
+    show_name(spec.name)
+    show_mark(NODE_MARK, spec.name)
     _renew_streams()
-    if birth.kind == "probe":
+    if spec.kind == "probe":
         _hear_signals()
         from launcher.spawn_server.probe import probe
 
-        probe(birth.argv)
+        probe(spec.argv)
     else:
-        _run_module(birth.argv, birth.shared)
+        _run_module(spec.argv, spec.shared)
 
 
 def _reset_signals() -> None:
@@ -109,9 +109,9 @@ def _hear_signals() -> None:
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
 
-def _set_environment(birth: Birth) -> None:
-    os.environ[NODE_MARK] = birth.name
-    for name, value in birth.env.items():
+def _set_environment(spec: ForkSpec) -> None:
+    os.environ[NODE_MARK] = spec.name
+    for name, value in spec.env.items():
         if value is None:
             os.environ.pop(name, None)
         else:
@@ -129,13 +129,13 @@ def _take_descriptors(fds: tuple[int, ...]) -> None:
                 os.close(int(entry))
 
 
-def _execute(birth: Birth) -> None:
+def _execute(spec: ForkSpec) -> None:
     try:
-        os.execvp(birth.argv[0], birth.argv)
+        os.execvp(spec.argv[0], spec.argv)
     except FileNotFoundError:
-        _give_up(f"command not found: {birth.argv[0]}", NOT_FOUND)
+        _give_up(f"command not found: {spec.argv[0]}", NOT_FOUND)
     except OSError as problem:
-        _give_up(f"cannot execute {birth.argv[0]}: {problem.strerror}", NOT_EXECUTABLE)
+        _give_up(f"cannot execute {spec.argv[0]}: {problem.strerror}", NOT_EXECUTABLE)
 
 
 def _give_up(word: str, code: int) -> None:

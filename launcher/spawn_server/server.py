@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.processes.table import RUN_MARK, read_process
 from launcher.spawn_server.cleanup import end_survivors
-from launcher.spawn_server.node import ENDING, Birth, become
+from launcher.spawn_server.node import ENDING, ForkSpec, become
 from launcher.spawn_server.preload import Preload
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class SpawnServer:
         return self._fork(request, fds)
 
     def _fork(self, request: dict[str, Any], fds: list[int]) -> Callable[[], None] | None:
-        birth = Birth.from_request(request, fds, self._supervisor, self._preload)
+        spec = ForkSpec.from_request(request, fds, self._supervisor, self._preload)
         try:
             pid = os.fork()
         except OSError as problem:
@@ -102,7 +102,7 @@ class SpawnServer:
         else:
             if pid == 0:
                 self._waiting.clear()
-                return _fork_on(birth, self._link, request["id"])
+                return _fork_on(spec, self._link, request["id"])
             self._intermediates.add(pid)
         for fd in fds:
             os.close(fd)
@@ -121,7 +121,7 @@ def _read(fd: int) -> dict[str, Any]:
     return message
 
 
-def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[], None]:
+def _fork_on(spec: ForkSpec, link: socket.socket, request_id: int) -> Callable[[], None]:
     """Fork the node, answer the request, and exit; only the node returns from this function.
 
     The server does not wait for this: meanwhile it handles the next request.
@@ -136,7 +136,7 @@ def _fork_on(birth: Birth, link: socket.socket, request_id: int) -> Callable[[],
         assert node is not None, "nobody but this process can reap it"
         _answer(link, {"id": request_id, "pid": pid, "started": node.started_ticks})
         os._exit(0)
-    return lambda: become(birth)
+    return lambda: become(spec)
 
 
 def _answer(link: socket.socket, answer: dict[str, Any]) -> None:

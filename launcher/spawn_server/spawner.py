@@ -36,7 +36,7 @@ class SpawnRequest:
     """One process to be started."""
 
     kind: str
-    """`module`, `exec` or `probe`, see `launcher.spawn_server.node.Birth`."""
+    """`module`, `exec` or `probe`, see `launcher.spawn_server.node.ForkSpec`."""
     name: str
     title: str
     argv: tuple[str, ...]
@@ -46,7 +46,7 @@ class SpawnRequest:
 
 
 @dataclass(frozen=True)
-class Born:
+class SpawnedProcess:
     """A started process: the leader of its own session and group, and our child."""
 
     pid: int
@@ -68,7 +68,7 @@ class Spawner:
         self._tell = tell
         self._answer_within_s = answer_within_s
         self._warm = server.warm
-        self._pending: dict[int, asyncio.Future[Born | None]] = {}
+        self._pending: dict[int, asyncio.Future[SpawnedProcess | None]] = {}
         self._next_id = 1
         self._quick_deaths = 0
         self._groups: set[int] = set()
@@ -81,7 +81,7 @@ class Spawner:
         """The process number of the current server."""
         return None if self._link is None else self._link.handle.pid
 
-    async def spawn(self, request: SpawnRequest, fds: Sequence[int]) -> Born:
+    async def spawn(self, request: SpawnRequest, fds: Sequence[int]) -> SpawnedProcess:
         """Start a process with these descriptors, which the caller still has to close.
 
         If the caller stops waiting (is cancelled), a process that is then started is ended again.
@@ -96,11 +96,11 @@ class Spawner:
         hangs = 0
         for _attempt in range(MAX_ATTEMPTS):
             link = self._present()
-            born = await self._ask(link, request, fds)
-            if born is not None:
-                self._groups.add(born.pid)
-                self._mention("adopt", [born.pid])  # A new server is told all existing groups.
-                return born
+            spawned = await self._ask(link, request, fds)
+            if spawned is not None:
+                self._groups.add(spawned.pid)
+                self._mention("adopt", [spawned.pid])  # A new server is told all existing groups.
+                return spawned
             hangs += link.hung
             if hangs == MAX_HANGS:
                 raise SpawnError(say("the spawn server does not answer"))
@@ -108,13 +108,13 @@ class Spawner:
 
     async def _ask(
         self, link: SpawnServerLink, request: SpawnRequest, fds: Sequence[int]
-    ) -> Born | None:
+    ) -> SpawnedProcess | None:
         """Return the new process, None if the server died before answering.
 
         Anything it forked has been answered before: the end of the socket comes after all answers.
         """
         request_id, self._next_id = self._next_id, self._next_id + 1
-        future: asyncio.Future[Born | None] = asyncio.get_running_loop().create_future()
+        future: asyncio.Future[SpawnedProcess | None] = asyncio.get_running_loop().create_future()
         self._pending[request_id] = future
         try:
             link.tell({"id": request_id, **vars(request)}, fds)
@@ -180,12 +180,12 @@ class Spawner:
 
     def _answered(self, answer: dict[str, Any]) -> None:
         self._quick_deaths = 0
-        born = Born(answer["pid"], answer["started"]) if "pid" in answer else None
+        spawned = SpawnedProcess(answer["pid"], answer["started"]) if "pid" in answer else None
         future = self._pending.get(answer["id"])
         if future is None or future.done():
-            _end(born)
-        elif born is not None:
-            future.set_result(born)
+            _end(spawned)
+        elif spawned is not None:
+            future.set_result(spawned)
         else:
             future.set_exception(SpawnError(answer["error"]))
 
@@ -199,7 +199,7 @@ class Spawner:
         self._quick_deaths += 1
         if self._quick_deaths >= MAX_QUICK_DEATHS or (link.hung and not link.answered):
             self._warm = False
-        self._tell(_obituary(link, self._answer_within_s))
+        self._tell(_why_replaced(link, self._answer_within_s))
         self._replace()
 
     def _replace(self) -> None:
@@ -223,17 +223,17 @@ class Spawner:
                 self._link.tell({"kind": "preload", "packages": self._packages})
 
 
-def _end(born: Born | None) -> None:
+def _end(spawned: SpawnedProcess | None) -> None:
     """End a started process that is no longer wanted."""
-    if born is not None:
-        send(born, signal.SIGKILL)
+    if spawned is not None:
+        send(spawned, signal.SIGKILL)
 
 
 def _ending() -> Words:
     return say("the session is ending")
 
 
-def _obituary(link: SpawnServerLink, within_s: float) -> Words:
+def _why_replaced(link: SpawnServerLink, within_s: float) -> Words:
     pid = link.handle.pid
     if link.hung:
         return say(

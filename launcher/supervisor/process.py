@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from launcher.logs.reader import PipeReader, node_pipe
 from launcher.processes.members import Members
-from launcher.processes.ports import BurntPorts
+from launcher.processes.ports import BlockedPorts
 from launcher.processes.shared_memory import held_segments, port_numbers, sweep
 from launcher.processes.signal import send
 from launcher.spawn_server.spawner import SpawnRequest
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from launcher.logs.session_log import SessionLog
     from launcher.processes.exit import Exit, Reaper
     from launcher.processes.table import Process
-    from launcher.spawn_server.spawner import Born, Spawner
+    from launcher.spawn_server.spawner import SpawnedProcess, Spawner
     from launcher.supervisor.plan import NodePlan, Plan
 
 _FRESH_S = 0.02
@@ -52,13 +52,19 @@ class NodeProcess:
     """One process that was started for a node; a `RunningProcess`."""
 
     def __init__(
-        self, name: str, born: Born, launcher: ProcessLauncher, readers: Sequence[PipeReader]
+        self,
+        name: str,
+        spawned: SpawnedProcess,
+        launcher: ProcessLauncher,
+        readers: Sequence[PipeReader],
     ) -> None:
         """`readers` read its stdout and stderr."""
         self.name = name
-        self.pid = born.pid
-        self.started_ticks = born.started_ticks
-        self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(born.pid, born.started_ticks)
+        self.pid = spawned.pid
+        self.started_ticks = spawned.started_ticks
+        self.ended: asyncio.Future[Exit] = launcher.reaper.exit_of(
+            spawned.pid, spawned.started_ticks
+        )
         self.ended.add_done_callback(self._on_end)
         self._launcher = launcher
         self._readers = readers
@@ -97,10 +103,10 @@ class ProcessLauncher:
         self._plan = plan
         self._log = log
         self._segments: dict[str, set[str]] = {}
-        self._burnt = BurntPorts()
+        self._blocked = BlockedPorts()
         # This must happen before the probe joins: its port would be shifted, and those of the
         # nodes.
-        self._burnt.avoid_others(plan.domain)
+        self._blocked.avoid_others(plan.domain)
 
     def note_segments(self, name: str, pids: Iterable[int]) -> None:
         """Note the shared memory that a node's processes hold: after a kill it is unknown."""
@@ -108,7 +114,7 @@ class ProcessLauncher:
 
     def sweep_segments(self, name: str) -> None:
         """Remove the shared memory that a node left, and keep others from taking its ports."""
-        self._burnt.keep(port_numbers(sweep(self._segments.pop(name, ()))))
+        self._blocked.keep(port_numbers(sweep(self._segments.pop(name, ()))))
 
     async def launch(self, node: NodePlan) -> NodeProcess:
         """Start a node; raises `SpawnError`."""
@@ -128,8 +134,8 @@ class ProcessLauncher:
             self._log.read(node.name, err, "stderr"),
         ]
         try:
-            self._burnt.avoid_others(self._plan.domain)
-            born = await self.spawner.spawn(request, (out_write, err_write))
+            self._blocked.avoid_others(self._plan.domain)
+            spawned = await self.spawner.spawn(request, (out_write, err_write))
         except BaseException:
             for reader in readers:
                 reader.close()
@@ -137,6 +143,6 @@ class ProcessLauncher:
         finally:
             os.close(out_write)
             os.close(err_write)
-        self.scan.members.add(node.name, born)
+        self.scan.members.add(node.name, spawned)
         self.scan.forget()
-        return NodeProcess(node.name, born, self, readers)
+        return NodeProcess(node.name, spawned, self, readers)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from launcher.processes.exit import Reaper
-    from launcher.spawn_server.spawner import Born, Spawner
+    from launcher.spawn_server.spawner import SpawnedProcess, Spawner
 
 MAX_PROBES = 3
 """After this many probes have died in a row, the graph counts as unwatchable."""
@@ -140,10 +140,10 @@ class Readiness:
         """Start a probe and listen to it until it ends."""
         hold_read, hold = os.pipe()
         report, report_write = os.pipe()
-        born: Born | None = None
+        spawned: SpawnedProcess | None = None
         try:
             try:
-                born = await self._spawner.spawn(self._request(), (hold_read, report_write, 2))
+                spawned = await self._spawner.spawn(self._request(), (hold_read, report_write, 2))
             finally:
                 os.close(hold_read)
                 os.close(report_write)
@@ -152,8 +152,8 @@ class Readiness:
             # The probe ends cleanly when its stdin is closed, and announces that to the graph.
             os.close(hold)
             os.close(report)
-            if born is not None:
-                _ = asyncio.create_task(self._see_off(born))  # noqa: RUF006 - it ends by itself
+            if spawned is not None:
+                _ = asyncio.create_task(self._see_off(spawned))  # noqa: RUF006 - it ends by itself
 
     async def _listen(self, fd: int) -> None:
         reader = asyncio.StreamReader()
@@ -187,11 +187,11 @@ class Readiness:
         wanted = json.dumps([astuple(condition) for condition in self._conditions])
         return SpawnRequest("probe", "deck_probe", "deck: probe", (wanted,), "/", self._env)
 
-    async def _see_off(self, born: Born, within_s: float = 3.0) -> None:
-        ended = self._reaper.exit_of(born.pid, born.started_ticks)
+    async def _see_off(self, spawned: SpawnedProcess, within_s: float = 3.0) -> None:
+        ended = self._reaper.exit_of(spawned.pid, spawned.started_ticks)
         try:
             await asyncio.wait_for(asyncio.shield(ended), within_s)
         except asyncio.TimeoutError:
-            send(born, signal.SIGKILL)
+            send(spawned, signal.SIGKILL)
             await ended
-        self._spawner.forget(born.pid)
+        self._spawner.forget(spawned.pid)

@@ -14,7 +14,7 @@ from launcher.processes.prctl import become_subreaper
 from launcher.processes.signal import lives, send
 from launcher.processes.table import RUN_MARK, Process, processes, read_marks, read_process
 from launcher.spawn_server.preload import IDLE_AFTER_S
-from launcher.spawn_server.spawner import Born, Spawner, SpawnError, SpawnRequest
+from launcher.spawn_server.spawner import SpawnedProcess, Spawner, SpawnError, SpawnRequest
 from launcher.spawn_server.start import start_spawn_server
 from tests.waiting import until
 
@@ -71,10 +71,10 @@ def stop(pid: int | None) -> None:
 async def test_what_is_started_is_known_by_its_start_too(
     make: Make, nowhere: tuple[int, int]
 ) -> None:
-    born = await make([]).spawn(SLEEP, nowhere)
-    process = read_process(born.pid)
+    spawned = await make([]).spawn(SLEEP, nowhere)
+    process = read_process(spawned.pid)
     assert process is not None
-    assert born == Born(process.pid, process.started_ticks)
+    assert spawned == SpawnedProcess(process.pid, process.started_ticks)
 
 
 async def test_a_spawn_server_that_does_not_answer_is_replaced(
@@ -85,8 +85,8 @@ async def test_a_spawn_server_that_does_not_answer_is_replaced(
     await spawner.spawn(SLEEP, nowhere)
     hung = spawner.server_pid
     stop(hung)
-    born = await asyncio.wait_for(spawner.spawn(SLEEP, nowhere), 60)
-    assert lives(born)
+    spawned = await asyncio.wait_for(spawner.spawn(SLEEP, nowhere), 60)
+    assert lives(spawned)
     assert spawner.server_pid not in (hung, None)
     (words,) = told
     assert words.startswith(
@@ -130,11 +130,11 @@ async def test_a_process_that_nobody_waits_for_any_more_is_ended(
 
 async def test_a_full_queue_keeps_nobody_waiting(make: Make, nowhere: tuple[int, int]) -> None:
     spawner = make([])
-    born = await spawner.spawn(SLEEP, nowhere)
+    spawned = await spawner.spawn(SLEEP, nowhere)
     stop(spawner.server_pid)
     for _ in range(400):
         spawner.preload(["x" * 1000])
-    spawner.forget(born.pid)
+    spawner.forget(spawned.pid)
 
 
 async def test_a_spawn_server_that_dies_at_once_is_replaced(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.processes.ports import BurntPorts
+from launcher.processes.ports import BlockedPorts
 
 
 def free_ports(count: int) -> list[int]:
@@ -30,10 +30,10 @@ def is_free(port: int) -> bool:
 
 
 def test_nobody_else_gets_the_port_for_discovery_before_one_that_is_kept() -> None:
-    burnt, (port, taken) = BurntPorts(), free_ports(2)
+    blocked, (port, taken) = BlockedPorts(), free_ports(2)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("", taken))
-        burnt.keep([taken + 1, port + 1])
+        blocked.keep([taken + 1, port + 1])
     assert not is_free(port)
     assert is_free(taken)
 
@@ -47,7 +47,7 @@ def free_domain() -> int:
 
 
 def test_nobody_gets_a_number_whose_shared_memory_is_another_users(tmp_path: Path) -> None:
-    burnt, domain = BurntPorts(tmp_path), free_domain()
+    blocked, domain = BlockedPorts(tmp_path), free_domain()
     first = 7400 + 250 * domain + 10
     # As who may not open it: not even root opens a folder so.
     (tmp_path / f"sem.fastrtps_port{first + 1}_mutex").mkdir()
@@ -55,17 +55,17 @@ def test_nobody_gets_a_number_whose_shared_memory_is_another_users(tmp_path: Pat
     (tmp_path / f"fastrtps_port{first + 5}").mkdir()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("", first))
-        burnt.avoid_others(domain)
+        blocked.avoid_others(domain)
     assert [is_free(first + number) for number in range(6)] == [True] * 4 + [False, True]
-    burnt.avoid_others(domain)
+    blocked.avoid_others(domain)
     assert [is_free(first + number) for number in range(6)] == [False] + [True] * 3 + [False, True]
 
 
 def test_the_oldest_are_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("launcher.processes.ports._MOST", 2)
-    burnt, ports = BurntPorts(), free_ports(3)
+    blocked, ports = BlockedPorts(), free_ports(3)
     for port in ports:
-        burnt.keep([port + 1])
+        blocked.keep([port + 1])
     assert [is_free(port) for port in ports] == [True, False, False]
 
 
@@ -78,5 +78,5 @@ def test_ports_that_no_number_belongs_to_are_left_alone() -> None:
                 continue
             break
         port = other.getsockname()[1]
-    BurntPorts().keep([port, port + 1])
+    BlockedPorts().keep([port, port + 1])
     assert is_free(port)

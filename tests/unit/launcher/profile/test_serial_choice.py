@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from launcher.profile.serial_choice import KINDS, Unclear, WantedPort, choose
+from launcher.profile.serial_choice import KINDS, UnresolvedPort, WantedPort, choose
 from launcher.serial_ports import SerialPort, lasting_names
 
 PICO = SerialPort("/dev/ttyACM0", "/dev/serial/by-id/usb-MicroPython-if00", "2e8a:0005", "Board")
@@ -20,10 +20,10 @@ A_LUNA = WantedPort(usb=KINDS["tf_luna"])
 SERVO_BOARD = WantedPort(usb=KINDS["lsc16"])
 
 
-def paths(chosen: dict[str, SerialPort | Unclear]) -> dict[str, str | None]:
-    """Return {device: path}, None where none was found; whatever is unclear has a mend."""
-    unclear = [each for each in chosen.values() if isinstance(each, Unclear)]
-    assert all("DECK_" in each.hint and "devices." in each.hint for each in unclear)
+def paths(chosen: dict[str, SerialPort | UnresolvedPort]) -> dict[str, str | None]:
+    """Return {device: path}, None where none was found; whatever is unresolved has a hint."""
+    unresolved = [each for each in chosen.values() if isinstance(each, UnresolvedPort)]
+    assert all("DECK_" in each.hint and "devices." in each.hint for each in unresolved)
     return {
         device: each.path if isinstance(each, SerialPort) else None
         for device, each in chosen.items()
@@ -41,20 +41,20 @@ def test_without_a_lasting_name_the_device_does() -> None:
 
 def test_none_that_fits_lists_what_there_is() -> None:
     (found,) = choose({"tof_front": A_LUNA}, [MODEM, UART]).values()
-    assert isinstance(found, Unclear)
+    assert isinstance(found, UnresolvedPort)
     assert "10c4:ea60, 1a86:7523, 0403:6001" in found.message
     assert "usb-modem (1234:5678, Modem)" in found.message
     assert "/dev/ttyAMA0" in found.message
     assert "DECK_TOF_FRONT_PORT=" in found.hint
     (nothing,) = choose({"pico": A_PICO}, []).values()
-    assert isinstance(nothing, Unclear)
+    assert isinstance(nothing, UnresolvedPort)
     assert "ports: none" in nothing.message
 
 
 def test_two_that_fit_are_listed_and_neither_is_taken() -> None:
     other = SerialPort("/dev/ttyACM9", "", "2e8a:0005")
     (found,) = choose({"pico": A_PICO}, [PICO, other]).values()
-    assert isinstance(found, Unclear)
+    assert isinstance(found, UnresolvedPort)
     assert PICO.name in found.message
     assert "/dev/ttyACM9" in found.message
 
@@ -62,9 +62,9 @@ def test_two_that_fit_are_listed_and_neither_is_taken() -> None:
 def test_one_port_is_not_given_to_two_devices() -> None:
     chosen = choose({"tof_front": A_LUNA, "lsc16": SERVO_BOARD}, [LUNA])
     assert paths(chosen) == {"tof_front": None, "lsc16": None}
-    unclear = chosen["tof_front"]
-    assert isinstance(unclear, Unclear)
-    assert "may be this or lsc16" in unclear.message
+    unresolved = chosen["tof_front"]
+    assert isinstance(unresolved, UnresolvedPort)
+    assert "may be this or lsc16" in unresolved.message
 
 
 @pytest.mark.parametrize("named", [LUNA.name, LUNA.device])
