@@ -204,7 +204,7 @@ class Goal:
     goal: Mapping[str, Value]
     feedback: Mapping[str, Value] | None = None
     """The newest."""
-    feedbacks: int = 0
+    feedback_count: int = 0
     """How many came."""
     result: Mapping[str, Value] | None = None
     error: str = ""
@@ -233,7 +233,7 @@ class SeenGoal:
     or if the clocks do not agree."""
     feedback: Mapping[str, Value] | None = None
     """The newest."""
-    feedbacks: int = 0
+    feedback_count: int = 0
     """How many have come since Deck began to look."""
     error: str = ""
 

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator
 from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING, Protocol
 
-from graph.bag.mcap import Lost, SparingMcap, SparingReader, sound_parts
+from graph.bag.mcap import Lost, TolerantMcap, TolerantReader, sound_parts
 from text.sentences import Words, say
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class WholeBag:
 
     def __init__(self, path: Path) -> None:
         """Open the bag. Raises what the library raises for a bag that it cannot read."""
-        self._reader = SparingReader(path)
+        self._reader = TolerantReader(path)
         self._reader.open()
         self.connections = list(self._reader.connections)
         self.message_count = self._reader.message_count
@@ -73,7 +73,7 @@ class _CutFile:
 
     def __init__(self, path: Path, stack: ExitStack) -> None:
         """Raises ValueError and what the library raises."""
-        self._reader = reader = SparingMcap(path)
+        self._reader = reader = TolerantMcap(path)
         reader.bio = stack.enter_context(path.open("rb"))
         self._sound, self.lost, end, size = sound_parts(path)
         self.lost_bytes = size - end

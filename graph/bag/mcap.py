@@ -60,7 +60,7 @@ class Parts(NamedTuple):
     size: int
 
 
-class SparingMcap(McapReader):
+class TolerantMcap(McapReader):
     """The library's reader, except that a damaged chunk costs no more than that chunk."""
 
     def __init__(self, path: Path) -> None:
@@ -110,20 +110,20 @@ class SparingMcap(McapReader):
         return raw[RECORD_HEAD.size :]
 
 
-class _SparingDirectory(DirectoryReader):
+class _TolerantDirectory(DirectoryReader):
     STORAGE_PLUGINS: Mapping[str, type[ReaderProtocol]] = {
         **DirectoryReader.STORAGE_PLUGINS,
-        "mcap": SparingMcap,
+        "mcap": TolerantMcap,
     }
 
 
-class SparingReader(Reader):
-    """The library's reader for bags of all kinds, with `SparingMcap` for MCAP."""
+class TolerantReader(Reader):
+    """The library's reader for bags of all kinds, with `TolerantMcap` for MCAP."""
 
     STORAGE_PLUGINS: Mapping[str, type[ReaderProtocol]] = {
         **Reader.STORAGE_PLUGINS,
-        "dir": _SparingDirectory,
-        ".mcap": SparingMcap,
+        "dir": _TolerantDirectory,
+        ".mcap": TolerantMcap,
     }
 
     @property
@@ -131,7 +131,9 @@ class SparingReader(Reader):
         """What could not be read so far."""
         storage = self.storage
         parts = storage.storages if isinstance(storage, DirectoryReader) else [storage]
-        return [lost for one in parts if isinstance(one, SparingMcap) for lost in one.lost.values()]
+        return [
+            lost for one in parts if isinstance(one, TolerantMcap) for lost in one.lost.values()
+        ]
 
 
 def messages_in(record: bytes) -> list[Found]:

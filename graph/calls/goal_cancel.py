@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from graph.calls.action_client import PolledActionClient
 from graph.calls.goal_life import NO_WORD_OF_CANCEL, REFUSED
-from graph.calls.goal_line import ActionLine
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import GoalStatus
 from text.sentences import say
@@ -27,7 +27,7 @@ class Cancelling:
         # A request with an all-zero id cancels all goals (source: action_msgs/CancelGoal).
         if len(self._id) != ID_BYTES or not any(self._id):
             raise ValueError(f"{goal_id} is no id of a goal")
-        self._line = ActionLine(node, action, type_name)
+        self._client = PolledActionClient(node, action, type_name)
         self._began_s = time.monotonic()
         self._request: int | None = None
 
@@ -36,12 +36,12 @@ class Cancelling:
 
         `status` is the goal's status by now: the server's answer may get lost, the status does not.
         """
-        heard = self._line.take()
+        heard = self._client.take()
         if status is not None and (status.ended or status is GoalStatus.CANCELING):
             return ""
         if self._request is None:
-            if self._line.is_ready:
-                self._request = self._line.cancel(self._id)
+            if self._client.is_ready:
+                self._request = self._client.cancel(self._id)
         elif self._request in heard.cancelled:
             return "" if heard.cancelled[self._request] else say(REFUSED)
         if time.monotonic() - self._began_s < ANSWER_WITHIN_S:
@@ -50,4 +50,4 @@ class Cancelling:
 
     def close(self) -> None:
         """Leave the graph."""
-        self._line.close()
+        self._client.close()

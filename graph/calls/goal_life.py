@@ -13,7 +13,7 @@ from text.i18n import N_
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from graph.calls.goal_line import ActionLine, GoalAnswers
+    from graph.calls.action_client import GoalAnswers, PolledActionClient
     from graph.messages.dated import Draft
 
 GONE_AFTER_S = 0.5
@@ -36,11 +36,13 @@ NO_WORD_OF_CANCEL = N_("no answer to the request to cancel it within {seconds} s
 class GoalLife:
     """One goal. `hear` and `act` are called in turn until it `is_settled`."""
 
-    def __init__(self, told: Goal, goal_id: bytes, message: Draft, line: ActionLine) -> None:
-        """Start with a goal that is `SENDING`, to be sent as `message` through `line`."""
+    def __init__(
+        self, told: Goal, goal_id: bytes, message: Draft, client: PolledActionClient
+    ) -> None:
+        """Start with a goal that is `SENDING`, to be sent as `message` through `client`."""
         self.told = told
         """The goal as the screen shows it, except `elapsed_s`."""
-        self.line = line
+        self.client = client
         self.is_forgotten = False
         self._id = goal_id
         self._message = message
@@ -65,7 +67,7 @@ class GoalLife:
             return False
         # A goal that Deck gave up before it was accepted would still be executed.
         awaits_answer = self._request is not None and self._accepted is None
-        return not (awaits_answer and self.line.servers())
+        return not (awaits_answer and self.client.servers())
 
     @property
     def is_urgent(self) -> bool:
@@ -93,8 +95,8 @@ class GoalLife:
             self._answered(accepted=heard.accepted[self._request])
         news = heard.feedback.get(self._id)
         if news and not self.told.ended:
-            count = self.told.feedbacks + len(news)
-            self.told = replace(self.told, feedback=to_tree(news[-1]), feedbacks=count)
+            count = self.told.feedback_count + len(news)
+            self.told = replace(self.told, feedback=to_tree(news[-1]), feedback_count=count)
         if self._id in heard.status:
             if self._request is not None and self._accepted is None:
                 # The answer itself is lost if the server has not discovered this client yet.
@@ -129,15 +131,15 @@ class GoalLife:
     def cancel_blindly(self) -> None:
         """Ask for it to be cancelled although the server has not accepted it yet."""
         if self._request is not None and self._accepted is None:
-            self.line.cancel(self._id)
+            self.client.cancel(self._id)
 
     def _send(self, now_s: float) -> None:
         if self.told.ended:
             return
         if self._wants_cancel:
             self._end(GoalStatus.CANCELED, say("it was cancelled before it was sent"))
-        elif self.line.is_ready:
-            self._request = self.line.send(self._id, self._message.dated())
+        elif self.client.is_ready:
+            self._request = self.client.send(self._id, self._message.dated())
             self._request_s = now_s
         elif now_s - self._began_s >= ANSWER_WITHIN_S:
             self._end(
@@ -151,9 +153,9 @@ class GoalLife:
             if not self.told.ended:
                 self._end(GoalStatus.REJECTED, say("the server rejected it"))
             return
-        self._servers = self.line.servers()
+        self._servers = self.client.servers()
         self._servers_seen_s = time.monotonic()
-        self._result = self.line.ask_result(self._id)
+        self._result = self.client.ask_result(self._id)
         if not self.told.ended:
             self.told = replace(self.told, status=GoalStatus.ACCEPTED)
         self._ask_to_cancel(time.monotonic())
@@ -172,7 +174,7 @@ class GoalLife:
             self.told = replace(self.told, error=word) if not self.told.ended else self.told
         if self._wants_cancel and self._accepted:
             self._wants_cancel = False
-            self._cancel = self.line.cancel(self._id)
+            self._cancel = self.client.cancel(self._id)
             self._cancel_s = now_s
 
     def _cancel_answered(self, agreed: bool) -> None:
@@ -194,7 +196,7 @@ class GoalLife:
     def _look_after_server(self, now_s: float) -> None:
         if self.told.ended:
             return
-        servers = self.line.servers()
+        servers = self.client.servers()
         self._servers = self._servers or servers
         if self._servers & servers:
             self._servers_seen_s = now_s

@@ -7,8 +7,8 @@ import time
 import uuid
 from typing import TYPE_CHECKING
 
+from graph.calls.action_client import PolledActionClient
 from graph.calls.goal_life import GoalLife
-from graph.calls.goal_line import ActionLine
 from graph.data import Goal, GoalStatus
 from graph.messages.dated import draft
 from graph.messages.types import UnknownTypeError
@@ -44,7 +44,7 @@ class Goals:
         self._node = node
         self._numbers = itertools.count(1)
         self._lives: dict[int, GoalLife] = {}
-        self._lines: dict[tuple[str, str], ActionLine] = {}
+        self._clients: dict[tuple[str, str], PolledActionClient] = {}
         self._sent: set[bytes] = set()
         """Ids of all goals, forgotten ones included."""
 
@@ -71,16 +71,16 @@ class Goals:
             raise GoalError(
                 say("{name} is a {types}, not a {type}", name=action, types=types, type=type_name)
             )
-        line = self._line(action, type_name)
+        client = self._client(action, type_name)
         try:
-            message = draft(line.type.Goal, goal)
+            message = draft(client.type.Goal, goal)
         except Exception:
-            self._close_lines()
+            self._close_clients()
             raise
         number, goal_id = next(self._numbers), uuid.uuid4()
         fields = to_tree(message.dated())
         told = Goal(number, action, type_name, GoalStatus.SENDING, fields, goal_id=goal_id.hex)
-        self._lives[number] = GoalLife(told, goal_id.bytes, message, line)
+        self._lives[number] = GoalLife(told, goal_id.bytes, message, client)
         self._sent.add(goal_id.bytes)
         future.set_result(number)
 
@@ -105,12 +105,12 @@ class Goals:
         """Take what has arrived, send what is due; return whether an answer is due any moment."""
         if not self._lives:
             return False
-        for line in list(self._lines.values()):
-            _go_on(line, [life for life in self._lives.values() if life.line is line])
+        for client in list(self._clients.values()):
+            _go_on(client, [life for life in self._lives.values() if life.client is client])
         for number, life in list(self._lives.items()):
             if life.is_forgotten and life.is_settled:
                 del self._lives[number]
-        self._close_lines()
+        self._close_clients()
         return any(life.is_urgent for life in self._lives.values())
 
     def rows(self) -> tuple[Goal, ...]:
@@ -128,32 +128,32 @@ class Goals:
         for life in self._lives.values():
             life.cancel_blindly()
         self._lives.clear()
-        self._close_lines()
+        self._close_clients()
 
-    def _line(self, action: str, type_name: str) -> ActionLine:
+    def _client(self, action: str, type_name: str) -> PolledActionClient:
         key = (action, type_name)
-        if key not in self._lines:
+        if key not in self._clients:
             try:
-                self._lines[key] = ActionLine(self._node, action, type_name)
+                self._clients[key] = PolledActionClient(self._node, action, type_name)
             except UnknownTypeError:
                 raise
             except Exception as error:
                 words = say("{name} cannot be sent a goal: {error}", name=action, error=str(error))
                 raise GoalError(words) from error
-        return self._lines[key]
+        return self._clients[key]
 
-    def _close_lines(self) -> None:
-        used = {id(life.line) for life in self._lives.values()}
-        for key, line in list(self._lines.items()):
-            if id(line) not in used:
-                line.close()
-                del self._lines[key]
+    def _close_clients(self) -> None:
+        used = {id(life.client) for life in self._lives.values()}
+        for key, client in list(self._clients.items()):
+            if id(client) not in used:
+                client.close()
+                del self._clients[key]
 
 
-def _go_on(line: ActionLine, lives: list[GoalLife]) -> None:
+def _go_on(client: PolledActionClient, lives: list[GoalLife]) -> None:
     going = lives
     try:
-        heard = line.take()
+        heard = client.take()
         for life in lives:
             going = [life]
             life.hear(heard)

@@ -1,7 +1,7 @@
 """Goals that other clients have sent, as every action server publishes them, and how they end.
 
 A server publishes the status of all its goals, latched, and their feedback; the sender of a goal
-and an onlooker receive the same. So Deck needs no client until it is asked to cancel a goal.
+and any other subscriber receive the same. So Deck needs no client until it is asked to cancel one.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from graph.calls.action_client import FEEDBACKS, Servers, status_topic
 from graph.calls.goal_cancel import Cancelling
 from graph.calls.goal_life import LOST, STATUS
-from graph.calls.goal_line import FEEDBACKS, Servers, status_topic
 from graph.data import GoalStatus, SeenGoal
 from graph.messages.types import UnknownTypeError, load_action
 from graph.messages.values import to_tree
@@ -91,9 +91,9 @@ class SeenAction:
         for message in _taken(self._feedback) if self._feedback else ():
             seen = self._goals.get(bytes(message.goal_id.uuid))
             if seen is not None:
-                count = seen.told.feedbacks + 1
+                count = seen.told.feedback_count + 1
                 feedback = to_tree(message.feedback)
-                seen.told = replace(seen.told, feedback=feedback, feedbacks=count)
+                seen.told = replace(seen.told, feedback=feedback, feedback_count=count)
         servers = self._servers.now()
         if self._before - servers:
             self._lose()

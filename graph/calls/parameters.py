@@ -7,14 +7,14 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from graph.calls.parameters_talk import SERVICES, read, write
+from graph.calls.parameters_exchange import SERVICES, read, write
 from graph.data import CallResult, ParameterRow, ParametersResult, SetResult
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from graph.calls.parameters_talk import Question, Talk
+    from graph.calls.parameters_exchange import ParameterExchange, ParameterRequest
     from graph.calls.services import Calls
     from graph.data import NodeRow, ServiceRow, Value
 
@@ -23,18 +23,18 @@ FOUND_WITHIN_S = 1.0
 
 
 @dataclass
-class _Talking:
+class _RunningExchange:
     """One exchange with one node."""
 
     node: str
-    talk: Talk
-    question: Question
+    exchange: ParameterExchange
+    request: ParameterRequest
     timeout_s: float
     """How long to wait for each answer."""
     end: Callable[[str], None]
     """Reports to the caller; the argument says why it ended early, or is empty."""
     asked_s: float
-    """When the question should first have been sent."""
+    """When the request should first have been sent."""
     answer: Future[CallResult] | None = None
     was_there: bool = False
 
@@ -52,7 +52,7 @@ class ParameterCalls:
         self._calls = calls
         self._node = node
         self._service = service
-        self._talks: list[_Talking] = []
+        self._exchanges: list[_RunningExchange] = []
 
     def read(
         self, node: str, timeout_s: float, started_s: float, future: Future[ParametersResult]
@@ -89,98 +89,102 @@ class ParameterCalls:
 
     def step(self) -> bool:
         """Ask, take answers, give up; return whether any exchange is still under way."""
-        for talking in list(self._talks):
+        for running in list(self._exchanges):
             try:
-                word = self._go_on(talking)
+                word = self._go_on(running)
             except StopIteration:
                 word = ""
             except Exception as error:  # noqa: BLE001 - one odd node must not end the others
                 word = say(
                     "the answer of {node} cannot be understood: {error}",
-                    node=talking.node,
+                    node=running.node,
                     error=str(error),
                 )
             if word is not None:
-                self._talks.remove(talking)
-                talking.end(word)
-        return bool(self._talks)
+                self._exchanges.remove(running)
+                running.end(word)
+        return bool(self._exchanges)
 
     def fail(self, error: Exception) -> None:
         """End every exchange that is under way."""
-        while self._talks:
-            self._talks.pop().end(reason_of(error))
+        while self._exchanges:
+            self._exchanges.pop().end(reason_of(error))
 
-    def _begin(self, node: str, talk: Talk, timeout_s: float, end: Callable[[str], None]) -> None:
-        self._talks.append(_Talking(node, talk, next(talk), timeout_s, end, time.monotonic()))
+    def _begin(
+        self, node: str, exchange: ParameterExchange, timeout_s: float, end: Callable[[str], None]
+    ) -> None:
+        self._exchanges.append(
+            _RunningExchange(node, exchange, next(exchange), timeout_s, end, time.monotonic())
+        )
         self.step()
 
-    def _go_on(self, talking: _Talking) -> str | None:
+    def _go_on(self, running: _RunningExchange) -> str | None:
         """Take the next step; return None if there is more to come, otherwise why there is not."""
-        if talking.answer is None:
-            word = self._missing(talking)
+        if running.answer is None:
+            word = self._missing(running)
             if word is not None:
                 return word or None
-            self._ask(talking)
-        while talking.answer is not None and talking.answer.done():
-            result = talking.answer.result()
+            self._ask(running)
+        while running.answer is not None and running.answer.done():
+            result = running.answer.result()
             if result.response is None:
                 return result.error
-            talking.question = talking.talk.send(result.response)
-            talking.asked_s = time.monotonic()
-            self._ask(talking)
-        return self._lost_patience(talking)
+            running.request = running.exchange.send(result.response)
+            running.asked_s = time.monotonic()
+            self._ask(running)
+        return self._lost_patience(running)
 
-    def _ask(self, talking: _Talking) -> None:
-        question = talking.question
-        talking.answer = Future()
-        name = f"{talking.node}/{question.service}"
+    def _ask(self, running: _RunningExchange) -> None:
+        request = running.request
+        running.answer = Future()
+        name = f"{running.node}/{request.service}"
         # This class watches the time itself, to report a time-out in its own words.
-        patience_s = talking.timeout_s + FOUND_WITHIN_S
+        patience_s = running.timeout_s + FOUND_WITHIN_S
         self._calls.begin(
             name,
-            SERVICES[question.service],
-            question.request,
+            SERVICES[request.service],
+            request.value,
             self._service(name),
-            talking.answer,
+            running.answer,
             patience_s,
             time.monotonic(),
         )
 
-    def _missing(self, talking: _Talking) -> str | None:
+    def _missing(self, running: _RunningExchange) -> str | None:
         """Return why the node cannot be asked, "" if that is not known yet, None if it can."""
-        node = self._node(talking.node)
-        talking.was_there = talking.was_there or node is not None
-        if node and self._service(f"{talking.node}/{talking.question.service}"):
+        node = self._node(running.node)
+        running.was_there = running.was_there or node is not None
+        if node and self._service(f"{running.node}/{running.request.service}"):
             for name, type_name in SERVICES.items():
                 # All at once, so that not each has to wait again until the node has discovered it.
-                self._calls.prepare(f"{talking.node}/{name}", type_name)
+                self._calls.prepare(f"{running.node}/{name}", type_name)
             return None
-        if time.monotonic() - talking.asked_s < min(talking.timeout_s, FOUND_WITHIN_S):
+        if time.monotonic() - running.asked_s < min(running.timeout_s, FOUND_WITHIN_S):
             return ""
         if node:
             return say(
                 "{node} has no parameter services: it has just appeared, or was started without "
                 "them",
-                node=talking.node,
+                node=running.node,
             )
-        return _gone(talking)
+        return _gone(running)
 
-    def _lost_patience(self, talking: _Talking) -> str | None:
-        if self._node(talking.node) is None:
-            return _gone(talking)
-        if time.monotonic() - talking.asked_s >= talking.timeout_s:
+    def _lost_patience(self, running: _RunningExchange) -> str | None:
+        if self._node(running.node) is None:
+            return _gone(running)
+        if time.monotonic() - running.asked_s >= running.timeout_s:
             return say(
                 "{node} does not answer within {seconds} s",
-                node=talking.node,
-                seconds=f"{talking.timeout_s:g}",
+                node=running.node,
+                seconds=f"{running.timeout_s:g}",
             )
         return None
 
 
-def _gone(talking: _Talking) -> str:
-    if talking.was_there:
-        return say("{node} has left the graph", node=talking.node)
-    return say("there is no node {node} in the graph", node=talking.node)
+def _gone(running: _RunningExchange) -> str:
+    if running.was_there:
+        return say("{node} has left the graph", node=running.node)
+    return say("there is no node {node} in the graph", node=running.node)
 
 
 def _full(node: str) -> str:

@@ -130,7 +130,7 @@ class ObserverNode:
             return
         self._signature, self._scanned_s = found, now_s
         seen = scan(self._ros.node, self._ros.name, self.serve_urgent)
-        # Also if only the onlookers have changed.
+        # Also if only the passive subscriptions have changed.
         self.publications.tune(seen.topics)
         if seen != self._scan:
             self._scan = seen

@@ -70,7 +70,7 @@ class _PendingPublisher:
         while self.waiting and (self.is_settled or (all_matched and self.waiting[0][0] is None)):
             message, future = self.waiting.popleft()
             if message is None or self.publish(message, future):
-                future.set_result(max(0, matched - self._onlookers()))
+                future.set_result(max(0, matched - self._passive_subscriptions()))
 
     def publish(self, message: Draft, future: Future[int]) -> bool:
         """Publish; return whether that succeeded, and pass a failure to the future."""
@@ -83,7 +83,7 @@ class _PendingPublisher:
             return False
         return True
 
-    def _onlookers(self) -> int:
+    def _passive_subscriptions(self) -> int:
         """The current number of Deck's own subscribers, which do not count as receivers."""
         subscribed = subscriptions(self.node, self.publisher.topic)
         return sum(end.node.startswith(ONLY_LISTENING) for end in subscribed)
@@ -165,8 +165,8 @@ class Outbox:
         if line is None or (line.qos != qos and not line.waiting):
             if line is not None:
                 self._node.destroy_publisher(line.publisher)
-            onlookers = ends.onlookers if ends else 0
-            line = self._open(topic, type_name, qos, len(subscribers) + onlookers)
+            passive_subscriptions = ends.passive_subscriptions if ends else 0
+            line = self._open(topic, type_name, qos, len(subscribers) + passive_subscriptions)
             self._lines[key] = line
         return line
 

@@ -44,7 +44,7 @@ class _Repeated:
     qos: Qos
     publisher: Publisher
     due_s: float
-    onlookers: int = 0
+    passive_subscriptions: int = 0
     """Deck's own subscribers; set by the look at the graph that the new publisher triggers."""
     sent: int = 0
     error: str = ""
@@ -66,7 +66,7 @@ class _Repeated:
 
     def row(self) -> Publication:
         """Return it as the screen shows it."""
-        listeners = max(0, self.publisher.get_subscription_count() - self.onlookers)
+        listeners = max(0, self.publisher.get_subscription_count() - self.passive_subscriptions)
         return Publication(
             self.number, self.topic, self.type_name, self.hz, self.sent, listeners, self.error
         )
@@ -126,7 +126,7 @@ class RepeatedPublications:
         """Adapt the offered QoS to new subscribers."""
         for repeated in self._repeated.values():
             ends = topics.get(repeated.topic)
-            repeated.onlookers = ends.onlookers if ends else 0
+            repeated.passive_subscriptions = ends.passive_subscriptions if ends else 0
             qos = to_be_heard(ends.subscribers if ends else ())
             if qos == repeated.qos:
                 continue

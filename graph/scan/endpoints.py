@@ -30,7 +30,7 @@ class TopicEnds:
     publishers: tuple[EndpointInfo, ...] = ()
     subscribers: tuple[EndpointInfo, ...] = ()
     own_publishers: tuple[EndpointInfo, ...] = ()
-    onlookers: int = field(default=0, compare=False)
+    passive_subscriptions: int = field(default=0, compare=False)
     """Subscriptions that only show or record; a change among them does not change the graph."""
 
     @property

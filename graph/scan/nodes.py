@@ -26,7 +26,7 @@ SEND_GOAL_TYPE = "_SendGoal"
 
 
 @dataclass(frozen=True)
-class Offers:
+class ServicesAndActions:
     """The services that one node serves, or that it calls: name to types."""
 
     services: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -34,14 +34,16 @@ class Offers:
 
 
 @dataclass(frozen=True)
-class Party:
+class NodeServices:
     """The services and actions of one node."""
 
-    serves: Offers
-    calls: Offers
+    serves: ServicesAndActions
+    calls: ServicesAndActions
 
 
-def parties(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> dict[str, Party]:
+def services_of_nodes(
+    node: Node, own_name: str, serve_urgent: Callable[[], object]
+) -> dict[str, NodeServices]:
     """Ask the middleware what each node serves and calls; `own_name` is left out."""
     from rclpy.node import NodeNameNonExistentError
 
@@ -57,13 +59,15 @@ def parties(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> di
         except NodeNameNonExistentError:
             # It left between the queries.
             continue
-        found[full] = Party(offers(serves), offers(calls))
+        found[full] = NodeServices(services_and_actions(serves), services_and_actions(calls))
     return found
 
 
-def offers(names_and_types: Iterable[tuple[str, Iterable[str]]]) -> Offers:
+def services_and_actions(
+    names_and_types: Iterable[tuple[str, Iterable[str]]],
+) -> ServicesAndActions:
     """Separate ordinary services from those inside an action."""
-    sorted_out = Offers()
+    sorted_out = ServicesAndActions()
     for name, types in sorted(names_and_types):
         if INNER not in name:
             sorted_out.services[name] = tuple(types)
@@ -73,7 +77,9 @@ def offers(names_and_types: Iterable[tuple[str, Iterable[str]]]) -> Offers:
     return sorted_out
 
 
-def node_rows(topics: Mapping[str, TopicEnds], found: Mapping[str, Party]) -> tuple[NodeRow, ...]:
+def node_rows(
+    topics: Mapping[str, TopicEnds], found: Mapping[str, NodeServices]
+) -> tuple[NodeRow, ...]:
     """Return a row for each node, sorted by name."""
     publishes: defaultdict[str, set[str]] = defaultdict(set)
     subscribes: defaultdict[str, set[str]] = defaultdict(set)
@@ -91,22 +97,22 @@ def node_rows(topics: Mapping[str, TopicEnds], found: Mapping[str, Party]) -> tu
             name,
             tuple(sorted(publishes[name])),
             tuple(sorted(subscribes[name])),
-            tuple(party.serves.services),
-            tuple(party.calls.services),
-            tuple(party.serves.actions),
-            tuple(party.calls.actions),
+            tuple(one.serves.services),
+            tuple(one.calls.services),
+            tuple(one.serves.actions),
+            tuple(one.calls.actions),
             tuple(sorted(processes[name])),
         )
-        for name, party in sorted(found.items())
+        for name, one in sorted(found.items())
     )
 
 
-def service_rows(found: Mapping[str, Party]) -> tuple[ServiceRow, ...]:
+def service_rows(found: Mapping[str, NodeServices]) -> tuple[ServiceRow, ...]:
     """Return a row for each service that somebody serves, sorted by name."""
     types: defaultdict[str, set[str]] = defaultdict(set)
     nodes: defaultdict[str, list[str]] = defaultdict(list)
-    for node, party in sorted(found.items()):
-        for name, kinds in party.serves.services.items():
+    for node, one in sorted(found.items()):
+        for name, kinds in one.serves.services.items():
             types[name] |= set(kinds)
             nodes[name].append(node)
     return tuple(
@@ -114,14 +120,14 @@ def service_rows(found: Mapping[str, Party]) -> tuple[ServiceRow, ...]:
     )
 
 
-def action_rows(found: Mapping[str, Party]) -> tuple[ActionRow, ...]:
+def action_rows(found: Mapping[str, NodeServices]) -> tuple[ActionRow, ...]:
     """Return a row for each action that somebody serves or calls, sorted by name."""
     types: defaultdict[str, set[str]] = defaultdict(set)
     servers: defaultdict[str, list[str]] = defaultdict(list)
     clients: defaultdict[str, list[str]] = defaultdict(list)
-    for node, party in sorted(found.items()):
-        for offered, nodes in ((party.serves, servers), (party.calls, clients)):
-            for name, kinds in offered.actions.items():
+    for node, one in sorted(found.items()):
+        for services, nodes in ((one.serves, servers), (one.calls, clients)):
+            for name, kinds in services.actions.items():
                 types[name] |= set(kinds)
                 nodes[name].append(node)
     return tuple(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from graph.ros import ONLY_LISTENING
 from graph.scan.endpoints import TopicEnds, publishers, subscriptions
-from graph.scan.nodes import action_rows, node_rows, parties, service_rows
+from graph.scan.nodes import action_rows, node_rows, service_rows, services_of_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,7 +74,7 @@ def scan(node: Node, own_name: str, serve_urgent: Callable[[], object]) -> Scan:
     for name, types in node.get_topic_names_and_types():
         serve_urgent()
         topics[name] = _topic(node, own_name, name, tuple(types))
-    found = parties(node, own_name, serve_urgent)
+    found = services_of_nodes(node, own_name, serve_urgent)
     return Scan(topics, node_rows(topics, found), service_rows(found), action_rows(found))
 
 

@@ -125,7 +125,7 @@ class ActionPane(AskPane):
         if isinstance(goal, Goal) and goal.result is not None:
             return f"{state} · " + _("result"), f"{name} result", goal.result
         if goal.feedback is not None:
-            count = _("feedback {n}").format(n=goal.feedbacks)
+            count = _("feedback {n}").format(n=goal.feedback_count)
             return f"{state} · {count}", name, goal.feedback
         return state, name, (_("no feedback yet"), "")
 
@@ -216,7 +216,9 @@ def _other_row(goal: SeenGoal) -> Row:
 
 
 def _row(goal: Goal | SeenGoal, age_s: float | None, whose: str) -> Row:
-    told = ngettext("{n} feedback", "{n} feedbacks", goal.feedbacks).format(n=goal.feedbacks)
+    told = ngettext("{n} feedback", "{n} feedbacks", goal.feedback_count).format(
+        n=goal.feedback_count
+    )
     if goal.error:
         told = plain(localized(goal.error), LONGEST)
     age = "" if age_s is None else _("{n} s").format(n=figure(age_s, 1))

@@ -99,7 +99,7 @@ def test_a_goal_is_accepted_executed_and_succeeds(watcher: Watcher, server: Peer
 
     def fed() -> Goal | None:
         found = goal(watcher, number)
-        return found if found and found.feedbacks == 2 else None
+        return found if found and found.feedback_count == 2 else None
 
     told = wait_until(fed, "two feedbacks")
     assert told.feedback == {"distance": 0.5}

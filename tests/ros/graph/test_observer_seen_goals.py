@@ -79,7 +79,7 @@ def test_goals_of_others_are_told_with_status_age_and_feedback_also_those_of_bef
     def fed() -> SeenGoal | None:
         server.feedback(server.action, goal=1, distance=0.5)
         last = watcher.update.seen_goals[-1]
-        return last if last.feedbacks else None
+        return last if last.feedback_count else None
 
     assert wait_until(fed, "feedback").feedback == {"distance": 0.5}
     server.finish(server.action, goal=0, how="succeed")

@@ -255,7 +255,7 @@ async def test_a_goal_is_sent_and_its_feedback_and_result_are_shown(action: Stag
     assert action.graph.sent_goals == [(ACTION, DRIVE, {"x": 1.0, "y": 2.0, "tolerance": 0.1})]
     await action.wait_for("#1 ◌ sending")
     status = GoalStatus.EXECUTING
-    action.graph.change_goal(1, status=status, feedback={"distance": 1.5}, feedbacks=2)
+    action.graph.change_goal(1, status=status, feedback={"distance": 1.5}, feedback_count=2)
     await action.wait_for("distance: 1.5")
     assert "● executing" in action.seen()
     status = GoalStatus.SUCCEEDED

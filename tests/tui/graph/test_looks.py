@@ -71,7 +71,7 @@ def executing(_screen: GraphScreen, graph: RecordedGraph) -> None:
     feedback = {"distance": 1.25}
     graph.change_goal(1, status=GoalStatus.SUCCEEDED, result={"reached": True}, elapsed_s=4.2)
     graph.change_goal(
-        2, status=GoalStatus.EXECUTING, feedback=feedback, feedbacks=12, elapsed_s=1.8
+        2, status=GoalStatus.EXECUTING, feedback=feedback, feedback_count=12, elapsed_s=1.8
     )
 
 

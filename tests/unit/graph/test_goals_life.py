@@ -9,8 +9,8 @@ import pytest
 from deck_interfaces.action import DriveToPoint
 
 from graph.calls import goal_life as goals_life
+from graph.calls.action_client import GoalAnswers
 from graph.calls.goal_life import GONE_AFTER_S, GoalLife
-from graph.calls.goal_line import GoalAnswers
 from graph.calls.timeouts import ANSWER_WITHIN_S
 from graph.data import Goal, GoalStatus
 from graph.messages.dated import Draft
@@ -19,7 +19,7 @@ ID = bytes(range(16))
 EXECUTING, SUCCEEDED, ABORTED = 2, 4, 6
 
 
-class Line:
+class Client:
     """Remembers what was sent, by number."""
 
     def __init__(self) -> None:
@@ -62,15 +62,15 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 @pytest.fixture
-def line() -> Line:
-    return Line()
+def client() -> Client:
+    return Client()
 
 
 @pytest.fixture
-def life(clock: Clock, line: Line) -> GoalLife:
+def life(clock: Clock, client: Client) -> GoalLife:
     assert clock.now_s == 100.0
     told = Goal(1, "/drive", "t", GoalStatus.SENDING, {})
-    return GoalLife(told, ID, Draft(None), cast("Any", line))
+    return GoalLife(told, ID, Draft(None), cast("Any", client))
 
 
 def go(life: GoalLife, **heard: Any) -> GoalStatus:
@@ -84,19 +84,19 @@ def result(status: int, message: str = "") -> Any:
 
 
 def test_a_goal_whose_acceptance_was_lost_is_known_by_its_status(
-    life: GoalLife, line: Line
+    life: GoalLife, client: Client
 ) -> None:
     go(life)
     assert go(life, status={ID: EXECUTING}) == GoalStatus.EXECUTING
-    assert line.sent == ["goal", "result"]
+    assert client.sent == ["goal", "result"]
     # The answer that comes after all changes nothing.
     assert go(life, accepted={1: True}) == GoalStatus.EXECUTING
-    assert line.sent == ["goal", "result"]
+    assert client.sent == ["goal", "result"]
     assert go(life, results={2: result(SUCCEEDED)}) == GoalStatus.SUCCEEDED
 
 
 def test_what_is_accepted_after_it_was_given_up_is_cancelled(
-    life: GoalLife, line: Line, clock: Clock
+    life: GoalLife, client: Client, clock: Clock
 ) -> None:
     go(life)
     clock.now_s += ANSWER_WITHIN_S
@@ -104,28 +104,28 @@ def test_what_is_accepted_after_it_was_given_up_is_cancelled(
     assert life.told.error == "no answer within 5 s"
     assert not life.is_settled
     go(life, accepted={1: True})
-    assert "cancel" in line.sent
+    assert "cancel" in client.sent
     assert not life.is_settled
     go(life, cancelled={3: True})
     assert life.is_settled
 
 
 def test_what_was_given_up_is_settled_when_its_server_has_gone(
-    life: GoalLife, line: Line, clock: Clock
+    life: GoalLife, client: Client, clock: Clock
 ) -> None:
     go(life)
     clock.now_s += ANSWER_WITHIN_S
     go(life)
-    line.there = frozenset()
+    client.there = frozenset()
     assert life.is_settled
 
 
 def test_another_server_in_its_place_is_not_its_server(
-    life: GoalLife, line: Line, clock: Clock
+    life: GoalLife, client: Client, clock: Clock
 ) -> None:
     go(life)
     go(life, accepted={1: True})
-    line.there = frozenset({b"another"})
+    client.there = frozenset({b"another"})
     assert go(life) == GoalStatus.ACCEPTED
     clock.now_s += GONE_AFTER_S
     assert go(life) == GoalStatus.FAILED
@@ -133,11 +133,11 @@ def test_another_server_in_its_place_is_not_its_server(
 
 
 def test_a_result_that_comes_from_the_dead_still_counts(
-    life: GoalLife, line: Line, clock: Clock
+    life: GoalLife, client: Client, clock: Clock
 ) -> None:
     go(life)
     go(life, accepted={1: True})
-    line.there = frozenset()
+    client.there = frozenset()
     go(life)
     clock.now_s += GONE_AFTER_S
     assert go(life) == GoalStatus.FAILED
@@ -146,17 +146,17 @@ def test_a_result_that_comes_from_the_dead_still_counts(
 
 
 def test_one_that_seemed_gone_can_still_be_cancelled(
-    life: GoalLife, line: Line, clock: Clock
+    life: GoalLife, client: Client, clock: Clock
 ) -> None:
     go(life)
     go(life, accepted={1: True})
-    line.there = frozenset()
+    client.there = frozenset()
     go(life)
     clock.now_s += GONE_AFTER_S
     go(life)
     life.cancel()
     go(life)
-    assert line.sent == ["goal", "result", "cancel"]
+    assert client.sent == ["goal", "result", "cancel"]
 
 
 def test_an_end_whose_result_never_comes_is_told(life: GoalLife, clock: Clock) -> None:
@@ -168,7 +168,7 @@ def test_an_end_whose_result_never_comes_is_told(life: GoalLife, clock: Clock) -
 
 
 def test_a_server_that_ignores_the_cancelling_is_told_and_can_be_asked_again(
-    life: GoalLife, line: Line, clock: Clock
+    life: GoalLife, client: Client, clock: Clock
 ) -> None:
     go(life)
     go(life, accepted={1: True}, status={ID: EXECUTING})
@@ -180,7 +180,7 @@ def test_a_server_that_ignores_the_cancelling_is_told_and_can_be_asked_again(
     assert life.told.error == "no answer to the request to cancel it within 5 s"
     life.cancel()
     go(life)
-    assert line.sent.count("cancel") == 2
+    assert client.sent.count("cancel") == 2
 
 
 def test_the_time_that_it_took_stands_still_at_its_end(life: GoalLife, clock: Clock) -> None:

@@ -1,7 +1,7 @@
 """The exchange between Deck and a node about its parameters, request by request.
 
-A talk is a generator: it yields questions, is sent the answers as trees, and knows neither time
-nor ROS; `graph.calls.parameters` delivers the questions.
+An exchange is a generator: it yields requests, is sent the answers as trees, and knows neither
+time nor ROS; `graph.calls.parameters` delivers the requests.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ SERVICES = {
 }
 """The services through which a node is asked, and their types."""
 AT_ONCE = 200
-"""Parameters in one question: a node with thousands of them must fit into its messages."""
+"""Parameters in one request: a node with thousands of them must fit into its messages."""
 
 
-class Question(NamedTuple):
+class ParameterRequest(NamedTuple):
     """A request to one of a node's own services."""
 
     service: str
     """The service relative to the node's name: `list_parameters`."""
-    request: Mapping[str, Value]
+    value: Mapping[str, Value]
 
 
-Talk = Generator[Question, Mapping[str, Any], None]
+ParameterExchange = Generator[ParameterRequest, Mapping[str, Any], None]
 
 
-def read(rows: list[ParameterRow]) -> Talk:
+def read(rows: list[ParameterRow]) -> ParameterExchange:
     """Read all parameters into `rows`, which is sorted by name when this ends."""
-    listed = yield Question("list_parameters", {"depth": 0})
+    listed = yield ParameterRequest("list_parameters", {"depth": 0})
     names = sorted(set(listed["result"]["names"]))
     descriptors = yield from _describe(names)
     values = yield from _of_each("get_parameters", "values", names)
@@ -48,7 +48,7 @@ def read(rows: list[ParameterRow]) -> Talk:
     ]
 
 
-def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Talk:
+def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> ParameterExchange:
     """Set parameters, keeping their types; each that is not accepted is put into `refused`."""
     descriptors = yield from _describe(list(wanted))
     made: dict[str, Value] = {}
@@ -59,7 +59,7 @@ def write(wanted: Mapping[str, Value], refused: dict[str, str]) -> Talk:
         else:
             made[name] = {"name": name, "value": tree}
     for some in _parts(list(made)):
-        answer = yield Question(
+        answer = yield ParameterRequest(
             "set_parameters",
             {"parameters": [made[name] for name in some]},
         )
@@ -94,20 +94,19 @@ def _made_anew(value: Value) -> tuple[str, dict[str, Value] | None]:
         return error.words, None
 
 
-def _describe(names: list[str]) -> Generator[Question, Mapping[str, Any], dict[str, Any]]:
+def _describe(names: list[str]) -> Generator[ParameterRequest, Mapping[str, Any], dict[str, Any]]:
     return (yield from _of_each("describe_parameters", "descriptors", names))
 
 
 def _of_each(
     service: str, field: str, names: list[str]
-) -> Generator[Question, Mapping[str, Any], dict[str, Any]]:
+) -> Generator[ParameterRequest, Mapping[str, Any], dict[str, Any]]:
     """Ask for something about each parameter; those that the node does not have are left out."""
     found: dict[str, Any] = {}
     parts = list(_parts(names))
     while parts:
         some = parts.pop(0)
-        request = {"names": some}
-        answers = (yield Question(service, request))[field]
+        answers = (yield ParameterRequest(service, {"names": some}))[field]
         if len(answers) == len(some):
             found.update(zip(some, answers, strict=True))
         elif len(some) > 1:

@@ -58,7 +58,7 @@ def status_topic(action: str) -> str:
     return f"{action}/_action/status"
 
 
-class ActionLine:
+class PolledActionClient:
     """The client of one action."""
 
     def __init__(self, node: Node, action: str, type_name: str) -> None:
